@@ -1,0 +1,25 @@
+# One standard, hidden symbols and strict warnings for everything that is ours.
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(INR_CCACHE ccache)
+if (INR_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${INR_CCACHE}")
+endif ()
+
+# Carried by every target of ours, never by generated (wrapping) code.
+add_library(inr_options INTERFACE)
+target_compile_options(inr_options INTERFACE
+  -Wall -Wextra
+  -ffp-contract=off # results that are compared must not depend on where a compiler fuses
+  $<$<BOOL:${INR_WERROR}>:-Werror>)
+if (INR_SANITIZE)
+  target_compile_options(inr_options INTERFACE
+    -fsanitize=${INR_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(inr_options INTERFACE -fsanitize=${INR_SANITIZE})
+endif ()

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Marks a function that is compiled for the host and, by a CUDA compiler, for the device too.
+#ifdef __CUDACC__
+#define INR_HOST_DEVICE __host__ __device__
+#else
+#define INR_HOST_DEVICE
+#endif

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Image/Image.h"
+
+#include <string>
+
+namespace inr {
+
+/// Writes premultiplied RGBA as 32-bit float channels R, G, B, A and, when `depth` is not empty,
+/// its single channel as Z, bit-exact. Whole file or none (temporary name and rename). Throws
+/// Error(InvalidArgument) for wrong shapes, Error(CannotWrite) for an unwritable target.
+void WriteExr(const std::string& path, const Image& rgba, const Image& depth = {});
+
+/// Reads what WriteExr wrote: R, G, B, A into a four-channel image; `depth`, when given, receives Z
+/// (empty if there is none). Throws Error(CannotRead) or Error(Malformed).
+Image ReadExr(const std::string& path, Image* depth = nullptr);
+
+} // namespace inr

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Model/Model.h"
+#include "Core/Parallel.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace inr {
+
+/// Values of an INR at scattered points. Immutable: any number of threads may use one at once.
+class Evaluator
+{
+public:
+  virtual ~Evaluator() = default;
+
+  /// Normalised values y at `count` positions in the unit cube, on the calling thread. Positions
+  /// are clamped to [0, 1]; y is the network's output, not clamped. float32 arithmetic; a value
+  /// does not depend on its neighbours in the batch. Best in batches of 64 or more.
+  virtual void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const = 0;
+
+  /// The instruction set in use: "avx512", "avx2" or "baseline".
+  virtual std::string kernel() const = 0;
+};
+
+/// The fastest kernel that this processor runs; `kernel` asks for one by name (for tests) and
+/// Error(Unsupported) says that it is not to be had here. Throws Error(InvalidModel) when the
+/// parameter count does not fit the description.
+std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const std::string& kernel = "");
+
+/// `evaluate` with the batch spread over `arena`.
+void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm::vec3* positions,
+                      std::int64_t count, float* values);
+
+/// Values at the points of a regular lattice: point (i, j, k) of `points` sits at
+/// u = first + (i, j, k) * step; x fastest in `values`.
+struct Lattice
+{
+  glm::dvec3 first{0.0};
+  glm::dvec3 step{0.0};
+  glm::i64vec3 points{0};
+};
+void EvaluateLattice(const Evaluator& evaluator, const Arena& arena, const Lattice& lattice,
+                     float* values);
+
+/// The lattice of voxel centres [begin, begin + size) of a grid with `dims` voxels.
+Lattice VoxelLattice(const glm::i64vec3& dims, const glm::i64vec3& begin, const glm::i64vec3& size);
+
+} // namespace inr

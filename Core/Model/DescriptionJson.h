@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Model/Description.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace inr {
+
+/// Reads the `encoding` and `network` sections of a tiny-cuda-nn configuration; names are taken
+/// case-insensitively, with upstream's synonyms and defaults. Throws Error(Unsupported) for an
+/// encoding or network that is not a grid and an MLP, Error(InvalidModel) for bad values; the
+/// message names the key.
+Description ParseDescription(const nlohmann::json& model);
+
+/// As above, from text (C and C++ comments allowed); Error(Malformed) when it is not JSON.
+Description ParseDescription(const std::string& text);
+
+/// The same sections as upstream writes and reads them.
+nlohmann::json DescriptionToJson(const Description& description);
+
+} // namespace inr

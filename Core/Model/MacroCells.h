@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glm/gtc/type_precision.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// Normalised values a cell can show; low > high means that the cell is empty.
+struct ValueRange
+{
+  float low = 1.0f;
+  float high = -1.0f;
+
+  bool empty() const { return this->low > this->high; }
+  void extend(float value)
+  {
+    const bool first = this->empty();
+    this->low = first || value < this->low ? value : this->low;
+    this->high = first || value > this->high ? value : this->high;
+  }
+};
+
+/// Where the ranges come from, in falling order of trust.
+enum class MacroCellProvenance {
+  Decoded,  ///< every voxel of the stored network, with an apron of one voxel
+  Training, ///< training samples, widened by the measured maximum error
+  File      ///< whatever the writing program put there (upstream)
+};
+
+/// Value ranges of a coarse regular grid over the unit cube; the data half of empty-space skipping
+/// (the other half, majorants, also knows the transfer function and lives in Render/).
+/// Cell (x, y, z) covers [x*spacing.x, (x+1)*spacing.x] and so on; the last cells may overhang 1.
+struct MacroCells
+{
+  glm::i64vec3 dims{0};
+  glm::dvec3 spacing{0}; ///< cell edge in the unit cube
+  MacroCellProvenance provenance = MacroCellProvenance::File;
+  std::vector<ValueRange> ranges; ///< x fastest
+
+  bool empty() const { return this->ranges.empty(); }
+  std::int64_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
+  {
+    return x + this->dims.x * (y + this->dims.y * z);
+  }
+};
+
+/// Edge in voxels of the cells for a volume: the smallest power of two >= 16 that gives at most
+/// 2^22 cells.
+int DefaultMacroCellSize(const glm::i64vec3& volumeDims);
+
+/// An empty-ranged grid with cells of `edge` voxels over a volume of `volumeDims` voxels.
+MacroCells MakeMacroCells(const glm::i64vec3& volumeDims, int edge);
+
+} // namespace inr

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Model/Description.h"
+#include "Core/Model/MacroCells.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace inr {
+
+/// VTK's scalar types, by what they are.
+enum class ScalarType {
+  Int8,
+  UInt8,
+  Int16,
+  UInt16,
+  Int32,
+  UInt32,
+  Int64,
+  UInt64,
+  Float32,
+  Float64
+};
+
+std::size_t ScalarSize(ScalarType type); ///< bytes
+const char* ScalarName(ScalarType type); ///< "uint8", "float64", ...
+std::optional<ScalarType> ScalarFromName(const std::string& name);
+
+/// The volume an INR stands for. Voxel i of n sits at u = (i + 0.5)/n in the unit cube and at
+/// origin + direction * (i * spacing) in world space.
+struct VolumeInfo
+{
+  glm::i64vec3 dims{1};
+  glm::dvec3 spacing{1.0};
+  glm::dvec3 origin{0.0};
+  glm::dmat3 direction{1.0};
+  std::string arrayName = "Scalars";
+  ScalarType type = ScalarType::Float32;
+  double low = 0.0; ///< value = low + (high - low) * y for the network's output y
+  double high = 1.0;
+};
+
+/// Measured against the data when the file was written, over all finite voxels.
+struct Quality
+{
+  double psnr = 0;     ///< dB, peak = high - low; infinity when every voxel is exact
+  double ssim = 0;     ///< mean 3D SSIM, 7^3 window; NaN for a volume with an axis under 7 voxels
+  double maxError = 0; ///< in data units
+};
+
+/// Enough to repeat the training.
+struct TrainingRecord
+{
+  std::uint64_t steps = 0;
+  std::uint64_t seed = 0;
+  double seconds = 0;          ///< wall time, training only
+  std::string kernel;          ///< kernel family ("avx512", ...): same family, same parameters
+  std::uint64_t nonFinite = 0; ///< NaN and infinite voxels left out
+};
+
+enum class ParameterType { Half, Float };
+
+/// A trained INR: immutable once it is shared. `parameters` follows Layout(description).
+struct Model
+{
+  Description description;
+  std::vector<float> parameters;
+  ParameterType storedAs = ParameterType::Half; ///< precision of `parameters` in the file
+  VolumeInfo volume;
+  MacroCells macroCells;
+  std::optional<Quality> quality;
+  std::optional<TrainingRecord> training;
+};
+
+using ModelPointer = std::shared_ptr<const Model>;
+
+} // namespace inr

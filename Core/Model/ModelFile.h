@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Model/Model.h"
+
+#include <glm/vec2.hpp>
+
+#include <optional>
+#include <string>
+
+namespace inr {
+
+/// What the caller knows better than the file (upstream's files lack a value range, and those
+/// trained out of core lie about their dimensions).
+struct ModelOverrides
+{
+  std::optional<glm::i64vec3> dims;
+  std::optional<glm::dvec2> dataRange; ///< low, high
+};
+
+/// True when the first bytes look like one of our or upstream's model files (BSON with a known root
+/// key). Reads at most a few KiB; false for anything unreadable.
+bool IsModelFile(const std::string& path);
+
+/// Everything but the parameters and the macro-cells (both empty in the result): what a reader
+/// needs before it is asked for data. Validates the whole structure. Throws Error.
+Model ReadModelHeader(const std::string& path, const ModelOverrides& overrides = {});
+
+/// The whole model; accepts every variant of upstream's files. Throws Error with the file's name,
+/// the reason and, where it applies, the byte.
+ModelPointer ReadModel(const std::string& path, const ModelOverrides& overrides = {});
+
+/// Writes `path` through a temporary file beside it and a rename: the file is there whole or not at
+/// all. The parameters are stored as `model.storedAs` says. Throws Error(CannotWrite), or
+/// Error(TooLarge) for 2 GiB or more.
+void WriteModel(const Model& model, const std::string& path);
+
+/// Size in bytes that WriteModel would produce.
+std::int64_t ModelFileSize(const Model& model);
+
+} // namespace inr

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// One picture to make: a plain value that holds everything a host's camera and scene say.
+/// Matrices act on column vectors. Pixel (0, 0) is the bottom left one.
+struct Frame
+{
+  int width = 0;
+  int height = 0;
+
+  /// Normalised device coordinates (x, y, z in [-1, 1], z = -1 near) to world space, homogeneous.
+  glm::dmat4 clipToWorld{1.0};
+  /// World space to continuous point indices of the volume's native grid: point i of the grid is at
+  /// i. Composes the actor's transform, direction, origin and spacing.
+  glm::dmat4 worldToIndex{1.0};
+
+  /// Window-space depth in [0, 1] of what is already drawn, width * height values, 1 = nothing.
+  /// Null when nothing opaque was drawn. Must outlive the call.
+  const float* opaqueDepth = nullptr;
+  /// World-space half spaces; a point p is kept where dot(plane, (p, 1)) >= 0 for all of them.
+  std::vector<glm::dvec4> clippingPlanes;
+
+  /// World length to which the transfer function's opacity refers; above 0.
+  double unitDistance = 1;
+  /// Distance between samples in voxels, along the axis in which the voxels are densest; above 0.
+  double sampleDistance = 0.5;
+
+  /// Offsets of the samples along their rays are random in (seed, frameIndex, pixel).
+  std::uint64_t seed = 0;
+  std::uint64_t frameIndex = 0;
+};
+
+/// What making a picture took.
+struct FrameStatistics
+{
+  std::int64_t rays = 0;    ///< that met the volume
+  std::int64_t samples = 0; ///< inferred
+  std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
+  double seconds = 0;       ///< wall time
+};
+
+} // namespace inr

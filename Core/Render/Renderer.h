@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Image/Image.h"
+#include "Core/Model/Model.h"
+#include "Core/Render/Frame.h"
+#include "Core/Render/TransferFunction.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace inr {
+
+struct RendererOptions
+{
+  int threads = 0;    ///< 0 = all available cores
+  std::string kernel; ///< inference kernel, for tests; empty = the fastest
+};
+
+/// Ray-marches an INR straight from its network.
+///
+/// A frame is a pure function of model, transfer function and Frame: threads and tiles do not
+/// change a pixel. Not for use from two threads at once.
+class Renderer
+{
+public:
+  explicit Renderer(ModelPointer model, const RendererOptions& options = {});
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Rebuilds the majorants if, and only if, `transferFunction` differs from the current one.
+  /// Throws Error(InvalidArgument) for a table of fewer than 2 entries, non-finite entries, low >=
+  /// high, or a logarithmic range that is not positive.
+  void setTransferFunction(const TransferFunction& transferFunction);
+
+  /// How often the majorants have been rebuilt (for tests and statistics).
+  std::int64_t majorantBuilds() const;
+
+  /// Renders into `rgba`: premultiplied RGBA, resized to the frame. `depth`, when given, receives
+  /// the window-space depth where accumulated opacity first reaches one half, 1 where it never
+  /// does. `keepGoing` is asked between tiles, from any thread; returning false throws
+  /// Error(Cancelled). Throws Error(InvalidArgument) for a frame outside its documented ranges,
+  /// singular matrices or a missing transfer function.
+  FrameStatistics render(const Frame& frame, Image& rgba, Image* depth = nullptr,
+                         const std::function<bool()>& keepGoing = {});
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> Self;
+};
+
+} // namespace inr

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Model/Model.h"
+#include "Core/Training/Volume.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace inr {
+
+/// What to train and when to stop; the first limit reached ends it.
+struct TrainingOptions
+{
+  double targetPsnr = 0;          ///< dB; 0 = off
+  double targetRatio = 0;         ///< volume bytes / file bytes; 0 = by the volume's size
+  std::uint64_t maximumSteps = 0; ///< 0 = no limit
+  double timeLimit = 300;         ///< seconds of training; 0 = no limit
+  std::uint64_t seed = 1;
+  int macroCellSize = 0;                  ///< voxels; 0 = DefaultMacroCellSize
+  std::optional<Description> description; ///< empty = ChooseDescription
+  ParameterType storedAs = ParameterType::Half;
+  std::string kernel; ///< for tests; empty = the fastest
+  int threads = 0;    ///< 0 = all
+};
+
+enum class TrainingPhase { Training, Measuring };
+
+struct TrainingProgress
+{
+  TrainingPhase phase = TrainingPhase::Training;
+  double fraction = 0; ///< of the whole, 0 to 1, never falling
+  std::uint64_t steps = 0;
+  double psnr = 0; ///< latest estimate in dB; 0 while there is none
+};
+
+/// Called at least twice a second; return false to stop, which throws Error(Cancelled).
+using TrainingObserver = std::function<bool(const TrainingProgress&)>;
+
+/// A model size for the volume: upstream-readable, about volume bytes / `ratio`; ratio 0 lets the
+/// volume's size decide.
+Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio);
+
+/// Fits an INR to `volume`; `info` gives geometry, name and type (its low and high are measured).
+///
+/// Mini-batches of 65,536 uniform positions, trilinear targets, L1 loss, Adam. Positions whose
+/// trilinear cell holds a NaN or infinite voxel carry no gradient; such voxels are counted and left
+/// out of range, quality and macro-cells. A constant volume takes no step and is exact. The
+/// result's quality and macro-cells are those of the parameters as they are stored. For a given
+/// seed, step count and kernel family the result is the same whatever the number of threads. Throws
+/// Error(InvalidArgument) for an empty volume or when no limit is set.
+ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
+                        const TrainingOptions& options, const TrainingObserver& observer = {});
+
+} // namespace inr
