@@ -38,15 +38,15 @@ struct GridDescription
   int levels = 16;            ///< 1 to 128
   int features = 2;           ///< per level: 1, 2, 4 or 8
   int log2HashmapSize = 19;   ///< 0 to 30
-  int baseResolution = 16;    ///< lattice points per axis on level 0
+  int baseResolution = 16;    ///< lattice points per axis on level 0: 1 to 2^20
   float perLevelScale = 2.0f; ///< resolution ratio of neighbouring levels, at least 1
 };
 
 /// The multi-layer perceptron: no biases, one output.
 struct NetworkDescription
 {
-  int neurons = 64;     ///< width of a hidden layer
-  int hiddenLayers = 4; ///< 0 (a single matrix) and up
+  int neurons = 64;     ///< width of a hidden layer: 1 to 1024
+  int hiddenLayers = 4; ///< 0 (a single matrix) to 64
   Activation activation = Activation::ReLU;
   Activation outputActivation = Activation::None;
   int alignment = 16; ///< input and output widths are padded to it: 8 or 16
@@ -67,6 +67,9 @@ struct GridLevel
   std::uint32_t entries = 0;    ///< table size
   std::uint64_t offset = 0;     ///< first entry, counted in entries from the grid's start
   bool hashed = false;          ///< the corner index is hash(p) % entries
+  /// Where not hashed, it is (p.x*stride[0] + p.y*stride[1] + p.z*stride[2] mod 2^32) % entries; an
+  /// axis that the hash rule drops has stride 0. See GridIndex.h.
+  std::uint32_t stride[3] = {0, 0, 0};
 };
 
 /// One weight matrix in the parameter vector: row-major, rows are outputs.

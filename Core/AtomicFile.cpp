@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/AtomicFile.h"
+
+#include "Core/Error.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace inr {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string FollowLinks(const std::string& path)
+{
+  std::error_code ignored;
+  const fs::path target =
+      fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : fs::path(path);
+  return target.empty() ? path : target.string();
+}
+
+// Why `target` may not be replaced, as an errno; 0 when it may.
+int ReasonToRefuse(const std::string& target)
+{
+  struct stat status
+  {};
+  if (stat(target.c_str(), &status) != 0) {
+    return errno == ENOENT ? 0 : errno;
+  }
+  if (S_ISDIR(status.st_mode)) {
+    return EISDIR;
+  }
+  if (!S_ISREG(status.st_mode)) {
+    return EINVAL;
+  }
+  return access(target.c_str(), W_OK) == 0 ? 0 : errno;
+}
+
+// Makes the new name itself durable. A file system that cannot do this has still renamed the file.
+void FlushFolder(const std::string& file)
+{
+  const fs::path folder = fs::path(file).parent_path();
+  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY);
+  if (descriptor >= 0) {
+    (void)fsync(descriptor);
+    close(descriptor);
+  }
+}
+
+} // namespace
+
+AtomicFile::AtomicFile(const std::string& path) : Path(path), Target(FollowLinks(path))
+{
+  if (const int reason = ReasonToRefuse(this->Target)) {
+    this->fail(reason);
+  }
+  this->create();
+}
+
+AtomicFile::~AtomicFile()
+{
+  if (this->Descriptor >= 0) {
+    close(this->Descriptor);
+  }
+  if (!this->Temporary.empty()) {
+    (void)std::remove(this->Temporary.c_str());
+  }
+}
+
+// A fixed mode of 0666 leaves the permissions to the user's umask, which mkstemp would not.
+void AtomicFile::create()
+{
+  constexpr int Attempts = 1000;
+  const std::string stem = this->Target + "." + std::to_string(getpid()) + ".";
+  for (int attempt = 0; attempt < Attempts; ++attempt) {
+    const std::string name = stem + std::to_string(attempt) + ".tmp";
+    this->Descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (this->Descriptor >= 0) {
+      this->Temporary = name;
+      return;
+    }
+    if (errno != EEXIST) {
+      break;
+    }
+  }
+  this->fail(errno);
+}
+
+void AtomicFile::write(const void* data, std::size_t bytes)
+{
+  const char* next = static_cast<const char*>(data);
+  while (bytes > 0) {
+    const ssize_t written = ::write(this->Descriptor, next, bytes);
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written < 0) {
+      this->fail(errno);
+    }
+    next += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+}
+
+void AtomicFile::commit()
+{
+  const int descriptor = this->Descriptor;
+  if (fsync(descriptor) != 0) {
+    this->fail(errno);
+  }
+  this->Descriptor = -1;
+  if (close(descriptor) != 0) {
+    this->fail(errno);
+  }
+  if (std::rename(this->Temporary.c_str(), this->Target.c_str()) != 0) {
+    this->fail(errno);
+  }
+  this->Temporary.clear();
+  FlushFolder(this->Target);
+}
+
+void AtomicFile::fail(int reason) const
+{
+  const std::string text =
+      reason == EINVAL ? "it is not an ordinary file" : std::generic_category().message(reason);
+  throw Error(ErrorCode::CannotWrite, "cannot write '" + this->Path + "': " + text);
+}
+
+} // namespace inr

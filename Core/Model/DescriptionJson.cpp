@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Model/DescriptionJson.h"
+
+#include "Core/Error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace inr {
+namespace {
+
+using nlohmann::json;
+
+template <typename Enum, std::size_t Count>
+using NameTable = std::array<std::pair<const char*, Enum>, Count>;
+
+// The first name of a value is the one that is written.
+constexpr NameTable<GridType, 4> EncodingNames = {{{"HashGrid", GridType::Hash},
+                                                   {"Grid", GridType::Hash},
+                                                   {"DenseGrid", GridType::Dense},
+                                                   {"TiledGrid", GridType::Tiled}}};
+constexpr NameTable<GridType, 3> TypeNames = {
+    {{"Hash", GridType::Hash}, {"Dense", GridType::Dense}, {"Tiled", GridType::Tiled}}};
+constexpr NameTable<GridInterpolation, 3> InterpolationNames = {
+    {{"Linear", GridInterpolation::Linear},
+     {"Smoothstep", GridInterpolation::Smoothstep},
+     {"Nearest", GridInterpolation::Nearest}}};
+constexpr NameTable<HashFunction, 4> HashNames = {{{"CoherentPrime", HashFunction::CoherentPrime},
+                                                   {"Prime", HashFunction::Prime},
+                                                   {"ReversedPrime", HashFunction::ReversedPrime},
+                                                   {"Rng", HashFunction::Rng}}};
+constexpr NameTable<Activation, 9> ActivationNames = {{{"None", Activation::None},
+                                                       {"ReLU", Activation::ReLU},
+                                                       {"LeakyReLU", Activation::LeakyReLU},
+                                                       {"Exponential", Activation::Exponential},
+                                                       {"Sigmoid", Activation::Sigmoid},
+                                                       {"Sine", Activation::Sine},
+                                                       {"Squareplus", Activation::Squareplus},
+                                                       {"Softplus", Activation::Softplus},
+                                                       {"Tanh", Activation::Tanh}}};
+
+enum class NetworkType { FullyFused, Cutlass };
+constexpr NameTable<NetworkType, 4> NetworkNames = {{{"FullyFusedMLP", NetworkType::FullyFused},
+                                                     {"MegakernelMLP", NetworkType::FullyFused},
+                                                     {"CutlassMLP", NetworkType::Cutlass},
+                                                     {"MLP", NetworkType::Cutlass}}};
+
+std::string LowerCase(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return text;
+}
+
+// One section of the configuration; knows its name for messages.
+class Section
+{
+public:
+  Section(const json& model, const char* name) : Name(name)
+  {
+    const auto found = model.find(name);
+    if (found == model.end()) {
+      return;
+    }
+    if (!found->is_object()) {
+      throw Error(ErrorCode::InvalidModel, "'" + this->Name + "' is not an object");
+    }
+    this->Object = &*found;
+  }
+
+  bool has(const char* key) const { return this->find(key) != nullptr; }
+
+  int integer(const char* key, int fallback) const
+  {
+    const double value = this->number(key, fallback);
+    if (value != std::floor(value) || std::abs(value) > 0x7FFFFFFF) {
+      this->refuse(key, "must be an integer");
+    }
+    return static_cast<int>(value);
+  }
+
+  double number(const char* key, double fallback) const
+  {
+    const json* value = this->find(key);
+    if (value == nullptr) {
+      return fallback;
+    }
+    if (!value->is_number()) {
+      this->refuse(key, "must be a number");
+    }
+    return value->get<double>();
+  }
+
+  template <typename Enum, std::size_t Count>
+  Enum choice(const char* key, const NameTable<Enum, Count>& names, Enum fallback) const
+  {
+    const json* value = this->find(key);
+    if (value == nullptr) {
+      return fallback;
+    }
+    if (!value->is_string()) {
+      this->refuse(key, "must be a string");
+    }
+    const std::string wanted = LowerCase(value->get<std::string>());
+    for (const auto& [name, result] : names) {
+      if (wanted == LowerCase(name)) {
+        return result;
+      }
+    }
+    throw Error(ErrorCode::Unsupported, "'" + this->Name + "." + key + "' is '" +
+                                            value->get<std::string>() + "'; supported are " +
+                                            List(names));
+  }
+
+  [[noreturn]] void refuse(const char* key, const std::string& reason) const
+  {
+    throw Error(ErrorCode::InvalidModel, "'" + this->Name + "." + key + "' " + reason);
+  }
+
+private:
+  const json* find(const char* key) const
+  {
+    if (this->Object == nullptr) {
+      return nullptr;
+    }
+    const auto found = this->Object->find(key);
+    return found == this->Object->end() ? nullptr : &*found;
+  }
+
+  template <typename Enum, std::size_t Count>
+  static std::string List(const NameTable<Enum, Count>& names)
+  {
+    std::string list;
+    for (const auto& entry : names) {
+      list += (list.empty() ? "" : ", ") + std::string(entry.first);
+    }
+    return list;
+  }
+
+  std::string Name;
+  const json* Object = nullptr;
+};
+
+// `n_features` (also `n_grid_features`) is the total over all levels, instead of `n_levels`.
+int ParseLevels(const Section& section, int features)
+{
+  const char* total = section.has("n_grid_features") ? "n_grid_features" : "n_features";
+  if (!section.has(total)) {
+    return section.integer("n_levels", 16);
+  }
+  if (section.has("n_levels")) {
+    section.refuse(total, "and 'n_levels' exclude each other");
+  }
+  const int count = section.integer(total, 0);
+  if (features < 1 || count % features != 0) {
+    section.refuse(total, "must be a multiple of 'n_features_per_level'");
+  }
+  return count / features;
+}
+
+GridDescription ParseGrid(const json& model)
+{
+  const Section section(model, "encoding");
+  GridDescription grid;
+  grid.type = section.choice("otype", EncodingNames, GridType::Hash);
+  grid.type = section.choice("type", TypeNames, grid.type);
+  grid.interpolation =
+      section.choice("interpolation", InterpolationNames, GridInterpolation::Linear);
+  grid.hash = section.choice("hash", HashNames, HashFunction::CoherentPrime);
+  grid.features = section.integer("n_features_per_level", 2);
+  grid.levels = ParseLevels(section, grid.features);
+  grid.log2HashmapSize = section.integer("log2_hashmap_size", 19);
+  grid.baseResolution = section.integer("base_resolution", 16);
+  grid.perLevelScale = static_cast<float>(section.number("per_level_scale", 2.0));
+  return grid;
+}
+
+bool IsFullyFusedWidth(int neurons)
+{
+  return neurons == 16 || neurons == 32 || neurons == 64 || neurons == 128;
+}
+
+NetworkDescription ParseNetwork(const json& model)
+{
+  const Section section(model, "network");
+  NetworkDescription network;
+  const NetworkType type = section.choice("otype", NetworkNames, NetworkType::Cutlass);
+  network.neurons = section.integer("n_neurons", 128);
+  network.hiddenLayers = section.integer("n_hidden_layers", 5);
+  network.activation = section.choice("activation", ActivationNames, Activation::ReLU);
+  network.outputActivation = section.choice("output_activation", ActivationNames, Activation::None);
+  if (type == NetworkType::FullyFused) {
+    if (!IsFullyFusedWidth(network.neurons)) {
+      section.refuse("n_neurons", "must be 16, 32, 64 or 128 for a FullyFusedMLP");
+    }
+    if (network.hiddenLayers < 1) {
+      section.refuse("n_hidden_layers", "must be at least 1 for a FullyFusedMLP");
+    }
+  }
+  return network;
+}
+
+template <typename Enum, std::size_t Count>
+const char* NameOf(const NameTable<Enum, Count>& names, Enum value)
+{
+  const auto found = std::find_if(names.begin(), names.end(),
+                                  [&](const auto& entry) { return entry.second == value; });
+  return found->first;
+}
+
+json GridToJson(const GridDescription& grid)
+{
+  json section = {{"otype", NameOf(EncodingNames, grid.type)},
+                  {"n_levels", grid.levels},
+                  {"n_features_per_level", grid.features},
+                  {"log2_hashmap_size", grid.log2HashmapSize},
+                  {"base_resolution", grid.baseResolution}};
+  // What has its default is left out, as in upstream's own files; but the default scale of a dense
+  // grid changed in 2025.
+  if (grid.perLevelScale != 2.0f || grid.type == GridType::Dense) {
+    section["per_level_scale"] = static_cast<double>(grid.perLevelScale);
+  }
+  if (grid.interpolation != GridInterpolation::Linear) {
+    section["interpolation"] = NameOf(InterpolationNames, grid.interpolation);
+  }
+  if (grid.hash != HashFunction::CoherentPrime) {
+    section["hash"] = NameOf(HashNames, grid.hash);
+  }
+  return section;
+}
+
+// Upstream's fused kernels know a few widths only, and cannot train a sine.
+NetworkType TypeOf(const NetworkDescription& network)
+{
+  const bool fused = network.alignment == 16 && network.hiddenLayers >= 1 &&
+                     network.activation != Activation::Sine && IsFullyFusedWidth(network.neurons);
+  return fused ? NetworkType::FullyFused : NetworkType::Cutlass;
+}
+
+} // namespace
+
+Description ParseDescription(const json& model)
+{
+  if (!model.is_object()) {
+    throw Error(ErrorCode::InvalidModel, "the model configuration is not an object");
+  }
+  Description description{ParseGrid(model), ParseNetwork(model)};
+  (void)Layout(description); // checks every range
+  return description;
+}
+
+Description ParseDescription(const std::string& text)
+{
+  json model;
+  try {
+    model = json::parse(text, nullptr, true, /*ignore_comments=*/true);
+  } catch (const json::parse_error& failure) {
+    throw Error(ErrorCode::Malformed,
+                std::string("the model configuration is not JSON: ") + failure.what());
+  }
+  return ParseDescription(model);
+}
+
+json DescriptionToJson(const Description& description)
+{
+  const NetworkDescription& network = description.network;
+  return {{"encoding", GridToJson(description.grid)},
+          {"network",
+           {{"otype", NameOf(NetworkNames, TypeOf(network))},
+            {"n_neurons", network.neurons},
+            {"n_hidden_layers", network.hiddenLayers},
+            {"activation", NameOf(ActivationNames, network.activation)},
+            {"output_activation", NameOf(ActivationNames, network.outputActivation)}}}};
+}
+
+} // namespace inr

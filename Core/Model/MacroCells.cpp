@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Model/MacroCells.h"
+
+#include "Core/Error.h"
+
+#include <string>
+
+namespace inr {
+namespace {
+
+constexpr int SmallestEdge = 16;
+constexpr std::int64_t WantedCells = std::int64_t{1} << 22;
+// Their table has to fit a file of under 2 GiB.
+constexpr std::int64_t MaximumCells = (std::int64_t{1} << 28) - 1;
+// Keeps products of three counts within 64 bits.
+constexpr std::int64_t MaximumDimension = std::int64_t{1} << 31;
+
+std::int64_t CellsAlong(std::int64_t voxels, std::int64_t edge) { return (voxels - 1) / edge + 1; }
+
+// Cells in all, or something over the limit where the product would be.
+std::int64_t CellCount(const glm::i64vec3& dims, std::int64_t edge)
+{
+  const std::int64_t x = CellsAlong(dims.x, edge);
+  const std::int64_t y = CellsAlong(dims.y, edge);
+  const std::int64_t z = CellsAlong(dims.z, edge);
+  return x > MaximumCells / y || x * y > MaximumCells / z ? MaximumCells + 1 : x * y * z;
+}
+
+void RequireVolume(const glm::i64vec3& dims)
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    if (dims[axis] < 1 || dims[axis] > MaximumDimension) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "a volume cannot have " + std::to_string(dims[axis]) + " voxels along an axis");
+    }
+  }
+}
+
+} // namespace
+
+int DefaultMacroCellSize(const glm::i64vec3& volumeDims)
+{
+  RequireVolume(volumeDims);
+  int edge = SmallestEdge;
+  while (CellCount(volumeDims, edge) > WantedCells) {
+    edge *= 2;
+  }
+  return edge;
+}
+
+MacroCells MakeMacroCells(const glm::i64vec3& volumeDims, int edge)
+{
+  RequireVolume(volumeDims);
+  if (edge < 1) {
+    throw Error(ErrorCode::InvalidArgument,
+                "a macro-cell cannot have an edge of " + std::to_string(edge) + " voxels");
+  }
+  const std::int64_t count = CellCount(volumeDims, edge);
+  if (count > MaximumCells) {
+    throw Error(ErrorCode::TooLarge, "macro-cells of " + std::to_string(edge) +
+                                         " voxels are too many for this volume; choose larger "
+                                         "ones");
+  }
+  MacroCells cells;
+  for (int axis = 0; axis < 3; ++axis) {
+    cells.dims[axis] = CellsAlong(volumeDims[axis], edge);
+    cells.spacing[axis] = static_cast<double>(edge) / static_cast<double>(volumeDims[axis]);
+  }
+  cells.ranges.resize(static_cast<std::size_t>(count));
+  return cells;
+}
+
+} // namespace inr
