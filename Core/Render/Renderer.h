@@ -38,6 +38,9 @@ public:
   /// How often the majorants have been rebuilt (for tests and statistics).
   std::int64_t majorantBuilds() const;
 
+  /// The instruction set that infers: Evaluator::kernel().
+  std::string kernel() const;
+
   /// Renders into `rgba`: premultiplied RGBA, resized to the frame. `depth`, when given, receives
   /// the window-space depth where accumulated opacity first reaches one half, 1 where it never
   /// does. `keepGoing` is asked between tiles, from any thread; returning false throws
