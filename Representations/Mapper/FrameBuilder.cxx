@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FrameBuilder.h"
+
+#include <vtkActor2D.h>
+#include <vtkCamera.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkMatrix4x4.h>
+#include <vtkPlane.h>
+#include <vtkPlaneCollection.h>
+#include <vtkPropCollection.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
+#include <glm/matrix.hpp>
+
+namespace inr {
+namespace {
+
+glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
+{
+  glm::dmat4 result;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      result[column][row] = matrix->GetElement(row, column);
+    }
+  }
+  return result;
+}
+
+/// Continuous indices of the presented grid to the image's physical space.
+glm::dmat4 IndexToPhysical(vtkImageData* image)
+{
+  glm::dmat4 result(1.0);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      result[column][row] =
+          image->GetDirectionMatrix()->GetElement(row, column) * image->GetSpacing()[column];
+    }
+    result[3][row] = image->GetOrigin()[row];
+  }
+  return result;
+}
+
+/// Presented to native indices; an axis of one point has nothing to scale.
+glm::dmat4 PresentedToNative(const PresentedGrid& grid)
+{
+  glm::dmat4 result(1.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (grid.presented[axis] > 1) {
+      result[axis][axis] = static_cast<double>(grid.native[axis] - 1) / (grid.presented[axis] - 1);
+    }
+  }
+  return result;
+}
+
+bool DrawsOpaque(vtkProp* prop)
+{
+  return prop->GetVisibility() && !vtkVolume::SafeDownCast(prop) &&
+         !vtkActor2D::SafeDownCast(prop) && prop->HasOpaqueGeometry();
+}
+
+} // namespace
+
+Viewport GetViewport(vtkRenderer* renderer)
+{
+  Viewport result;
+  renderer->GetTiledSizeAndOrigin(&result.width, &result.height, &result.x, &result.y);
+  return result;
+}
+
+glm::dmat4 ClipToWorld(vtkRenderer* renderer)
+{
+  // Not GetCompositeProjectionTransformMatrix: that one is for picking and leaves out stereo.
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const glm::dmat4 projection =
+      ToGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1));
+  return glm::inverse(projection * ToGlm(camera->GetModelViewTransformMatrix()));
+}
+
+glm::dmat4 WorldToIndex(const PresentedGrid& grid, vtkMatrix4x4* volumeToWorld)
+{
+  const glm::dmat4 indexToWorld = ToGlm(volumeToWorld) * IndexToPhysical(grid.image);
+  return PresentedToNative(grid) * glm::inverse(indexToWorld);
+}
+
+std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes)
+{
+  std::vector<glm::dvec4> result;
+  for (int i = 0; planes && i < planes->GetNumberOfItems(); ++i) {
+    const double* n = planes->GetItem(i)->GetNormal();
+    const double* o = planes->GetItem(i)->GetOrigin();
+    const glm::dvec3 normal(n[0], n[1], n[2]);
+    result.emplace_back(normal, -glm::dot(normal, glm::dvec3(o[0], o[1], o[2])));
+  }
+  return result;
+}
+
+std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4& worldToIndex)
+{
+  std::vector<glm::dvec4> result;
+  const glm::dmat4 toNative = PresentedToNative(grid);
+  const int* extent = grid.image->GetExtent();
+  for (int axis = 0; axis < 3; ++axis) {
+    // A plane maps by the transpose of the matrix that maps points the other way.
+    const glm::dvec4 along = glm::row(worldToIndex, axis);
+    if (extent[2 * axis] > 0) {
+      const double low = extent[2 * axis] * toNative[axis][axis];
+      result.push_back(along - glm::dvec4(0, 0, 0, low));
+    }
+    if (extent[2 * axis + 1] < grid.presented[axis] - 1) {
+      const double high = extent[2 * axis + 1] * toNative[axis][axis];
+      result.push_back(glm::dvec4(0, 0, 0, high) - along);
+    }
+  }
+  return result;
+}
+
+bool MayHaveOpaqueDepth(vtkRenderer* renderer)
+{
+  if (renderer->GetPreserveDepthBuffer()) {
+    return true;
+  }
+  vtkCollectionSimpleIterator iterator;
+  vtkPropCollection* props = renderer->GetViewProps();
+  props->InitTraversal(iterator);
+  while (vtkProp* prop = props->GetNextProp(iterator)) {
+    if (DrawsOpaque(prop)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewport)
+{
+  std::vector<float> depth(static_cast<std::size_t>(viewport.width) * viewport.height);
+  const int ok = renderer->GetRenderWindow()->GetZbufferData(
+      viewport.x, viewport.y, viewport.x + viewport.width - 1, viewport.y + viewport.height - 1,
+      depth.data());
+  return ok ? depth : std::vector<float>();
+}
+
+std::vector<float> ReduceDepth(const std::vector<float>& depth, const Viewport& viewport, int width,
+                               int height)
+{
+  std::vector<float> result;
+  result.reserve(static_cast<std::size_t>(width) * height);
+  for (int y = 0; y < height; ++y) {
+    const std::size_t row = static_cast<std::size_t>((y + 0.5) * viewport.height / height);
+    for (int x = 0; x < width; ++x) {
+      const std::size_t column = static_cast<std::size_t>((x + 0.5) * viewport.width / width);
+      result.push_back(depth[row * viewport.width + column]);
+    }
+  }
+  return result;
+}
+
+} // namespace inr

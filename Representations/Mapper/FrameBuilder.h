@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glm/gtc/type_precision.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include <vector>
+
+class vtkImageData;
+class vtkMatrix4x4;
+class vtkPlaneCollection;
+class vtkRenderer;
+
+namespace inr {
+
+/// The part of the window that a renderer draws into, in pixels; (x, y) is its lower left corner.
+struct Viewport
+{
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+Viewport GetViewport(vtkRenderer* renderer);
+
+/// The image data that stands for an INR and the two grids it is about: the one presented to VTK
+/// (of which the image may hold a piece) and the INR's native one, both over the same bounds.
+struct PresentedGrid
+{
+  vtkImageData* image = nullptr;
+  glm::ivec3 presented{1};
+  glm::i64vec3 native{1};
+};
+
+/// Inverse of what the renderer's camera does, stereo shear and tiles included.
+glm::dmat4 ClipToWorld(vtkRenderer* renderer);
+
+/// World space to the native grid's continuous point indices. Presented point i of n stands at
+/// native index i*(N-1)/(n-1). `volumeToWorld` is the actor's matrix.
+glm::dmat4 WorldToIndex(const PresentedGrid& grid, vtkMatrix4x4* volumeToWorld);
+
+/// Half spaces (see Frame::clippingPlanes) of a mapper's planes; null means none.
+std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes);
+
+/// Half spaces that bound the image's piece, none when it holds the whole grid: ranks that hold
+/// neighbouring pieces then draw neighbouring parts.
+std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4& worldToIndex);
+
+/// Whether the depth buffer can hold anything: a visible prop with opaque geometry (volumes and
+/// overlays have none), or an earlier layer's depth that the renderer keeps.
+bool MayHaveOpaqueDepth(vtkRenderer* renderer);
+
+/// Window-space depth of the viewport, row 0 at the bottom, multisampling resolved; empty when VTK
+/// cannot read it. The render window must be current.
+std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewport);
+
+/// The depth at the centres of the pixels of a smaller image over the same viewport.
+std::vector<float> ReduceDepth(const std::vector<float>& depth, const Viewport& viewport, int width,
+                               int height);
+
+} // namespace inr

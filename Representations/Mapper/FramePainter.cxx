@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FramePainter.h"
+
+#include "Core/Error.h"
+#include "SceneCheck.h"
+#include "vtkINRDataArray.h"
+
+#include <vtkAbstractArray.h>
+#include <vtkImageData.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+#include <vtkVolumeMapper.h>
+#include <vtkVolumeProperty.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace inr {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start)
+{
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+vtkAbstractArray* SelectedArray(vtkVolumeMapper* mapper, vtkImageData* image)
+{
+  int cellFlag = 0;
+  return vtkAbstractMapper::GetAbstractScalars(image, mapper->GetScalarMode(),
+                                               mapper->GetArrayAccessMode(), mapper->GetArrayId(),
+                                               mapper->GetArrayName(), cellFlag);
+}
+
+std::string NotAnInr(vtkAbstractArray* array)
+{
+  if (!array) {
+    return "The input has no point scalars to draw; choose the INR's array, or connect a "
+           "vtkINRReader.";
+  }
+  return std::string("The input's array '") + (array->GetName() ? array->GetName() : "") +
+         "' is not an INR (a filter may have turned it into ordinary voxels); connect a "
+         "vtkINRReader, or draw it with an ordinary volume mapper.";
+}
+
+/// Asks the window between tiles whether to go on. Its observers may touch the application, so they
+/// are only called on the thread that called the mapper.
+std::function<bool()> UnlessAborted(vtkRenderWindow* window)
+{
+  return [window, caller = std::this_thread::get_id()] {
+    return std::this_thread::get_id() != caller || !window->CheckAbortStatus();
+  };
+}
+
+Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer* renderer,
+                vtkVolume* volume, const PaintSettings& settings)
+{
+  Frame frame;
+  frame.clipToWorld = ClipToWorld(renderer);
+  frame.worldToIndex = WorldToIndex(grid, volume->GetMatrix());
+  frame.clippingPlanes = ClippingPlanes(mapper->GetClippingPlanes());
+  const auto piece = PiecePlanes(grid, frame.worldToIndex);
+  frame.clippingPlanes.insert(frame.clippingPlanes.end(), piece.begin(), piece.end());
+  frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
+  frame.sampleDistance = settings.sampleDistance;
+  frame.seed = settings.seed;
+  return frame;
+}
+
+} // namespace
+
+MapperInput FindInput(vtkVolumeMapper* mapper)
+{
+  MapperInput result;
+  result.grid.image = vtkImageData::SafeDownCast(mapper->GetDataSetInput());
+  if (!result.grid.image) {
+    result.problem = "The input is not image data; connect a vtkINRReader.";
+    return result;
+  }
+  vtkAbstractArray* array = SelectedArray(mapper, result.grid.image);
+  result.array = vtkINRDataArray::SafeDownCast(array);
+  if (!result.array || !result.array->GetModel()) {
+    result.array = nullptr;
+    result.problem = NotAnInr(array);
+    return result;
+  }
+  int presented[3];
+  result.array->GetPresentedDimensions(presented);
+  result.grid.presented = glm::ivec3(presented[0], presented[1], presented[2]);
+  result.grid.native = result.array->GetModel()->volume.dims;
+  return result;
+}
+
+PaintMessages FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                                  const PaintSettings& settings)
+{
+  const auto start = Clock::now();
+  this->Last = {};
+  const MapperInput input = FindInput(mapper);
+  if (!input.array) {
+    return {input.problem, {}};
+  }
+  vtkVolumeProperty* property = volume->GetProperty();
+  PaintMessages messages{WhyRefused(mapper, property, input.grid.image), WhatIsLeftOut(property)};
+  if (!messages.error.empty()) {
+    return messages;
+  }
+  this->makeRenderer(input.array->GetModel(), settings.threads);
+  this->Caster->setTransferFunction(this->TransferFunctions.get(property));
+  const Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
+  if (!this->draw(frame, renderer)) {
+    messages.error = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
+                     "float textures.";
+  }
+  this->Last.seconds = SecondsSince(start);
+  return messages;
+}
+
+void FramePainter::makeRenderer(const ModelPointer& model, int threads)
+{
+  if (this->Caster && this->CasterModel == model && this->CasterThreads == threads) {
+    return;
+  }
+  RendererOptions options;
+  options.threads = threads;
+  this->Caster = std::make_unique<Renderer>(model, options);
+  this->CasterModel = model;
+  this->CasterThreads = threads;
+}
+
+bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
+{
+  const Viewport viewport = GetViewport(renderer);
+  const std::int64_t pixels = static_cast<std::int64_t>(viewport.width) * viewport.height;
+  if (pixels <= 0) {
+    return true;
+  }
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  const int reduction = this->Reduction.factor(window->GetDesiredUpdateRate(), pixels);
+  Frame frame = scene;
+  frame.width = (viewport.width + reduction - 1) / reduction;
+  frame.height = (viewport.height + reduction - 1) / reduction;
+
+  std::vector<float> depth;
+  if (MayHaveOpaqueDepth(renderer)) {
+    depth = ReadOpaqueDepth(renderer, viewport);
+    this->Last.depthRead = !depth.empty();
+    if (reduction > 1 && !depth.empty()) {
+      depth = ReduceDepth(depth, viewport, frame.width, frame.height);
+    }
+    frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
+  }
+  PaintedFrame& last = this->Last;
+  try {
+    last.statistics = this->Caster->render(frame, last.rgba, &last.depth, UnlessAborted(window));
+  } catch (const Error& error) {
+    this->Last = {}; // half a picture must not be written out later
+    if (error.code() == ErrorCode::Cancelled) {
+      return true;
+    }
+    throw;
+  }
+  last.backend = "CPU " + this->Caster->kernel();
+  last.reduction = reduction;
+  this->Reduction.record(last.statistics.seconds, std::int64_t{frame.width} * frame.height);
+  return this->Blender.blend(renderer, viewport, last.rgba);
+}
+
+} // namespace inr

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Image/Image.h"
+#include "Core/Render/Frame.h"
+#include "Core/Render/Renderer.h"
+#include "FrameBuilder.h"
+#include "ImageBlender.h"
+#include "ImageReduction.h"
+#include "TransferFunctionBuilder.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+class vtkINRDataArray;
+class vtkRenderer;
+class vtkVolume;
+class vtkVolumeMapper;
+class vtkWindow;
+
+namespace inr {
+
+/// What a mapper is asked to draw; `array` is null, and `problem` says why, when it is no INR.
+struct MapperInput
+{
+  PresentedGrid grid;
+  vtkINRDataArray* array = nullptr;
+  std::string problem;
+};
+MapperInput FindInput(vtkVolumeMapper* mapper);
+
+/// The mapper's own properties.
+struct PaintSettings
+{
+  double sampleDistance = 1; ///< voxels
+  int threads = 0;           ///< 0 = all
+  std::uint64_t seed = 0;
+};
+
+/// What the user has to be told; empty strings mean nothing.
+struct PaintMessages
+{
+  std::string error;
+  std::string warning;
+};
+
+/// The last picture made and what it took; without pixels when nothing was drawn.
+struct PaintedFrame
+{
+  Image rgba;
+  Image depth;
+  FrameStatistics statistics;
+  std::string backend; ///< "CPU avx512", ...
+  double seconds = 0;  ///< from the mapper's call to the blended picture
+  int reduction = 0;   ///< viewport size / image size
+  bool depthRead = false;
+};
+
+/// Turns VTK's scene into a Frame, has it rendered and blends the picture into the window.
+class FramePainter
+{
+public:
+  /// Draws one frame; with an error message nothing is drawn. A frame aborted by the render window
+  /// is not drawn and not an error. Throws what Renderer throws.
+  PaintMessages paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                      const PaintSettings& settings);
+  const PaintedFrame& last() const { return this->Last; }
+  void release(vtkWindow* window) { this->Blender.release(window); }
+
+private:
+  void makeRenderer(const ModelPointer& model, int threads);
+  bool draw(const Frame& frame, vtkRenderer* renderer);
+
+  std::unique_ptr<Renderer> Caster;
+  ModelPointer CasterModel;
+  int CasterThreads = 0;
+  TransferFunctionCache TransferFunctions;
+  ImageReduction Reduction;
+  ImageBlender Blender;
+  PaintedFrame Last;
+};
+
+} // namespace inr

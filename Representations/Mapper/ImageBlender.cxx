@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImageBlender.h"
+
+#include <vtkNew.h>
+#include <vtkOpenGLQuadHelper.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLShaderCache.h>
+#include <vtkOpenGLState.h>
+#include <vtkRenderer.h>
+#include <vtkShaderProgram.h>
+#include <vtkTextureObject.h>
+#include <vtkWeakPointer.h>
+#include <vtk_glew.h>
+
+namespace inr {
+namespace {
+
+constexpr const char* FragmentShader = R"(//VTK::System::Dec
+//VTK::Output::Dec
+in vec2 texCoord;
+uniform sampler2D image;
+void main()
+{
+  gl_FragData[0] = texture2D(image, texCoord);
+}
+)";
+
+/// Everything that drawing the quad changes, put back at the end of the scope.
+struct DrawingState
+{
+  DrawingState(vtkOpenGLState* state, const Viewport& viewport)
+      : DepthTest(state, GL_DEPTH_TEST), Blend(state, GL_BLEND),
+        ScissorTest(state, GL_SCISSOR_TEST), DepthMask(state), BlendFunction(state), View(state),
+        Scissor(state)
+  {
+    state->vtkglDisable(GL_DEPTH_TEST);
+    state->vtkglDepthMask(GL_FALSE);
+    state->vtkglEnable(GL_BLEND);
+    state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    state->vtkglEnable(GL_SCISSOR_TEST);
+    state->vtkglViewport(viewport.x, viewport.y, viewport.width, viewport.height);
+    state->vtkglScissor(viewport.x, viewport.y, viewport.width, viewport.height);
+  }
+
+  vtkOpenGLState::ScopedglEnableDisable DepthTest;
+  vtkOpenGLState::ScopedglEnableDisable Blend;
+  vtkOpenGLState::ScopedglEnableDisable ScissorTest;
+  vtkOpenGLState::ScopedglDepthMask DepthMask;
+  vtkOpenGLState::ScopedglBlendFuncSeparate BlendFunction;
+  vtkOpenGLState::ScopedglViewport View;
+  vtkOpenGLState::ScopedglScissor Scissor;
+};
+
+} // namespace
+
+struct ImageBlender::Resources
+{
+  vtkWeakPointer<vtkOpenGLRenderWindow> Window;
+  vtkNew<vtkTextureObject> Texture;
+  std::unique_ptr<vtkOpenGLQuadHelper> Quad;
+};
+
+ImageBlender::ImageBlender() : Self(std::make_unique<Resources>()) {}
+ImageBlender::~ImageBlender() = default;
+
+bool ImageBlender::prepare(vtkOpenGLRenderWindow* window, const Viewport& viewport,
+                           const Image& rgba)
+{
+  Resources& self = *this->Self;
+  if (self.Window && self.Window != window) {
+    this->release(self.Window);
+  }
+  window->MakeCurrent();
+  self.Window = window;
+  self.Texture->SetContext(window);
+  const bool exact = rgba.width == viewport.width && rgba.height == viewport.height;
+  self.Texture->SetLinearMagnification(!exact);
+  self.Texture->SetMinificationFilter(exact ? vtkTextureObject::Nearest : vtkTextureObject::Linear);
+  self.Texture->SetWrapS(vtkTextureObject::ClampToEdge);
+  self.Texture->SetWrapT(vtkTextureObject::ClampToEdge);
+  // VTK's signature wants a mutable pointer and does not write through it.
+  if (!self.Texture->Create2DFromRaw(static_cast<unsigned int>(rgba.width),
+                                     static_cast<unsigned int>(rgba.height), 4, VTK_FLOAT,
+                                     const_cast<float*>(rgba.pixels.data()))) {
+    return false;
+  }
+  if (self.Quad) {
+    window->GetShaderCache()->ReadyShaderProgram(self.Quad->Program);
+  } else {
+    self.Quad = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr, FragmentShader, nullptr);
+  }
+  return self.Quad->Program != nullptr;
+}
+
+bool ImageBlender::blend(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba)
+{
+  auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
+  if (!window || !this->prepare(window, viewport, rgba)) {
+    return false;
+  }
+  const DrawingState scope(window->GetState(), viewport);
+  vtkTextureObject* texture = this->Self->Texture;
+  texture->Activate();
+  this->Self->Quad->Program->SetUniformi("image", texture->GetTextureUnit());
+  this->Self->Quad->Render();
+  texture->Deactivate();
+  return true;
+}
+
+void ImageBlender::release(vtkWindow* window)
+{
+  if (this->Self->Quad && window) {
+    this->Self->Quad->ReleaseGraphicsResources(window);
+  }
+  this->Self->Quad.reset();
+  this->Self->Texture->ReleaseGraphicsResources(window);
+  this->Self->Window = nullptr;
+}
+
+} // namespace inr

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SceneCheck.h"
+
+#include <vtkImageData.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkVolumeMapper.h>
+#include <vtkVolumeProperty.h>
+
+namespace inr {
+namespace {
+
+/// A gradient opacity function that is 1 everywhere asks for nothing.
+bool UsesGradientOpacity(vtkVolumeProperty* property)
+{
+  if (property->GetDisableGradientOpacity() || !property->HasGradientOpacity()) {
+    return false;
+  }
+  vtkPiecewiseFunction* function = property->GetStoredGradientOpacity();
+  double node[4];
+  for (int i = 0; i < function->GetSize(); ++i) {
+    function->GetNodeValue(i, node);
+    if (node[1] != 1.0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace
+
+std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property, vtkImageData* image)
+{
+  if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND) {
+    return "An INR can only be drawn with composite blending; set the blend mode to composite.";
+  }
+  if (mapper->GetCropping()) {
+    return "An INR cannot be cropped by regions; turn Cropping off and use clipping planes.";
+  }
+  if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D) {
+    return "An INR cannot be drawn with a 2D transfer function; set the transfer function mode "
+           "to 1D.";
+  }
+  if (UsesGradientOpacity(property)) {
+    return "An INR cannot be drawn with gradient opacity; turn gradient opacity off.";
+  }
+  if (property->GetNumberOfLabels() > 0) {
+    return "An INR cannot be drawn with a label mask; remove the label functions from the volume "
+           "property.";
+  }
+  if (image->HasAnyBlankPoints() || image->HasAnyBlankCells()) {
+    return "An INR cannot be drawn with blanked points or cells (a mask); remove the blanking.";
+  }
+  return {};
+}
+
+std::string WhatIsLeftOut(vtkVolumeProperty* property)
+{
+  if (property->GetShade()) {
+    return "Shading is on, but an INR is drawn unshaded; turn shading off to silence this.";
+  }
+  return {};
+}
+
+} // namespace inr

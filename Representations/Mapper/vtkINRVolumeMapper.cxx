@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkINRVolumeMapper.h"
+
+#include "Core/Error.h"
+#include "Core/Image/Exr.h"
+#include "FramePainter.h"
+
+#include <vtkHardwareSelector.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkObjectFactory.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+
+#include <cmath>
+#include <exception>
+
+vtkStandardNewMacro(vtkINRVolumeMapper);
+
+struct vtkINRVolumeMapper::Internals
+{
+  inr::FramePainter Painter;
+  std::string LastError;
+  std::string LastWarning;
+};
+
+vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>()) {}
+vtkINRVolumeMapper::~vtkINRVolumeMapper() = default;
+
+double vtkINRVolumeMapper::GetFrameTime() const { return this->Self->Painter.last().seconds; }
+
+vtkIdType vtkINRVolumeMapper::GetNumberOfSamples() const
+{
+  return this->Self->Painter.last().statistics.samples;
+}
+
+vtkIdType vtkINRVolumeMapper::GetNumberOfClampedSamples() const
+{
+  return this->Self->Painter.last().statistics.clamped;
+}
+
+int vtkINRVolumeMapper::GetImageReduction() const { return this->Self->Painter.last().reduction; }
+
+const char* vtkINRVolumeMapper::GetBackendInUse() const
+{
+  return this->Self->Painter.last().backend.c_str();
+}
+
+bool vtkINRVolumeMapper::GetOpaqueDepthRead() const { return this->Self->Painter.last().depthRead; }
+
+double* vtkINRVolumeMapper::GetBounds()
+{
+  double* bounds = this->Superclass::GetBounds();
+  const inr::MapperInput input = inr::FindInput(this);
+  for (int axis = 0; input.array && axis < 3; ++axis) {
+    if (input.grid.presented[axis] > 1) {
+      continue;
+    }
+    const double half = input.grid.image->GetSpacing()[axis] / 2;
+    for (int row = 0; row < 3; ++row) {
+      const double pad =
+          std::abs(input.grid.image->GetDirectionMatrix()->GetElement(row, axis) * half);
+      bounds[2 * row] -= pad;
+      bounds[2 * row + 1] += pad;
+    }
+  }
+  return bounds;
+}
+
+void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
+{
+  if (renderer->GetSelector()) {
+    return; // a selection buffer holds identities, not colours
+  }
+  const inr::PaintSettings settings{this->SampleDistance, this->NumberOfThreads,
+                                    static_cast<std::uint64_t>(this->Seed)};
+  inr::PaintMessages messages;
+  try {
+    messages = this->Self->Painter.paint(this, renderer, volume, settings);
+  } catch (const std::exception& problem) {
+    messages.error = problem.what();
+  }
+  this->TimeToDraw = this->Self->Painter.last().seconds;
+  this->ReportOnce(messages.error, messages.warning);
+}
+
+void vtkINRVolumeMapper::ReportOnce(const std::string& error, const std::string& warning)
+{
+  if (!error.empty() && error != this->Self->LastError) {
+    vtkErrorMacro(<< error);
+  }
+  if (!warning.empty() && warning != this->Self->LastWarning) {
+    vtkWarningMacro(<< warning);
+  }
+  this->Self->LastError = error;
+  this->Self->LastWarning = warning;
+}
+
+bool vtkINRVolumeMapper::WriteEXR(const char* fileName)
+{
+  const inr::PaintedFrame& frame = this->Self->Painter.last();
+  if (!fileName || frame.rgba.pixels.empty()) {
+    vtkErrorMacro("There is no " << (fileName ? "frame" : "file name")
+                                 << " to write; render first, then name a file.");
+    return false;
+  }
+  try {
+    inr::WriteExr(fileName, frame.rgba, frame.depth);
+  } catch (const std::exception& problem) {
+    vtkErrorMacro(<< problem.what());
+    return false;
+  }
+  return true;
+}
+
+void vtkINRVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
+{
+  this->Self->Painter.release(window);
+  this->Superclass::ReleaseGraphicsResources(window);
+}
+
+void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "SampleDistance: " << this->SampleDistance << "\n"
+     << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
+     << indent << "Seed: " << this->Seed << "\n"
+     << indent << "FrameTime: " << this->GetFrameTime() << "\n"
+     << indent << "NumberOfSamples: " << this->GetNumberOfSamples() << "\n"
+     << indent << "NumberOfClampedSamples: " << this->GetNumberOfClampedSamples() << "\n"
+     << indent << "ImageReduction: " << this->GetImageReduction() << "\n"
+     << indent << "BackendInUse: " << this->GetBackendInUse() << "\n"
+     << indent << "OpaqueDepthRead: " << this->GetOpaqueDepthRead() << "\n";
+}
