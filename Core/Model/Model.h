@@ -43,9 +43,21 @@ struct VolumeInfo
   glm::dmat3 direction{1.0};
   std::string arrayName = "Scalars";
   ScalarType type = ScalarType::Float32;
-  double low = 0.0; ///< value = low + (high - low) * y for the network's output y
-  double high = 1.0;
+  double low = 0.0;  ///< value at the network's normalised output 0
+  double high = 1.0; ///< and at 1
 };
+
+/// The network's output as everything sees it: clamped to [0, 1]; NaN becomes 0.
+inline float NormalisedOutput(float output)
+{
+  return output > 0.0f ? (output < 1.0f ? output : 1.0f) : 0.0f;
+}
+
+/// Data value of a normalised output y.
+inline double ValueOf(const VolumeInfo& info, float y)
+{
+  return info.low + (info.high - info.low) * static_cast<double>(y);
+}
 
 /// Measured against the data when the file was written, over all finite voxels.
 struct Quality

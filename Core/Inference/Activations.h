@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Activations and their derivatives on a run of floats; see Lanes.h for what may be in here.
+#pragma once
+
+#include "Core/Inference/Lanes.h"
+#include "Core/Model/Description.h"
+
+#include <cmath>
+
+namespace inr {
+namespace INR_ISA {
+
+inline float ActivateOne(Activation activation, float x)
+{
+  const float y = 10.0f * x;
+  switch (activation) {
+  case Activation::Exponential:
+    return __builtin_expf(x);
+  case Activation::Sigmoid:
+    return 1.0f / (1.0f + __builtin_expf(-x));
+  case Activation::Sine:
+    return __builtin_sinf(x);
+  case Activation::Squareplus:
+    return 0.05f * (y + __builtin_sqrtf(y * y + 4.0f));
+  case Activation::Softplus: // ln(1 + e^y) without overflow
+    return 0.1f * ((y > 0.0f ? y : 0.0f) + __builtin_log1pf(__builtin_expf(-__builtin_fabsf(y))));
+  case Activation::Tanh:
+    return __builtin_tanhf(x);
+  default:
+    return x;
+  }
+}
+
+/// values <- activation(values), `count` a multiple of LaneCount.
+inline void Activate(Activation activation, float* values, std::int64_t count)
+{
+  switch (activation) {
+  case Activation::None:
+    return;
+  case Activation::ReLU:
+  case Activation::LeakyReLU: {
+    const Floats slope = Spread(activation == Activation::ReLU ? 0.0f : 0.01f);
+    for (std::int64_t k = 0; k < count; k += LaneCount) {
+      const Floats value = Load(values + k);
+      Store(values + k, value > Floats{} ? value : value * slope);
+    }
+    return;
+  }
+  default:
+    for (std::int64_t k = 0; k < count; ++k) {
+      values[k] = ActivateOne(activation, values[k]);
+    }
+  }
+}
+
+/// Derivative at x, where the activation gave h.
+inline float ActivationSlope(Activation activation, float x, float h)
+{
+  switch (activation) {
+  case Activation::ReLU:
+    return x > 0.0f ? 1.0f : 0.0f;
+  case Activation::LeakyReLU:
+    return x > 0.0f ? 1.0f : 0.01f;
+  case Activation::Exponential:
+    return h;
+  case Activation::Sigmoid:
+    return h * (1.0f - h);
+  case Activation::Sine:
+    return __builtin_cosf(x);
+  case Activation::Squareplus: {
+    const float y = 10.0f * x;
+    return 0.5f * (1.0f + y / __builtin_sqrtf(y * y + 4.0f));
+  }
+  case Activation::Softplus:
+    return 1.0f / (1.0f + __builtin_expf(-10.0f * x));
+  case Activation::Tanh:
+    return 1.0f - h * h;
+  default:
+    return 1.0f;
+  }
+}
+
+} // namespace INR_ISA
+} // namespace inr

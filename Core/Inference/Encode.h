@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The grid encoding for LaneCount samples at once; see Lanes.h for what may be in here.
+#pragma once
+
+#include "Core/Inference/Lanes.h"
+#include "Core/Inference/ModelView.h"
+
+namespace inr {
+
+namespace INR_ISA {
+
+/// The eight corners of LaneCount samples on one level: table entries and interpolation weights.
+struct Corners
+{
+  std::uint32_t entry[8][LaneCount];
+  float weight[8][LaneCount];
+};
+
+struct Position
+{
+  Floats x, y, z;
+};
+
+/// LaneCount positions from interleaved triples, clamped to [0, 1]; `valid` of them exist, the rest
+/// repeat the first. A NaN becomes 0.
+inline Position LoadPositions(const float* xyz, std::int64_t valid)
+{
+  float lanes[3][LaneCount];
+  for (int k = 0; k < LaneCount; ++k) {
+    const float* from = xyz + 3 * (k < valid ? k : 0);
+    for (int axis = 0; axis < 3; ++axis) {
+      lanes[axis][k] = from[axis];
+    }
+  }
+  const Floats zero{};
+  const Floats one = Spread(1.0f);
+  return {Minimum(Maximum(Load(lanes[0]), zero), one), Minimum(Maximum(Load(lanes[1]), zero), one),
+          Minimum(Maximum(Load(lanes[2]), zero), one)};
+}
+
+/// Lattice cell and weight of one coordinate.
+struct AxisCell
+{
+  UInts cell;
+  Floats weight;
+};
+
+inline AxisCell LocateOnAxis(const LevelView& level, GridInterpolation interpolation, Floats u)
+{
+  const Floats scale = Spread(level.scale);
+  const Floats half = Spread(0.5f);
+  const Floats position = u * scale;
+  // What the product's rounding lost (zero without fused arithmetic): on fine levels it is a
+  // visible part of a cell.
+  const Floats lost = MultiplyAdd(u, scale, -position);
+  const Ints cell =
+      __builtin_convertvector(position + half, Ints); // u >= 0, so truncation is floor
+  Floats weight = ((position - __builtin_convertvector(cell, Floats)) + half) + lost;
+  if (interpolation == GridInterpolation::Smoothstep) {
+    weight = weight * weight * (Spread(3.0f) - 2.0f * weight);
+  } else if (interpolation == GridInterpolation::Nearest) {
+    weight = Floats{};
+  }
+  return {(UInts)cell, weight};
+}
+
+inline UInts WrapIndex(const LevelView& level, UInts index)
+{
+  if (level.wrap == IndexWrap::Mask) {
+    return index & SpreadInt(level.entries - 1);
+  }
+  if (level.wrap == IndexWrap::Subtract) {
+    const UInts entries = SpreadInt(level.entries);
+    return index >= entries ? index - entries : index;
+  }
+  for (int k = 0; k < LaneCount; ++k) {
+    index[k] %= level.entries;
+  }
+  return index;
+}
+
+inline UInts CornerIndex(const LevelView& level, UInts x, UInts y, UInts z)
+{
+  if (!level.hashed) {
+    return x * SpreadInt(level.strides[0]) + y * SpreadInt(level.strides[1]) +
+           z * SpreadInt(level.strides[2]);
+  }
+  if (!level.randomHash) {
+    return (x * SpreadInt(level.primes[0])) ^ (y * SpreadInt(level.primes[1])) ^
+           (z * SpreadInt(level.primes[2]));
+  }
+  UInts hash{};
+  for (int k = 0; k < LaneCount; ++k) {
+    hash[k] = RandomHashOfCorner(x[k], y[k], z[k]);
+  }
+  return hash;
+}
+
+inline void FindCorners(const LevelView& level, GridInterpolation interpolation,
+                        const Position& position, Corners& corners)
+{
+  const AxisCell x = LocateOnAxis(level, interpolation, position.x);
+  const AxisCell y = LocateOnAxis(level, interpolation, position.y);
+  const AxisCell z = LocateOnAxis(level, interpolation, position.z);
+  const Floats one = Spread(1.0f);
+  for (unsigned c = 0; c < 8; ++c) {
+    const Floats weight = ((c & 1u) != 0 ? x.weight : one - x.weight) *
+                          ((c & 2u) != 0 ? y.weight : one - y.weight) *
+                          ((c & 4u) != 0 ? z.weight : one - z.weight);
+    const UInts entry = WrapIndex(
+        level, CornerIndex(level, x.cell + (c & 1u), y.cell + ((c >> 1) & 1u), z.cell + (c >> 2)));
+    std::memcpy(corners.entry[c], &entry, sizeof(entry));
+    Store(corners.weight[c], weight);
+  }
+}
+
+/// The features of one table entry. (An alias template would silently lose the attribute.)
+template <int Features> struct RowOf
+{
+  typedef float Type __attribute__((vector_size(sizeof(float) * Features)));
+};
+template <int Features> using Row = typename RowOf<Features>::Type;
+
+/// Interpolated features of one level: out[f * stride + lane].
+template <int Features>
+inline void InterpolateLevel(const float* table, const Corners& corners, float* out,
+                             std::int64_t stride)
+{
+  float rows[LaneCount][Features];
+  for (int k = 0; k < LaneCount; ++k) {
+    Row<Features> sum{};
+    for (int c = 0; c < 8; ++c) {
+      Row<Features> row;
+      std::memcpy(&row, table + static_cast<std::uint64_t>(corners.entry[c][k]) * Features,
+                  sizeof(row));
+      sum += corners.weight[c][k] * row;
+    }
+    std::memcpy(rows[k], &sum, sizeof(sum));
+  }
+  for (int f = 0; f < Features; ++f) {
+    for (int k = 0; k < LaneCount; ++k) {
+      out[f * stride + k] = rows[k][f];
+    }
+  }
+}
+
+/// All levels for LaneCount samples: encoded[(l*F + f) * stride + lane], zeros in the padding.
+template <int Features>
+inline void EncodeLanes(const ModelView& model, const Position& position, float* encoded,
+                        std::int64_t stride)
+{
+  Corners corners;
+  for (int l = 0; l < model.levelCount; ++l) {
+    const LevelView& level = model.levels[l];
+    FindCorners(level, model.interpolation, position, corners);
+    InterpolateLevel<Features>(model.grid + level.offset, corners, encoded + l * Features * stride,
+                               stride);
+  }
+  for (int row = model.encodedWidth; row < model.inputWidth; ++row) {
+    Store(encoded + row * stride, Floats{});
+  }
+}
+
+/// Encodes `count` positions in a block of `stride` samples (a multiple of LaneCount, >= count).
+inline void EncodeBlock(const ModelView& model, const float* xyz, std::int64_t count,
+                        float* encoded, std::int64_t stride)
+{
+  for (std::int64_t first = 0; first < count; first += LaneCount) {
+    const Position position = LoadPositions(xyz + 3 * first, count - first);
+    switch (model.features) {
+    case 1:
+      EncodeLanes<1>(model, position, encoded + first, stride);
+      break;
+    case 2:
+      EncodeLanes<2>(model, position, encoded + first, stride);
+      break;
+    case 4:
+      EncodeLanes<4>(model, position, encoded + first, stride);
+      break;
+    default:
+      EncodeLanes<8>(model, position, encoded + first, stride);
+      break;
+    }
+  }
+}
+
+} // namespace INR_ISA
+} // namespace inr

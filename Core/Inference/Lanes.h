@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Vectors of one instruction set. Only for sources that are built once per instruction set (see
+// INRInstructionSets.cmake): INR_ISA names the namespace, so that no two builds share a symbol.
+// Such sources use neither the standard library's templates nor inline functions from elsewhere:
+// the linker would keep one copy, and it might be the one this processor cannot run.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
+
+namespace inr {
+namespace INR_ISA {
+
+#if defined(__AVX512F__)
+constexpr int LaneCount = 16;
+#elif defined(__AVX2__)
+constexpr int LaneCount = 8;
+#else
+constexpr int LaneCount = 4;
+#endif
+
+using Floats = float __attribute__((vector_size(4 * LaneCount)));
+using Ints = std::int32_t __attribute__((vector_size(4 * LaneCount)));
+using UInts = std::uint32_t __attribute__((vector_size(4 * LaneCount)));
+
+inline Floats Spread(float value) { return value - Floats{}; }
+inline UInts SpreadInt(std::uint32_t value) { return value - UInts{}; }
+
+inline Floats Load(const float* from)
+{
+  Floats value;
+  std::memcpy(&value, from, sizeof(value));
+  return value;
+}
+
+inline void Store(float* to, Floats value) { std::memcpy(to, &value, sizeof(value)); }
+
+/// a*b + c, rounded once where the instruction set can.
+inline Floats MultiplyAdd(Floats a, Floats b, Floats c)
+{
+#if defined(__AVX512F__)
+  return _mm512_fmadd_ps(a, b, c);
+#elif defined(__FMA__)
+  return _mm256_fmadd_ps(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+inline Floats Maximum(Floats a, Floats b) { return a > b ? a : b; }
+inline Floats Minimum(Floats a, Floats b) { return a < b ? a : b; }
+
+inline float SumLanes(Floats value)
+{
+  // Halves onto halves: a fixed order, the same for every compiler.
+  float lanes[LaneCount];
+  Store(lanes, value);
+  for (int half = LaneCount / 2; half > 0; half /= 2) {
+    for (int k = 0; k < half; ++k) {
+      lanes[k] += lanes[k + half];
+    }
+  }
+  return lanes[0];
+}
+
+} // namespace INR_ISA
+} // namespace inr

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Model/Description.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// How a corner's running index is brought into [0, entries).
+enum class IndexWrap {
+  Mask,     ///< entries is a power of two
+  Subtract, ///< index < 2 * entries is known
+  Modulo
+};
+
+/// One grid level, ready for a kernel. Plain data: this header is included by code built for one
+/// instruction set and must define no function.
+struct LevelView
+{
+  float scale;
+  std::uint32_t strides[3]; ///< of the running index; 0 where upstream's loop has ended
+  std::uint32_t primes[3];  ///< of the hash
+  std::uint32_t entries;
+  IndexWrap wrap;
+  bool hashed;
+  bool randomHash;      ///< HashFunction::Rng, which is no XOR of products
+  std::uint64_t offset; ///< of the level's first feature from the grid's start, in parameters
+};
+
+struct LayerView
+{
+  const float* weights; ///< row-major, rows are outputs
+  int rows;             ///< the last layer's padding rows are left out: 1
+  int columns;
+};
+
+/// A model's description and parameters as the kernels want them.
+struct ModelView
+{
+  const LevelView* levels;
+  int levelCount;
+  int features;
+  GridInterpolation interpolation;
+  const float* grid; ///< features of all levels
+  const LayerView* layers;
+  int layerCount;
+  Activation activation;
+  Activation outputActivation;
+  int encodedWidth;
+  int inputWidth;
+  int widest; ///< largest number of columns or rows of any layer
+};
+
+/// HashFunction::Rng of a corner; a function of its own so that it is built once, for any
+/// processor.
+std::uint32_t RandomHashOfCorner(std::uint32_t x, std::uint32_t y, std::uint32_t z);
+
+/// Owns the tables a ModelView points into, but not the parameters.
+class ModelViewStorage
+{
+public:
+  /// `parameters` must hold Layout(description).parameterCount values and outlive this.
+  ModelViewStorage(const Description& description, const Layout& layout, const float* parameters);
+  ModelViewStorage(const ModelViewStorage&) = delete;
+  ModelViewStorage& operator=(const ModelViewStorage&) = delete;
+
+  const ModelView& view() const { return this->View; }
+
+private:
+  std::vector<LevelView> Levels;
+  std::vector<LayerView> Layers;
+  ModelView View{};
+};
+
+} // namespace inr
