@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/GradientDescent.h"
+
+#include "Core/Inference/KernelTable.h"
+#include "Core/Random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace inr {
+
+const TrainKernel& TrainKernelFor(InstructionSet set) { return INR_KERNEL_FOR(set, Train); }
+
+namespace {
+
+constexpr float Beta1 = 0.9f;
+constexpr float Beta2 = 0.999f;
+constexpr float Epsilon = 1e-15f;
+constexpr float WeightDecay = 1e-6f; // of the MLP only
+
+/// Samples whose weight gradients are summed in one buffer; the buffers are then added in order.
+constexpr std::int64_t ShardSize = 4 * TrainBlockSize;
+
+/// From this many updates on an entry's bias correction is 1 to float precision.
+constexpr std::uint32_t LastCorrectedStep = 16384;
+
+/// Streams of random numbers from one seed.
+enum RandomStream : std::uint64_t { InitialStream = 1, BatchStream = 2 };
+
+std::uint64_t StreamSeed(std::uint64_t seed, RandomStream stream)
+{
+  return RandomBits(seed, stream);
+}
+
+/// Adam's bias correction of the learning rate after t = 0 .. LastCorrectedStep updates.
+std::vector<float> BiasCorrections()
+{
+  std::vector<float> corrections(LastCorrectedStep + 1);
+  for (std::uint32_t t = 1; t <= LastCorrectedStep; ++t) {
+    corrections[t] =
+        static_cast<float>(std::sqrt(1.0 - std::pow(Beta2, t)) / (1.0 - std::pow(Beta1, t)));
+  }
+  return corrections;
+}
+
+float InitialBound(const Description& description, const Layout& layout, std::size_t layer)
+{
+  const LayerShape& shape = layout.layers[layer];
+  if (description.network.activation != Activation::Sine) {
+    return std::sqrt(6.0f / static_cast<float>(shape.rows + shape.columns));
+  }
+  const float columns = static_cast<float>(shape.columns);
+  return layer == 0 ? 30.0f / columns : std::sqrt(6.0f / columns);
+}
+
+} // namespace
+
+float LearningRate::at(std::uint64_t step) const
+{
+  if (step < this->decayStart) {
+    return this->initial;
+  }
+  const std::uint64_t intervals = (step - this->decayStart) / this->decayInterval;
+  const double rate = this->initial * std::pow(static_cast<double>(this->decayFactor),
+                                               static_cast<double>(intervals));
+  return std::max(this->floor, static_cast<float>(rate));
+}
+
+std::vector<float> InitialParameters(const Description& description, const Layout& layout,
+                                     std::uint64_t seed)
+{
+  constexpr float gridBound = 1e-4f;
+  const std::uint64_t stream = StreamSeed(seed, InitialStream);
+  std::vector<float> parameters(layout.parameterCount);
+  const auto fill = [&](std::uint64_t begin, std::uint64_t end, float bound) {
+    for (std::uint64_t k = begin; k < end; ++k) {
+      parameters[k] = bound * (2.0f * RandomUnit(stream, k) - 1.0f);
+    }
+  };
+  for (std::size_t l = 0; l < layout.layers.size(); ++l) {
+    const LayerShape& layer = layout.layers[l];
+    const std::uint64_t weights = static_cast<std::uint64_t>(layer.rows) * layer.columns;
+    fill(layer.offset, layer.offset + weights, InitialBound(description, layout, l));
+  }
+  fill(layout.gridOffset, layout.parameterCount, gridBound);
+  return parameters;
+}
+
+GradientDescent::GradientDescent(const Description& description, std::uint64_t seed,
+                                 InstructionSet set, const Arena& arena)
+    : Threads(arena), Kernel(TrainKernelFor(set)), Shape(description), Seed(seed),
+      Parameters(InitialParameters(description, this->Shape, seed)),
+      Views(description, this->Shape, this->Parameters.data()), Gradient(this->Parameters.size()),
+      FirstMoments(this->Parameters.size()), SecondMoments(this->Parameters.size()),
+      EntrySteps((this->Parameters.size() - this->Shape.gridOffset) /
+                 static_cast<std::size_t>(description.grid.features)),
+      Corrections(BiasCorrections()), Positions(BatchSize), Targets(BatchSize)
+{}
+
+double GradientDescent::step(const SampleSource& source)
+{
+  this->drawBatch(source);
+  const double loss = this->computeGradient(this->Positions, this->Targets);
+  const float rate = this->Rate.at(this->Steps);
+  ++this->Steps;
+  this->updateNetwork(rate);
+  this->updateGrid(rate);
+  return loss;
+}
+
+void GradientDescent::drawBatch(const SampleSource& source)
+{
+  const std::uint64_t stream = StreamSeed(this->Seed, BatchStream);
+  const std::uint64_t firstCounter = this->Steps * BatchSize * 3;
+  this->Threads.forEachBlock(BatchSize, ShardSize, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t k = begin; k < end; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        this->Positions[k][axis] =
+            RandomUnit(stream, firstCounter + static_cast<std::uint64_t>(3 * k + axis));
+      }
+    }
+    source.sample(&this->Positions[begin], end - begin, &this->Targets[begin]);
+  });
+}
+
+double GradientDescent::computeGradient(const std::vector<glm::vec3>& positions,
+                                        const std::vector<float>& targets)
+{
+  const auto count = static_cast<std::int64_t>(positions.size());
+  const std::int64_t shards = (count + ShardSize - 1) / ShardSize;
+  const std::int64_t blocks = (count + TrainBlockSize - 1) / TrainBlockSize;
+  this->EncodedGradient.resize(
+      static_cast<std::size_t>(blocks * this->Shape.encodedWidth * TrainBlockSize));
+  this->ShardGradients.resize(static_cast<std::size_t>(shards));
+  this->ShardLosses.assign(static_cast<std::size_t>(shards), 0.0);
+  const float* xyz = &positions.data()->x;
+  this->Threads.forEachBlock(count, ShardSize, [&](std::int64_t begin, std::int64_t end) {
+    this->backpropagateShard(begin / ShardSize, xyz, targets.data(), begin, end, count);
+  });
+  this->sumShards();
+  this->scatter(xyz, count);
+  return std::accumulate(this->ShardLosses.begin(), this->ShardLosses.end(), 0.0) /
+         static_cast<double>(count);
+}
+
+void GradientDescent::backpropagateShard(std::int64_t shard, const float* xyz, const float* targets,
+                                         std::int64_t begin, std::int64_t end, std::int64_t total)
+{
+  const ModelView& model = this->Views.view();
+  std::vector<float> workspace(static_cast<std::size_t>(this->Kernel.workspace(model)));
+  std::vector<float>& weightGradient = this->ShardGradients[static_cast<std::size_t>(shard)];
+  weightGradient.assign(this->Shape.gridOffset, 0.0f);
+  for (std::int64_t first = begin; first < end; first += TrainBlockSize) {
+    TrainBlock block{};
+    block.xyz = xyz + 3 * first;
+    block.targets = targets + first;
+    block.count = std::min(TrainBlockSize, end - first);
+    block.gradientScale = 1.0f / static_cast<float>(total);
+    block.encodedGradient = this->EncodedGradient.data() + first * this->Shape.encodedWidth;
+    block.weightGradient = weightGradient.data();
+    this->Kernel.backpropagate(model, block, workspace.data());
+    this->ShardLosses[static_cast<std::size_t>(shard)] += block.loss;
+  }
+}
+
+void GradientDescent::sumShards()
+{
+  std::fill_n(this->Gradient.begin(), this->Shape.gridOffset, 0.0f);
+  for (const std::vector<float>& shard : this->ShardGradients) {
+    for (std::size_t k = 0; k < shard.size(); ++k) {
+      this->Gradient[k] += shard[k];
+    }
+  }
+}
+
+void GradientDescent::scatter(const float* xyz, std::int64_t count)
+{
+  const ModelView& model = this->Views.view();
+  float* grid = this->Gradient.data() + this->Shape.gridOffset;
+  std::fill(this->Gradient.begin() + static_cast<std::ptrdiff_t>(this->Shape.gridOffset),
+            this->Gradient.end(), 0.0f);
+  // One task per level: levels share no entry, and within a level the order stays that of the
+  // samples.
+  this->Threads.forEachBlock(model.levelCount, 1, [&](std::int64_t level, std::int64_t) {
+    this->Kernel.scatter(model, static_cast<int>(level), xyz, count, this->EncodedGradient.data(),
+                         grid);
+  });
+}
+
+void GradientDescent::updateNetwork(float learningRate)
+{
+  const AdamRun run{this->Parameters.data(),
+                    this->Gradient.data(),
+                    this->FirstMoments.data(),
+                    this->SecondMoments.data(),
+                    Beta1,
+                    Beta2,
+                    Epsilon,
+                    WeightDecay};
+  const std::size_t step = std::min<std::uint64_t>(this->Steps, LastCorrectedStep);
+  this->Kernel.adam(run, static_cast<std::int64_t>(this->Shape.gridOffset),
+                    learningRate * this->Corrections[step]);
+}
+
+void GradientDescent::updateGrid(float learningRate)
+{
+  constexpr std::int64_t entriesPerTask = 1 << 14;
+  const int features = this->Views.view().features;
+  const auto entries = static_cast<std::int64_t>(this->EntrySteps.size());
+  this->Threads.forEachBlock(entries, entriesPerTask, [&](std::int64_t begin, std::int64_t end) {
+    const std::size_t first = this->Shape.gridOffset + static_cast<std::size_t>(begin * features);
+    const AdamRun run{&this->Parameters[first],
+                      &this->Gradient[first],
+                      &this->FirstMoments[first],
+                      &this->SecondMoments[first],
+                      Beta1,
+                      Beta2,
+                      Epsilon,
+                      0.0f};
+    this->Kernel.adamSparse(run, end - begin, features, learningRate, &this->EntrySteps[begin],
+                            this->Corrections.data(), LastCorrectedStep);
+  });
+}
+
+} // namespace inr

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Inference/ModelView.h"
+#include "Core/Parallel.h"
+#include "Core/Training/SampleSource.h"
+#include "Core/Training/TrainKernel.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// Learning rate over steps: constant, then falling by a factor per interval (tiny-cuda-nn's
+/// ExponentialDecay). A function of the step alone, so that a run stopped by the clock can be
+/// repeated by its number of steps.
+struct LearningRate
+{
+  float initial = 1e-2f;
+  std::uint64_t decayStart = 200;
+  std::uint64_t decayInterval = 20;
+  float decayFactor = 0.99f;
+  float floor = 1e-4f;
+
+  float at(std::uint64_t step) const;
+};
+
+/// Positions per mini-batch.
+constexpr std::int64_t BatchSize = 1 << 16;
+
+/// Xavier-uniform MLP weights (SIREN's for sine; Sitzmann et al., NeurIPS 2020) and grid features
+/// uniform in +-1e-4, from `seed`.
+std::vector<float> InitialParameters(const Description& description, const Layout& layout,
+                                     std::uint64_t seed);
+
+/// Fits the parameters of one INR with Adam on mini-batches of random positions. The parameters
+/// after n steps depend on description, seed, source and instruction set, not on the number of
+/// threads.
+class GradientDescent
+{
+public:
+  GradientDescent(const Description& description, std::uint64_t seed, InstructionSet set,
+                  const Arena& arena);
+  GradientDescent(const GradientDescent&) = delete;
+  GradientDescent& operator=(const GradientDescent&) = delete;
+
+  /// One mini-batch; returns the mean absolute error over it, before the update.
+  double step(const SampleSource& source);
+
+  /// Fills gradient() with d (mean |output - target|) / d parameter for `count` samples (targets
+  /// that are NaN count as fitted) and returns the mean.
+  double computeGradient(const std::vector<glm::vec3>& positions,
+                         const std::vector<float>& targets);
+
+  std::uint64_t steps() const { return this->Steps; }
+  const ModelView& view() const { return this->Views.view(); }
+  std::vector<float>& parameters() { return this->Parameters; }
+  const std::vector<float>& gradient() const { return this->Gradient; }
+
+private:
+  void drawBatch(const SampleSource& source);
+  void backpropagateShard(std::int64_t shard, const float* xyz, const float* targets,
+                          std::int64_t begin, std::int64_t end, std::int64_t total);
+  void sumShards();
+  void scatter(const float* xyz, std::int64_t count);
+  void updateNetwork(float learningRate);
+  void updateGrid(float learningRate);
+
+  const Arena& Threads;
+  const TrainKernel& Kernel;
+  Layout Shape;
+  std::uint64_t Seed;
+  std::uint64_t Steps = 0;
+  LearningRate Rate;
+  std::vector<float> Parameters;
+  ModelViewStorage Views;
+  std::vector<float> Gradient;
+  std::vector<float> FirstMoments;
+  std::vector<float> SecondMoments;
+  std::vector<std::uint32_t> EntrySteps;
+  std::vector<float> Corrections;
+  std::vector<glm::vec3> Positions;
+  std::vector<float> Targets;
+  std::vector<float> EncodedGradient;
+  std::vector<std::vector<float>> ShardGradients;
+  std::vector<double> ShardLosses;
+};
+
+} // namespace inr

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/Trainer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace inr {
+
+namespace {
+
+/// Parameters that the file may hold for a volume of `voxels` when nobody names a ratio: grows with
+/// the root of the voxels, which gives 13:1 for 91^3 floats and 6,000:1 for 4096^3.
+double DefaultParameters(double voxels) { return 128.0 * std::sqrt(voxels); }
+
+/// A volume is never "compressed" to more than a quarter of its size.
+constexpr double SmallestRatio = 4.0;
+constexpr double BytesPerParameter = 2.0; // half
+constexpr double FramingBytes = 2048.0;
+
+double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio)
+{
+  const double voxels =
+      static_cast<double>(dims.x) * static_cast<double>(dims.y) * static_cast<double>(dims.z);
+  const double bytes = voxels * static_cast<double>(ScalarSize(type));
+  if (ratio <= 0.0) {
+    return std::min(DefaultParameters(voxels), bytes / SmallestRatio / BytesPerParameter);
+  }
+  const MacroCells cells = MakeMacroCells(dims, DefaultMacroCellSize(dims));
+  const double cellBytes = 8.0 * static_cast<double>(cells.ranges.size());
+  return (bytes / ratio - cellBytes - FramingBytes) / BytesPerParameter;
+}
+
+/// Levels double in resolution up to the volume's longest side.
+int LevelsFor(const glm::i64vec3& dims, int baseResolution)
+{
+  const auto longest = static_cast<double>(std::max({dims.x, dims.y, dims.z}));
+  const double doublings = std::log2(std::max(1.0, longest / baseResolution));
+  return std::clamp(static_cast<int>(std::ceil(doublings)) + 1, 2, 16);
+}
+
+} // namespace
+
+Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio)
+{
+  const double budget = ParameterBudget(dims, type, ratio);
+  Description description;
+  description.grid.features = 4;
+  description.grid.baseResolution = 8;
+  description.grid.levels = LevelsFor(dims, description.grid.baseResolution);
+  description.network.neurons = budget < 2e6 ? 32 : 64;
+  description.network.hiddenLayers = 2;
+  // The largest table that fits; the smallest one when nothing does.
+  for (int log2Size = 6; log2Size <= 22; ++log2Size) {
+    Description candidate = description;
+    candidate.grid.log2HashmapSize = log2Size;
+    if (log2Size > 6 && static_cast<double>(Layout(candidate).parameterCount) > budget) {
+      break;
+    }
+    description = candidate;
+  }
+  return description;
+}
+
+} // namespace inr

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/PsnrEstimate.h"
+
+#include "Core/Model/Model.h"
+#include "Core/Random.h"
+
+#include <cmath>
+
+namespace inr {
+
+namespace {
+constexpr std::int64_t SampleCount = 1 << 15;
+constexpr std::uint64_t EstimateStream = 3; // apart from those of GradientDescent
+} // namespace
+
+PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed)
+    : Positions(SampleCount), Targets(SampleCount)
+{
+  const std::uint64_t stream = RandomBits(seed, EstimateStream);
+  for (std::int64_t k = 0; k < SampleCount; ++k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      this->Positions[k][axis] = RandomUnit(stream, static_cast<std::uint64_t>(3 * k + axis));
+    }
+  }
+  source.sample(this->Positions.data(), SampleCount, this->Targets.data());
+}
+
+double PsnrEstimate::measure(const ModelView& model, const EvaluateKernel& kernel) const
+{
+  std::vector<float> values(SampleCount);
+  std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(model)));
+  kernel.evaluate(model, &this->Positions.data()->x, SampleCount, values.data(), workspace.data());
+  double squared = 0;
+  std::int64_t finite = 0;
+  for (std::int64_t k = 0; k < SampleCount; ++k) {
+    if (std::isfinite(this->Targets[k])) {
+      const double difference = NormalisedOutput(values[k]) - this->Targets[k];
+      squared += difference * difference;
+      ++finite;
+    }
+  }
+  return finite > 0 ? -10.0 * std::log10(squared / static_cast<double>(finite)) : 0.0;
+}
+
+} // namespace inr

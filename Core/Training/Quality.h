@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Inference/Evaluator.h"
+#include "Core/Training/Volume.h"
+
+#include <functional>
+
+namespace inr {
+
+/// What one pass over all decoded voxels gives.
+struct DecodedReport
+{
+  Quality quality;
+  MacroCells macroCells; ///< of the decoded values, with an apron of one voxel
+};
+
+/// Decodes every voxel of `volume` and compares: PSNR with the range as peak; SSIM in 3D (uniform
+/// 7^3 window fully inside, K1 0.01, K2 0.03, sample covariance: scikit-image's
+/// `structural_similarity(win_size=7, data_range=1)`); the largest difference. Windows and voxels
+/// that hold a NaN or infinity are left out. `info` gives the value range, low < high; `keepGoing`
+/// receives the fraction done and returns false to stop (Error(Cancelled)).
+DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volume,
+                             const VolumeInfo& info, int macroCellSize, const Arena& arena,
+                             const std::function<bool(double)>& keepGoing);
+
+} // namespace inr

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/Trainer.h"
+
+#include "Core/Error.h"
+#include "Core/Inference/EvaluateKernel.h"
+#include "Core/Training/GradientDescent.h"
+#include "Core/Training/PsnrEstimate.h"
+#include "Core/Training/Quality.h"
+#include "Core/Training/TrainingClock.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace inr {
+
+namespace {
+
+/// Share of the progress bar that training gets when quality is measured afterwards.
+constexpr double TrainingShare = 0.9;
+
+void CheckArguments(const VolumeData& volume, const TrainingOptions& options)
+{
+  if (volume.values == nullptr || volume.dims.x < 1 || volume.dims.y < 1 || volume.dims.z < 1) {
+    throw Error(ErrorCode::InvalidArgument, "there are no voxels to train on");
+  }
+  const bool limited = options.targetPsnr > 0 || options.maximumSteps > 0 || options.timeLimit > 0;
+  if (!limited) {
+    throw Error(ErrorCode::InvalidArgument,
+                "training would never end: set TargetPSNR, MaximumSteps or TimeLimit");
+  }
+}
+
+/// Parameters as a file of this precision gives them back.
+void RoundAsStored(std::vector<float>& parameters, ParameterType type)
+{
+  if (type == ParameterType::Half) {
+    for (float& parameter : parameters) {
+      parameter = static_cast<float>(Imath::half(parameter));
+    }
+  }
+}
+
+/// The model of a volume whose finite voxels are all equal: no step is needed to be exact.
+ModelPointer ConstantModel(Model model, const glm::i64vec3& dims, int macroCellSize)
+{
+  model.parameters.assign(Layout(model.description).parameterCount, 0.0f);
+  model.macroCells = MakeMacroCells(dims, macroCellSize);
+  model.macroCells.provenance = MacroCellProvenance::Decoded;
+  std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(), ValueRange{0, 0});
+  const bool windowFits = std::min({dims.x, dims.y, dims.z}) >= 7;
+  model.quality = Quality{std::numeric_limits<double>::infinity(),
+                          windowFits ? 1.0 : std::numeric_limits<double>::quiet_NaN(), 0.0};
+  return std::make_shared<const Model>(std::move(model));
+}
+
+/// Steps until a limit is reached, telling the observer.
+class TrainingLoop
+{
+public:
+  TrainingLoop(const TrainingOptions& options, const TrainingObserver& observer)
+      : Options(options), Observer(observer)
+  {}
+
+  void run(GradientDescent& descent, const SampleSource& source, const EvaluateKernel& kernel)
+  {
+    PsnrEstimate estimate(source, this->Options.seed);
+    while (!this->reachedLimit(descent.steps())) {
+      descent.step(source);
+      // At fixed steps, so that a run which ends by quality ends at the same step every time.
+      if (this->Options.targetPsnr > 0 && descent.steps() % PsnrInterval == 0) {
+        this->Psnr = estimate.measure(descent.view(), kernel);
+        if (this->Psnr >= this->Options.targetPsnr) {
+          break;
+        }
+      }
+      this->report(descent.steps());
+    }
+  }
+
+  double seconds() const { return this->Clock.seconds(); }
+
+private:
+  static constexpr std::uint64_t PsnrInterval = 50;
+
+  bool reachedLimit(std::uint64_t steps) const
+  {
+    return (this->Options.maximumSteps > 0 && steps >= this->Options.maximumSteps) ||
+           (this->Options.timeLimit > 0 && this->Clock.seconds() >= this->Options.timeLimit);
+  }
+
+  double fraction(std::uint64_t steps) const
+  {
+    double done = 0;
+    if (this->Options.maximumSteps > 0) {
+      done = static_cast<double>(steps) / static_cast<double>(this->Options.maximumSteps);
+    }
+    if (this->Options.timeLimit > 0) {
+      done = std::max(done, this->Clock.seconds() / this->Options.timeLimit);
+    }
+    if (this->Options.targetPsnr > 0) {
+      done = std::max(done, this->Psnr / this->Options.targetPsnr);
+    }
+    return std::clamp(done, 0.0, 1.0);
+  }
+
+  void report(std::uint64_t steps)
+  {
+    this->Fraction = std::max(this->Fraction, TrainingShare * this->fraction(steps));
+    if (this->Observer &&
+        !this->Observer({TrainingPhase::Training, this->Fraction, steps, this->Psnr})) {
+      throw Error(ErrorCode::Cancelled, "training stopped on request; nothing was kept");
+    }
+  }
+
+  const TrainingOptions& Options;
+  const TrainingObserver& Observer;
+  TrainingClock Clock;
+  double Psnr = 0;
+  double Fraction = 0;
+};
+
+} // namespace
+
+ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
+                        const TrainingOptions& options, const TrainingObserver& observer)
+{
+  CheckArguments(volume, options);
+  const Arena arena(options.threads);
+  const InstructionSet set = ChooseInstructionSet(options.kernel);
+  const VolumeStatistics statistics = MeasureVolume(volume, arena);
+  const int macroCellSize =
+      options.macroCellSize > 0 ? options.macroCellSize : DefaultMacroCellSize(volume.dims);
+
+  Model model;
+  model.description = options.description.value_or(
+      ChooseDescription(volume.dims, volume.type, options.targetRatio));
+  model.storedAs = options.storedAs;
+  model.volume = info;
+  model.volume.dims = volume.dims;
+  model.volume.type = volume.type;
+  model.volume.low = statistics.low;
+  model.volume.high = statistics.high;
+  model.training = TrainingRecord{0, options.seed, 0.0, InstructionSetName(set),
+                                  static_cast<std::uint64_t>(statistics.nonFinite)};
+  if (!(statistics.low < statistics.high)) {
+    return ConstantModel(std::move(model), volume.dims, macroCellSize);
+  }
+
+  const InMemorySource source(volume, statistics.low, statistics.high);
+  GradientDescent descent(model.description, options.seed, set, arena);
+  TrainingLoop loop(options, observer);
+  loop.run(descent, source, EvaluateKernelFor(set));
+  model.training->steps = descent.steps();
+  model.training->seconds = loop.seconds();
+  model.parameters = descent.parameters();
+  RoundAsStored(model.parameters, model.storedAs);
+
+  const std::uint64_t steps = descent.steps();
+  const auto trained = std::make_shared<Model>(std::move(model));
+  const DecodedReport report = MeasureQuality(
+      *MakeEvaluator(trained, options.kernel), volume, trained->volume, macroCellSize, arena,
+      [&](double fraction) {
+        return !observer || observer({TrainingPhase::Measuring,
+                                      TrainingShare + (1.0 - TrainingShare) * fraction, steps, 0});
+      });
+  trained->quality = report.quality;
+  trained->macroCells = report.macroCells;
+  return trained;
+}
+
+} // namespace inr
