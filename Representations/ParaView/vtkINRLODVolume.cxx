@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkINRLODVolume.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationObjectBaseVectorKey.h"
+#include "vtkObjectFactory.h"
+#include "vtkOpenGLRenderPass.h"
+
+vtkStandardNewMacro(vtkINRLODVolume);
+
+namespace {
+
+bool IsPeeling(vtkInformation* keys)
+{
+  return keys && keys->Has(vtkOpenGLRenderPass::RenderPasses());
+}
+
+} // namespace
+
+int vtkINRLODVolume::RenderVolumetricGeometry(vtkViewport* viewport)
+{
+  this->DrawInOverlay = IsPeeling(this->GetPropertyKeys());
+  return this->DrawInOverlay ? 0 : this->Superclass::RenderVolumetricGeometry(viewport);
+}
+
+int vtkINRLODVolume::RenderOverlay(vtkViewport* viewport)
+{
+  if (!this->DrawInOverlay) {
+    return 0;
+  }
+  this->DrawInOverlay = false;
+  return this->Superclass::RenderVolumetricGeometry(viewport);
+}
+
+void vtkINRLODVolume::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "DrawInOverlay: " << this->DrawInOverlay << "\n";
+}

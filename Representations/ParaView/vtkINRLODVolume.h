@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkINRLODVolume
+ * @brief volume prop of the representation "INR Volume"
+ *
+ * ParaView draws translucent geometry by depth peeling, and draws volumes once per peel into
+ * buffers that blend by maximum, where a finished picture cannot go. While something is being
+ * peeled, this prop therefore steps aside and draws its picture afterwards, in the overlay stage of
+ * the same frame. The price: it then covers translucent surfaces that are in front of it.
+ */
+#ifndef vtkINRLODVolume_h
+#define vtkINRLODVolume_h
+
+#include "vtkINRRepresentationsModule.h" // for the export macro
+#include "vtkPVLODVolume.h"
+
+class VTKINRREPRESENTATIONS_EXPORT vtkINRLODVolume : public vtkPVLODVolume
+{
+public:
+  static vtkINRLODVolume* New();
+  vtkTypeMacro(vtkINRLODVolume, vtkPVLODVolume);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int RenderVolumetricGeometry(vtkViewport* viewport) override;
+  int RenderOverlay(vtkViewport* viewport) override;
+
+protected:
+  vtkINRLODVolume() = default;
+  ~vtkINRLODVolume() override = default;
+
+private:
+  vtkINRLODVolume(const vtkINRLODVolume&) = delete;
+  void operator=(const vtkINRLODVolume&) = delete;
+
+  bool DrawInOverlay = false;
+};
+
+#endif

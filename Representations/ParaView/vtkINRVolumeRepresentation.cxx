@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkINRVolumeRepresentation.h"
+
+#include "vtkINRLODVolume.h"
+#include "vtkINRVolumeMapper.h"
+#include "vtkInformation.h"
+#include "vtkObjectFactory.h"
+#include "vtkOutlineSource.h"
+#include "vtkPVRenderView.h"
+#include "vtkPolyDataMapper.h"
+#include "vtkVolumeProperty.h"
+
+vtkStandardNewMacro(vtkINRVolumeRepresentation);
+
+vtkINRVolumeRepresentation::vtkINRVolumeRepresentation()
+{
+  this->VolumeMapper.TakeReference(vtkINRVolumeMapper::New());
+  this->Actor.TakeReference(vtkINRLODVolume::New());
+  this->Actor->SetProperty(this->Property);
+  this->Actor->SetLODMapper(this->OutlineMapper);
+}
+
+vtkINRVolumeRepresentation::~vtkINRVolumeRepresentation() = default;
+
+int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* request,
+                                                   vtkInformation* in, vtkInformation* out)
+{
+  // Not the direct superclass: it would deliver the volume to the process that draws, and a virtual
+  // image has no end of values.
+  if (!this->vtkVolumeRepresentation::ProcessViewRequest(request, in, out)) {
+    return 0;
+  }
+  if (request == vtkPVView::REQUEST_UPDATE()) {
+    this->DeliverOutline(in, out);
+  } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
+    vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
+  } else if (request == vtkPVView::REQUEST_RENDER()) {
+    this->UpdateMapperParameters();
+    this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
+  }
+  return 1;
+}
+
+void vtkINRVolumeRepresentation::DeliverOutline(vtkInformation* in, vtkInformation* out)
+{
+  vtkDataObject* outline = this->OutlineSource->GetOutputDataObject(0);
+  vtkPVRenderView::SetPiece(in, this, outline, 0, 0);
+  vtkPVRenderView::SetPiece(in, this, outline, 0, 1);
+  vtkPVRenderView::SetGeometryBounds(in, this, this->DataBounds);
+  vtkPVRenderView::SetRequiresDistributedRendering(in, this, true);
+  vtkPVRenderView::SetOrderedCompositingConfiguration(
+      in, this, vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION);
+  out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
+}
+
+vtkINRVolumeMapper* vtkINRVolumeRepresentation::GetMapper()
+{
+  return static_cast<vtkINRVolumeMapper*>(this->VolumeMapper.Get());
+}
+
+void vtkINRVolumeRepresentation::SetSampleDistance(double voxels)
+{
+  this->GetMapper()->SetSampleDistance(voxels);
+}
+
+void vtkINRVolumeRepresentation::SetNumberOfThreads(int threads)
+{
+  this->GetMapper()->SetNumberOfThreads(threads);
+}
+
+void vtkINRVolumeRepresentation::SetSeed(int seed) { this->GetMapper()->SetSeed(seed); }
+
+double vtkINRVolumeRepresentation::GetFrameTime() { return this->GetMapper()->GetFrameTime(); }
+
+const char* vtkINRVolumeRepresentation::GetBackendInUse()
+{
+  return this->GetMapper()->GetBackendInUse();
+}
+
+void vtkINRVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FrameTime: " << this->GetFrameTime() << "\n";
+}

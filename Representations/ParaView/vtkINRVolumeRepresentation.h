@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkINRVolumeRepresentation
+ * @brief ParaView's representation "INR Volume": an INR drawn by vtkINRVolumeMapper
+ *
+ * Takes what INRReader produces and draws it at its native resolution, whatever grid the reader
+ * presents to filters. Colour, opacity and placement are those of ParaView's own volume
+ * representation. The data never leave the process that has them: where that is not the process
+ * that draws, the outline is shown.
+ */
+#ifndef vtkINRVolumeRepresentation_h
+#define vtkINRVolumeRepresentation_h
+
+#include "vtkINRRepresentationsModule.h" // for the export macro
+#include "vtkImageVolumeRepresentation.h"
+
+class vtkINRVolumeMapper;
+
+class VTKINRREPRESENTATIONS_EXPORT vtkINRVolumeRepresentation : public vtkImageVolumeRepresentation
+{
+public:
+  static vtkINRVolumeRepresentation* New();
+  vtkTypeMacro(vtkINRVolumeRepresentation, vtkImageVolumeRepresentation);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in,
+                         vtkInformation* out) override;
+
+  ///@{
+  /// Forwarded to vtkINRVolumeMapper, where they are documented.
+  void SetSampleDistance(double voxels);
+  void SetNumberOfThreads(int threads);
+  void SetSeed(int seed);
+  double GetFrameTime();
+  const char* GetBackendInUse();
+  ///@}
+
+protected:
+  vtkINRVolumeRepresentation();
+  ~vtkINRVolumeRepresentation() override;
+
+private:
+  vtkINRVolumeRepresentation(const vtkINRVolumeRepresentation&) = delete;
+  void operator=(const vtkINRVolumeRepresentation&) = delete;
+
+  vtkINRVolumeMapper* GetMapper();
+  void DeliverOutline(vtkInformation* in, vtkInformation* out);
+};
+
+#endif
