@@ -48,15 +48,19 @@ struct AxisCell
 
 inline AxisCell LocateOnAxis(const LevelView& level, GridInterpolation interpolation, Floats u)
 {
-  const Floats scale = Spread(level.scale);
+  const Floats one = Spread(1.0f);
   const Floats half = Spread(0.5f);
+  const Floats scale = Spread(level.scale);
   const Floats position = u * scale;
-  // What the product's rounding lost (zero without fused arithmetic): on fine levels it is a
-  // visible part of a cell.
-  const Floats lost = MultiplyAdd(u, scale, -position);
-  const Ints cell =
-      __builtin_convertvector(position + half, Ints); // u >= 0, so truncation is floor
-  Floats weight = ((position - __builtin_convertvector(cell, Floats)) + half) + lost;
+  Ints cell = __builtin_convertvector(position + half, Ints); // u >= 0, so truncation is floor
+  // On fine levels a float's last digit is a visible part of a cell: add what rounding lost, and
+  // move on where that crosses into a neighbour.
+  Floats weight = ((position - __builtin_convertvector(cell, Floats)) + half) +
+                  ProductError(u, scale, position);
+  const Ints below = weight < Floats{};
+  const Ints above = weight >= one;
+  cell += below - above; // a true comparison is -1
+  weight = below ? weight + one : (above ? weight - one : weight);
   if (interpolation == GridInterpolation::Smoothstep) {
     weight = weight * weight * (Spread(3.0f) - 2.0f * weight);
   } else if (interpolation == GridInterpolation::Nearest) {

@@ -51,6 +51,21 @@ inline Floats MultiplyAdd(Floats a, Floats b, Floats c)
 #endif
 }
 
+/// a*b - product, exactly, where `product` is a*b rounded.
+inline Floats ProductError(Floats a, Floats b, Floats product)
+{
+#if defined(__FMA__)
+  return MultiplyAdd(a, b, -product);
+#else
+  Floats error;
+  for (int k = 0; k < LaneCount; ++k) { // a product of two floats fits a double
+    error[k] = static_cast<float>(static_cast<double>(a[k]) * static_cast<double>(b[k]) -
+                                  static_cast<double>(product[k]));
+  }
+  return error;
+#endif
+}
+
 inline Floats Maximum(Floats a, Floats b) { return a > b ? a : b; }
 inline Floats Minimum(Floats a, Floats b) { return a < b ? a : b; }
 

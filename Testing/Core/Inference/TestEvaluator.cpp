@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Error.h"
+#include "Core/Inference/Evaluator.h"
+#include "Testing/Core/Kernels.h"
+#include "Testing/Core/RandomModel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace {
+
+std::vector<float> Evaluate(const inr::Evaluator& evaluator,
+                            const std::vector<glm::vec3>& positions)
+{
+  std::vector<float> values(positions.size());
+  evaluator.evaluate(positions.data(), static_cast<std::int64_t>(positions.size()), values.data());
+  return values;
+}
+
+TEST(Evaluator, ValueDoesNotDependOnTheBatch)
+{
+  const std::vector<glm::vec3> positions = RandomPositions(333);
+  for (const std::string& kernel : UsableKernels()) {
+    const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()), kernel);
+    const std::vector<float> together = Evaluate(*evaluator, positions);
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+      ASSERT_EQ(Evaluate(*evaluator, {positions[k]})[0], together[k]) << kernel << " at " << k;
+    }
+  }
+}
+
+TEST(Evaluator, ParallelEqualsSerial)
+{
+  const std::vector<glm::vec3> positions = RandomPositions(20000);
+  const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
+  const std::vector<float> serial = Evaluate(*evaluator, positions);
+  for (const int threads : {1, 2, 5}) {
+    std::vector<float> values(positions.size());
+    inr::EvaluateParallel(*evaluator, inr::Arena(threads), positions.data(), 20000, values.data());
+    EXPECT_EQ(values, serial) << threads;
+  }
+}
+
+TEST(Evaluator, LatticeSitsAtVoxelCentres)
+{
+  const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
+  const glm::i64vec3 dims(11, 7, 5);
+  std::vector<float> block(2 * 3 * 4);
+  inr::EvaluateLattice(*evaluator, inr::Arena(2), inr::VoxelLattice(dims, {4, 2, 1}, {2, 3, 4}),
+                       block.data());
+  // Voxel (5, 4, 3): the second, third and third of the block.
+  const glm::vec3 centre(5.5 / 11, 4.5 / 7, 3.5 / 5);
+  EXPECT_NEAR(block[1 + 2 * (2 + 3 * 2)], Evaluate(*evaluator, {centre})[0], 1e-5);
+}
+
+TEST(Evaluator, PositionsOutsideAreClamped)
+{
+  const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
+  const std::vector<float> values =
+      Evaluate(*evaluator, {{-1e30f, 0.5f, 0.5f}, {0, 0.5f, 0.5f}, {0.5f, 1e30f, 2}, {0.5f, 1, 1}});
+  EXPECT_EQ(values[0], values[1]);
+  EXPECT_EQ(values[2], values[3]);
+}
+
+TEST(Evaluator, NonFinitePositionsAreHarmless)
+{
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const std::string& kernel : UsableKernels()) {
+    const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()), kernel);
+    for (const float value : Evaluate(*evaluator, {{nan, 0, 0}, {0, infinity, -infinity}})) {
+      EXPECT_TRUE(std::isfinite(value)) << kernel;
+    }
+  }
+}
+
+TEST(Evaluator, KernelsAgree)
+{
+  const std::vector<glm::vec3> positions = RandomPositions(1000);
+  const auto model = RandomModel(SmallDescription());
+  const std::vector<float> best = Evaluate(*inr::MakeEvaluator(model), positions);
+  for (const std::string& kernel : UsableKernels()) {
+    const std::vector<float> values = Evaluate(*inr::MakeEvaluator(model, kernel), positions);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      ASSERT_NEAR(values[k], best[k], 2e-4f) << kernel; // outputs of this model span about +-20
+    }
+  }
+}
+
+TEST(Evaluator, RefusesAWrongParameterCount)
+{
+  auto model = RandomModel(SmallDescription());
+  model->parameters.pop_back();
+  EXPECT_THROW(inr::MakeEvaluator(model), inr::Error);
+}
+
+TEST(Evaluator, NamesItsKernelAndRefusesUnknownOnes)
+{
+  for (const std::string& kernel : UsableKernels()) {
+    EXPECT_EQ(inr::MakeEvaluator(RandomModel(SmallDescription()), kernel)->kernel(), kernel);
+  }
+  EXPECT_THROW(inr::MakeEvaluator(RandomModel(SmallDescription()), "abacus"), inr::Error);
+}
+
+} // namespace
