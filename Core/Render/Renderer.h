@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Image/Image.h"
+#include "Core/Inference/Evaluator.h"
 #include "Core/Model/Model.h"
 #include "Core/Render/Frame.h"
 #include "Core/Render/TransferFunction.h"
@@ -26,9 +27,12 @@ class Renderer
 {
 public:
   explicit Renderer(ModelPointer model, const RendererOptions& options = {});
+  /// Any field: normalised values over the unit cube, with a volume's dimensions and value range.
+  Renderer(std::shared_ptr<const Evaluator> field, const VolumeInfo& volume,
+           const MacroCells& cells, const RendererOptions& options = {});
   ~Renderer();
-  Renderer(const Renderer&) = delete;
-  Renderer& operator=(const Renderer&) = delete;
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
 
   /// Rebuilds the majorants if, and only if, `transferFunction` differs from the current one.
   /// Throws Error(InvalidArgument) for a table of fewer than 2 entries, non-finite entries, low >=

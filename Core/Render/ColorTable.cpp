@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/ColorTable.h"
+
+#include "Core/Error.h"
+
+#include <algorithm>
+
+namespace inr {
+
+namespace {
+
+bool IsColour(const glm::vec4& entry)
+{
+  return std::isfinite(entry.x) && std::isfinite(entry.y) && std::isfinite(entry.z) &&
+         entry.w >= 0.0f && entry.w <= 1.0f;
+}
+
+void Check(const TransferFunction& function)
+{
+  const auto require = [](bool condition, const char* message) {
+    if (!condition) {
+      throw Error(ErrorCode::InvalidArgument, message);
+    }
+  };
+  require(function.table.size() >= 2 && function.table.size() <= (1u << 24),
+          "a transfer function needs 2 to 2^24 table entries");
+  require(std::isfinite(function.low) && std::isfinite(function.high) &&
+              function.low < function.high,
+          "a transfer function needs a range with low < high");
+  require(!function.logarithmic || function.low > 0,
+          "a logarithmic transfer function needs a positive range");
+  require(IsColour(function.below) && IsColour(function.above) &&
+              std::all_of(function.table.begin(), function.table.end(), IsColour),
+          "a transfer function's colours must be finite and its opacities in [0, 1]");
+}
+
+} // namespace
+
+ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volume)
+    : Entries(function.table)
+{
+  Check(function);
+  const double last = static_cast<double>(this->Entries.size() - 1);
+  ColorLookup& lookup = this->Lookup;
+  lookup.entries = this->Entries.data();
+  lookup.count = static_cast<int>(this->Entries.size());
+  lookup.logarithmic = function.logarithmic;
+  lookup.below = function.below;
+  lookup.above = function.above;
+  if (function.logarithmic) {
+    const double scale = last / std::log(function.high / function.low);
+    lookup.scale = static_cast<float>(scale);
+    lookup.bias = static_cast<float>(-scale * std::log(function.low));
+    lookup.valueLow = static_cast<float>(volume.low);
+    lookup.valueScale = static_cast<float>(volume.high - volume.low);
+  } else {
+    const double scale = last / (function.high - function.low);
+    lookup.scale = static_cast<float>(scale * (volume.high - volume.low));
+    lookup.bias = static_cast<float>(scale * (volume.low - function.low));
+  }
+  this->Maxima.emplace_back();
+  for (const glm::vec4& entry : this->Entries) {
+    this->Maxima[0].push_back(entry.w);
+  }
+  for (std::size_t span = 2; span <= this->Entries.size(); span *= 2) {
+    const std::vector<float>& half = this->Maxima.back();
+    std::vector<float> row(this->Entries.size() - span + 1);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      row[k] = std::max(half[k], half[k + span / 2]);
+    }
+    this->Maxima.push_back(std::move(row));
+  }
+}
+
+float ColorTable::maximumOverNodes(int first, int last) const
+{
+  const int count = last - first + 1;
+  int level = 0;
+  while ((2 << level) <= count) {
+    ++level;
+  }
+  const std::vector<float>& row = this->Maxima[static_cast<std::size_t>(level)];
+  return std::max(row[static_cast<std::size_t>(first)],
+                  row[static_cast<std::size_t>(last - (1 << level) + 1)]);
+}
+
+float ColorTable::maximumOpacity(const ValueRange& range) const
+{
+  if (range.empty()) {
+    return 0.0f;
+  }
+  // Between nodes opacity is linear: the extremes are at the nodes inside and at the two ends.
+  // Taking the nodes just outside instead of the ends also covers the rounding of the coordinate.
+  const float begin = this->Lookup.coordinate(range.low);
+  const float end = this->Lookup.coordinate(range.high);
+  const auto top = static_cast<float>(this->Lookup.count - 1);
+  float maximum = 0.0f;
+  if (begin <= 0.0f) {
+    maximum = std::max(maximum, this->Lookup.below.w);
+  }
+  if (end >= top) {
+    maximum = std::max(maximum, this->Lookup.above.w);
+  }
+  if (end < -1.0f || begin > top + 1.0f) {
+    return maximum;
+  }
+  const int first = static_cast<int>(std::clamp(std::floor(begin), 0.0f, top));
+  const int last = static_cast<int>(std::clamp(std::ceil(end), 0.0f, top));
+  return std::max(maximum, this->maximumOverNodes(first, last));
+}
+
+} // namespace inr

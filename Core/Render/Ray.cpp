@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/Ray.h"
+
+#include "Core/Error.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace inr {
+
+namespace {
+
+void Require(bool condition, const char* message)
+{
+  if (!condition) {
+    throw Error(ErrorCode::InvalidArgument, message);
+  }
+}
+
+bool IsFinite(const glm::dmat4& matrix)
+{
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 4; ++r) {
+      if (!std::isfinite(matrix[c][r])) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+glm::dmat4 Inverse(const glm::dmat4& matrix, const char* message)
+{
+  const glm::dmat4 inverse = glm::inverse(matrix);
+  Require(IsFinite(matrix) && IsFinite(inverse), message);
+  return inverse;
+}
+
+/// The part of a line that survives clipping.
+struct Interval
+{
+  double begin;
+  double end;
+
+  /// Keeps where value + slope * t >= 0.
+  void keep(double value, double slope)
+  {
+    if (slope > 0) {
+      this->begin = std::max(this->begin, -value / slope);
+    } else if (slope < 0) {
+      this->end = std::min(this->end, -value / slope);
+    } else if (value < 0) {
+      this->end = -std::numeric_limits<double>::infinity();
+    }
+  }
+};
+
+} // namespace
+
+RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture(frame)
+{
+  Require(frame.width > 0 && frame.height > 0, "a picture needs at least one pixel");
+  Require(std::isfinite(frame.sampleDistance) && frame.sampleDistance > 0,
+          "the sample distance must be above 0");
+  Require(std::isfinite(frame.unitDistance) && frame.unitDistance > 0,
+          "the opacity unit distance must be above 0");
+  this->WorldToClip = Inverse(frame.clipToWorld, "the camera's matrix has no inverse");
+  this->IndexToWorld =
+      Inverse(frame.worldToIndex, "the volume's matrix has no inverse (a zero scale or spacing?)");
+  this->WorldPerUnit = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    // A single layer of voxels is a slab one spacing thick; else the domain ends at the outer
+    // points.
+    this->Low[axis] = dims[axis] == 1 ? -0.5 : 0.0;
+    this->High[axis] = dims[axis] == 1 ? 0.5 : static_cast<double>(dims[axis] - 1);
+    this->WorldPerUnit =
+        std::min(this->WorldPerUnit, glm::length(glm::dvec3(this->IndexToWorld[axis])));
+  }
+  Require(this->WorldPerUnit > 0, "the volume is flat in world space");
+}
+
+glm::dvec3 RayGeometry::unproject(double x, double y, double z) const
+{
+  const glm::dvec4 world = this->Picture.clipToWorld * glm::dvec4(x, y, z, 1.0);
+  return glm::dvec3(world) / world.w;
+}
+
+Ray RayGeometry::ray(int x, int y) const
+{
+  const double clipX = 2.0 * (x + 0.5) / this->Picture.width - 1.0;
+  const double clipY = 2.0 * (y + 0.5) / this->Picture.height - 1.0;
+  const glm::dvec3 near = this->unproject(clipX, clipY, -1.0);
+  const glm::dvec3 toFar = this->unproject(clipX, clipY, 1.0) - near;
+  const double range = glm::length(toFar);
+  const glm::dvec3 forward = toFar / range;
+
+  const glm::dvec3 origin(this->Picture.worldToIndex * glm::dvec4(near, 1.0));
+  const glm::dvec3 direction(this->Picture.worldToIndex * glm::dvec4(forward, 0.0));
+  Interval world{0.0, range};
+  for (int axis = 0; axis < 3; ++axis) {
+    world.keep(origin[axis] - this->Low[axis], direction[axis]);
+    world.keep(this->High[axis] - origin[axis], -direction[axis]);
+  }
+  for (const glm::dvec4& plane : this->Picture.clippingPlanes) {
+    world.keep(glm::dot(plane, glm::dvec4(near, 1.0)), glm::dot(plane, glm::dvec4(forward, 0.0)));
+  }
+  if (this->Picture.opaqueDepth != nullptr) {
+    const auto pixel = static_cast<std::size_t>(y) * this->Picture.width + x;
+    const double depth = this->Picture.opaqueDepth[pixel];
+    if (depth < 1.0) {
+      const glm::dvec3 opaque = this->unproject(clipX, clipY, 2.0 * depth - 1.0);
+      world.end = std::min(world.end, glm::dot(opaque - near, forward));
+    }
+  }
+  Ray ray;
+  if (world.begin < world.end) { // false, too, where something was not a number
+    ray.entry = origin + world.begin * direction;
+    ray.direction = direction * this->WorldPerUnit;
+    ray.length = (world.end - world.begin) / this->WorldPerUnit;
+  }
+  return ray;
+}
+
+double RayGeometry::windowDepth(const glm::dvec3& index) const
+{
+  const glm::dvec4 clip = this->WorldToClip * (this->IndexToWorld * glm::dvec4(index, 1.0));
+  return std::clamp(0.5 * (clip.z / clip.w + 1.0), 0.0, 1.0);
+}
+
+} // namespace inr

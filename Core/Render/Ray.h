@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/HostDevice.h"
+#include "Core/Render/Frame.h"
+
+#include <glm/gtc/type_precision.hpp>
+#include <glm/vec3.hpp>
+
+namespace inr {
+
+/// A pixel's way through the volume. Parameter t counts from the ray's own entry, in voxels of the
+/// densest axis, so that its digits are spent inside the volume wherever that lies in the world.
+struct Ray
+{
+  glm::dvec3 entry{0.0};     ///< point indices at t = 0
+  glm::dvec3 direction{0.0}; ///< point indices per unit of t
+  double length = 0;         ///< t where the ray leaves or meets something opaque; <= 0: a miss
+
+  INR_HOST_DEVICE glm::dvec3 at(double t) const { return this->entry + t * this->direction; }
+};
+
+/// A Frame's geometry composed in double, once: rays in index space and back to window depth.
+class RayGeometry
+{
+public:
+  /// Throws Error(InvalidArgument) for singular or non-finite matrices and values out of range.
+  RayGeometry(const Frame& frame, const glm::i64vec3& dims);
+
+  /// The ray through the centre of pixel (x, y), clipped to near and far plane, the visible domain
+  /// (point bounds), the clipping planes and the opaque depth.
+  Ray ray(int x, int y) const;
+
+  /// Window-space depth in [0, 1] of a point on a ray.
+  double windowDepth(const glm::dvec3& index) const;
+
+  /// World length of one unit of t: the shortest voxel edge.
+  double worldPerUnit() const { return this->WorldPerUnit; }
+
+private:
+  glm::dvec3 unproject(double x, double y, double z) const;
+
+  const Frame& Picture;
+  glm::dmat4 IndexToWorld;
+  glm::dmat4 WorldToClip;
+  glm::dvec3 Low;
+  glm::dvec3 High;
+  double WorldPerUnit = 0;
+};
+
+} // namespace inr

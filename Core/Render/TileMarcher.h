@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Image/Image.h"
+#include "Core/Inference/Evaluator.h"
+#include "Core/Render/RayMarching.h"
+
+#include <vector>
+
+namespace inr {
+
+/// A screen tile: pixels [x, x + width) x [y, y + height).
+struct Tile
+{
+  int x, y, width, height;
+};
+
+/// What a frame's tiles share. All read-only.
+struct MarchScene
+{
+  const Frame& frame;
+  const RayGeometry& geometry;
+  const Majorants& majorants;
+  const ColorLookup& colors;
+  const Evaluator& evaluator;
+  MarchSettings settings;
+};
+
+/// Marches the rays of one tile together: place samples, infer them in one batch, composite, drop
+/// the rays that are done. The queues are small enough to stay in the second-level cache.
+class TileMarcher
+{
+public:
+  static constexpr int Edge = 16;
+
+  explicit TileMarcher(const MarchScene& scene) : Scene(scene) {}
+
+  /// Writes the tile's pixels; `depth` may be null.
+  FrameStatistics march(const Tile& tile, Image& rgba, Image* depth);
+
+private:
+  /// Samples per ray and round: enough to fill a batch, few enough not to overshoot an opaque
+  /// surface.
+  static constexpr int SamplesPerRound = 8;
+
+  void generateRays(const Tile& tile);
+  void placeSamples();
+  void inferValues();
+  void composite();
+  void writePixels(const Tile& tile, Image& rgba, Image* depth) const;
+
+  const MarchScene& Scene;
+  FrameStatistics Statistics;
+  std::vector<MarchState> Rays;
+  std::vector<int> Live;
+  std::vector<int> SampleEnds; ///< of each live ray, in Samples
+  std::vector<MarchSample> Samples;
+  std::vector<glm::vec3> Positions;
+  std::vector<float> Values;
+};
+
+} // namespace inr

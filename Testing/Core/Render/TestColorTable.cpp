@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Error.h"
+#include "Core/Random.h"
+#include "Core/Render/ColorTable.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+inr::VolumeInfo Range(double low, double high)
+{
+  inr::VolumeInfo info;
+  info.low = low;
+  info.high = high;
+  return info;
+}
+
+inr::TransferFunction RandomFunction(std::uint64_t seed)
+{
+  std::uint64_t counter = 0;
+  const auto random = [&] { return inr::RandomUnit(seed, counter++); };
+  inr::TransferFunction function;
+  function.low = 4.0 * random() - 1.0;
+  function.high = function.low + 0.01 + 4.0 * random();
+  function.table.resize(2 + static_cast<std::size_t>(60 * random()));
+  for (glm::vec4& entry : function.table) {
+    entry = {random(), random(), random(), random() < 0.5f ? 0.0f : random()};
+  }
+  function.below.w = random();
+  function.above.w = random();
+  return function;
+}
+
+TEST(ColorTable, InterpolatesBetweenNodes)
+{
+  inr::TransferFunction function;
+  function.low = 10;
+  function.high = 20;
+  function.table = {{0, 0, 0, 0}, {1, 0, 0, 0.5f}, {0, 1, 0, 1}};
+  function.below = {9, 9, 9, 0.25f};
+  const inr::ColorTable table(function, Range(0, 100));
+  EXPECT_NEAR(table.lookup().at(0.125f).w, 0.25f, 1e-6); // value 12.5
+  EXPECT_NEAR(table.lookup().at(0.175f).y, 0.5f, 1e-6);
+  EXPECT_EQ(table.lookup().at(0.05f).w, 0.25f);
+  EXPECT_EQ(table.lookup().at(0.9f).w, 0.0f);
+}
+
+TEST(ColorTable, LogarithmicTablesAreEvenInTheLogarithm)
+{
+  inr::TransferFunction function;
+  function.low = 1;
+  function.high = 100;
+  function.logarithmic = true;
+  function.table = {{0, 0, 0, 0}, {0, 0, 0, 0.5f}, {0, 0, 0, 1}};
+  const inr::ColorTable table(function, Range(0, 100));
+  EXPECT_NEAR(table.lookup().at(0.1f).w, 0.5f, 1e-5);
+  EXPECT_NEAR(table.lookup().at(std::sqrt(1000.0f) / 100).w, 0.75f, 1e-5);
+  EXPECT_EQ(table.lookup().at(0.0f).w, 0.0f); // log 0: below
+}
+
+TEST(ColorTable, MajorantBoundsEveryValueOfARange)
+{
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const inr::ColorTable table(RandomFunction(seed), Range(-1, 4));
+    float low = inr::RandomUnit(seed, 1000);
+    float high = inr::RandomUnit(seed, 1001);
+    if (low > high) {
+      std::swap(low, high);
+    }
+    const float bound = table.maximumOpacity({low, high});
+    for (int k = 0; k <= 200; ++k) {
+      const float y = std::min(high, low + (high - low) * static_cast<float>(k) / 200.0f);
+      ASSERT_LE(table.lookup().at(y).w, bound) << "seed " << seed << " y " << y;
+    }
+  }
+}
+
+TEST(ColorTable, MajorantIsTight)
+{
+  inr::TransferFunction function;
+  function.table.assign(101, glm::vec4(0));
+  function.table[50].w = 1.0f;
+  const inr::ColorTable table(function, Range(0, 1));
+  EXPECT_EQ(table.maximumOpacity({0.0f, 0.47f}), 0.0f);
+  EXPECT_EQ(table.maximumOpacity({0.53f, 1.0f}), 0.0f);
+  EXPECT_EQ(table.maximumOpacity({0.2f, 0.8f}), 1.0f);
+  EXPECT_EQ(table.maximumOpacity({1.0f, -1.0f}), 0.0f); // empty
+}
+
+TEST(ColorTable, RefusesNonsense)
+{
+  const auto refused = [](const std::function<void(inr::TransferFunction&)>& spoil) {
+    inr::TransferFunction function;
+    function.table = {glm::vec4(0), glm::vec4(1)};
+    spoil(function);
+    EXPECT_THROW(inr::ColorTable(function, Range(0, 1)), inr::Error);
+  };
+  refused([](auto& function) { function.table.pop_back(); });
+  refused([](auto& function) { function.table[0].x = NAN; });
+  refused([](auto& function) { function.table[0].w = 1.5f; });
+  refused([](auto& function) { function.high = function.low; });
+  refused([](auto& function) { function.logarithmic = true; });
+}
+
+} // namespace
