@@ -37,7 +37,17 @@ public:
   /// Position in the file where the problem was found, or NoOffset.
   std::int64_t byteOffset() const { return this->ByteOffset; }
 
+  /// The same error with `context` ("cannot read 'a.inr': ") in front of its message.
+  Error inContext(const std::string& context) const
+  {
+    return Error(this->Code, this->ByteOffset, context + this->what());
+  }
+
 private:
+  Error(ErrorCode code, std::int64_t byteOffset, const std::string& wholeMessage)
+      : std::runtime_error(wholeMessage), Code(code), ByteOffset(byteOffset)
+  {}
+
   ErrorCode Code;
   std::int64_t ByteOffset;
 };

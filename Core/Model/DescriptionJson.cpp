@@ -1,24 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Model/DescriptionJson.h"
 
-#include "Core/Error.h"
+#include "Core/Model/JsonSection.h"
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <utility>
+#include <cstdint>
 
 namespace inr {
 namespace {
 
 using nlohmann::json;
 
-template <typename Enum, std::size_t Count>
-using NameTable = std::array<std::pair<const char*, Enum>, Count>;
-
-// The first name of a value is the one that is written.
 constexpr NameTable<GridType, 4> EncodingNames = {{{"HashGrid", GridType::Hash},
                                                    {"Grid", GridType::Hash},
                                                    {"DenseGrid", GridType::Dense},
@@ -49,114 +42,27 @@ constexpr NameTable<NetworkType, 4> NetworkNames = {{{"FullyFusedMLP", NetworkTy
                                                      {"CutlassMLP", NetworkType::Cutlass},
                                                      {"MLP", NetworkType::Cutlass}}};
 
-std::string LowerCase(std::string text)
+// Wide enough for every count; Layout knows the true limits.
+int Count(const JsonSection& section, const char* key, int fallback)
 {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
+  const std::int64_t value = section.integer(key, fallback);
+  if (value < 0 || value > 0x7FFFFFFF) {
+    section.refuse(key, "is out of range");
+  }
+  return static_cast<int>(value);
 }
 
-// One section of the configuration; knows its name for messages.
-class Section
-{
-public:
-  Section(const json& model, const char* name) : Name(name)
-  {
-    const auto found = model.find(name);
-    if (found == model.end()) {
-      return;
-    }
-    if (!found->is_object()) {
-      throw Error(ErrorCode::InvalidModel, "'" + this->Name + "' is not an object");
-    }
-    this->Object = &*found;
-  }
-
-  bool has(const char* key) const { return this->find(key) != nullptr; }
-
-  int integer(const char* key, int fallback) const
-  {
-    const double value = this->number(key, fallback);
-    if (value != std::floor(value) || std::abs(value) > 0x7FFFFFFF) {
-      this->refuse(key, "must be an integer");
-    }
-    return static_cast<int>(value);
-  }
-
-  double number(const char* key, double fallback) const
-  {
-    const json* value = this->find(key);
-    if (value == nullptr) {
-      return fallback;
-    }
-    if (!value->is_number()) {
-      this->refuse(key, "must be a number");
-    }
-    return value->get<double>();
-  }
-
-  template <typename Enum, std::size_t Count>
-  Enum choice(const char* key, const NameTable<Enum, Count>& names, Enum fallback) const
-  {
-    const json* value = this->find(key);
-    if (value == nullptr) {
-      return fallback;
-    }
-    if (!value->is_string()) {
-      this->refuse(key, "must be a string");
-    }
-    const std::string wanted = LowerCase(value->get<std::string>());
-    for (const auto& [name, result] : names) {
-      if (wanted == LowerCase(name)) {
-        return result;
-      }
-    }
-    throw Error(ErrorCode::Unsupported, "'" + this->Name + "." + key + "' is '" +
-                                            value->get<std::string>() + "'; supported are " +
-                                            List(names));
-  }
-
-  [[noreturn]] void refuse(const char* key, const std::string& reason) const
-  {
-    throw Error(ErrorCode::InvalidModel, "'" + this->Name + "." + key + "' " + reason);
-  }
-
-private:
-  const json* find(const char* key) const
-  {
-    if (this->Object == nullptr) {
-      return nullptr;
-    }
-    const auto found = this->Object->find(key);
-    return found == this->Object->end() ? nullptr : &*found;
-  }
-
-  template <typename Enum, std::size_t Count>
-  static std::string List(const NameTable<Enum, Count>& names)
-  {
-    std::string list;
-    for (const auto& entry : names) {
-      list += (list.empty() ? "" : ", ") + std::string(entry.first);
-    }
-    return list;
-  }
-
-  std::string Name;
-  const json* Object = nullptr;
-};
-
 // `n_features` (also `n_grid_features`) is the total over all levels, instead of `n_levels`.
-int ParseLevels(const Section& section, int features)
+int ParseLevels(const JsonSection& section, int features)
 {
   const char* total = section.has("n_grid_features") ? "n_grid_features" : "n_features";
   if (!section.has(total)) {
-    return section.integer("n_levels", 16);
+    return Count(section, "n_levels", 16);
   }
   if (section.has("n_levels")) {
     section.refuse(total, "and 'n_levels' exclude each other");
   }
-  const int count = section.integer(total, 0);
+  const int count = Count(section, total, 0);
   if (features < 1 || count % features != 0) {
     section.refuse(total, "must be a multiple of 'n_features_per_level'");
   }
@@ -165,17 +71,17 @@ int ParseLevels(const Section& section, int features)
 
 GridDescription ParseGrid(const json& model)
 {
-  const Section section(model, "encoding");
+  const JsonSection section = JsonSection(model, "").section("encoding");
   GridDescription grid;
   grid.type = section.choice("otype", EncodingNames, GridType::Hash);
   grid.type = section.choice("type", TypeNames, grid.type);
   grid.interpolation =
       section.choice("interpolation", InterpolationNames, GridInterpolation::Linear);
   grid.hash = section.choice("hash", HashNames, HashFunction::CoherentPrime);
-  grid.features = section.integer("n_features_per_level", 2);
+  grid.features = Count(section, "n_features_per_level", 2);
   grid.levels = ParseLevels(section, grid.features);
-  grid.log2HashmapSize = section.integer("log2_hashmap_size", 19);
-  grid.baseResolution = section.integer("base_resolution", 16);
+  grid.log2HashmapSize = Count(section, "log2_hashmap_size", 19);
+  grid.baseResolution = Count(section, "base_resolution", 16);
   grid.perLevelScale = static_cast<float>(section.number("per_level_scale", 2.0));
   return grid;
 }
@@ -187,11 +93,11 @@ bool IsFullyFusedWidth(int neurons)
 
 NetworkDescription ParseNetwork(const json& model)
 {
-  const Section section(model, "network");
+  const JsonSection section = JsonSection(model, "").section("network");
   NetworkDescription network;
   const NetworkType type = section.choice("otype", NetworkNames, NetworkType::Cutlass);
-  network.neurons = section.integer("n_neurons", 128);
-  network.hiddenLayers = section.integer("n_hidden_layers", 5);
+  network.neurons = Count(section, "n_neurons", 128);
+  network.hiddenLayers = Count(section, "n_hidden_layers", 5);
   network.activation = section.choice("activation", ActivationNames, Activation::ReLU);
   network.outputActivation = section.choice("output_activation", ActivationNames, Activation::None);
   if (type == NetworkType::FullyFused) {
@@ -203,14 +109,6 @@ NetworkDescription ParseNetwork(const json& model)
     }
   }
   return network;
-}
-
-template <typename Enum, std::size_t Count>
-const char* NameOf(const NameTable<Enum, Count>& names, Enum value)
-{
-  const auto found = std::find_if(names.begin(), names.end(),
-                                  [&](const auto& entry) { return entry.second == value; });
-  return found->first;
 }
 
 json GridToJson(const GridDescription& grid)
@@ -246,9 +144,6 @@ NetworkType TypeOf(const NetworkDescription& network)
 
 Description ParseDescription(const json& model)
 {
-  if (!model.is_object()) {
-    throw Error(ErrorCode::InvalidModel, "the model configuration is not an object");
-  }
   Description description{ParseGrid(model), ParseNetwork(model)};
   (void)Layout(description); // checks every range
   return description;

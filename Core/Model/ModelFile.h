@@ -31,11 +31,13 @@ Model ReadModelHeader(const std::string& path, const ModelOverrides& overrides =
 ModelPointer ReadModel(const std::string& path, const ModelOverrides& overrides = {});
 
 /// Writes `path` through a temporary file beside it and a rename: the file is there whole or not at
-/// all. The parameters are stored as `model.storedAs` says. Throws Error(CannotWrite), or
-/// Error(TooLarge) for 2 GiB or more.
+/// all. The parameters are stored as `model.storedAs` says. Throws Error(CannotWrite),
+/// Error(TooLarge) for 2 GiB or more, or Error(InvalidModel) for what could not be read back: wrong
+/// counts, values that are not finite or that half precision cannot hold.
 void WriteModel(const Model& model, const std::string& path);
 
-/// Size in bytes that WriteModel would produce.
+/// Size in bytes that WriteModel would produce; needs no parameters in `model`, only its
+/// description, macro-cells and metadata.
 std::int64_t ModelFileSize(const Model& model);
 
 } // namespace inr

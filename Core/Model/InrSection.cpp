@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Model/InrSection.h"
+
+#include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace inr {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t FormatVersion = 1;
+constexpr std::size_t MaximumNameLength = 1024;
+constexpr const char* ChecksumPrefix = "crc32:";
+constexpr const char* AxisNames[3] = {"x", "y", "z"};
+
+constexpr NameTable<HashRule, 2> RuleNames = {
+    {{"wrapping", HashRule::Wrapping}, {"exact", HashRule::Exact}}};
+constexpr NameTable<MacroCellProvenance, 3> ProvenanceNames = {
+    {{"decoded", MacroCellProvenance::Decoded},
+     {"training", MacroCellProvenance::Training},
+     {"file", MacroCellProvenance::File}}};
+enum class Transform { Linear };
+constexpr NameTable<Transform, 1> TransformNames = {{{"linear", Transform::Linear}}};
+
+// Quality may be infinite or undefined, which no JSON number can be: those are words.
+json RealToJson(double value)
+{
+  if (std::isfinite(value)) {
+    return value;
+  }
+  return std::isnan(value) ? "nan" : value > 0 ? "infinity" : "-infinity";
+}
+
+double ParseReal(const JsonSection& section, const char* key)
+{
+  constexpr double Infinity = std::numeric_limits<double>::infinity();
+  const json* value = section.find(key);
+  if (value == nullptr || !value->is_string()) {
+    return section.number(key);
+  }
+  static constexpr std::pair<const char*, double> Words[] = {
+      {"nan", std::numeric_limits<double>::quiet_NaN()},
+      {"infinity", Infinity},
+      {"-infinity", -Infinity}};
+  for (const auto& [word, real] : Words) {
+    if (*value == word) {
+      return real;
+    }
+  }
+  section.refuse(key, "must be a number, 'nan', 'infinity' or '-infinity'");
+}
+
+template <typename Vector> json AxesToJson(const Vector& vector)
+{
+  return {{"x", vector.x}, {"y", vector.y}, {"z", vector.z}};
+}
+
+glm::dvec3 ParseReals(const JsonSection& section)
+{
+  glm::dvec3 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result[axis] = section.number(AxisNames[axis]);
+  }
+  return result;
+}
+
+// Row by row, as one reads a matrix (GLM stores columns).
+json DirectionToJson(const glm::dmat3& direction)
+{
+  json rows = json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      rows.push_back(direction[column][row]);
+    }
+  }
+  return rows;
+}
+
+glm::dmat3 ParseDirection(const JsonSection& section)
+{
+  const json* rows = section.find("direction");
+  if (rows == nullptr || !rows->is_array() || rows->size() != 9) {
+    section.refuse("direction", "must be an array of 9 numbers");
+  }
+  glm::dmat3 direction;
+  for (int i = 0; i < 9; ++i) {
+    const json& element = (*rows)[static_cast<std::size_t>(i)];
+    if (!element.is_number()) {
+      section.refuse("direction", "must be an array of 9 numbers");
+    }
+    direction[i % 3][i / 3] = element.get<double>();
+  }
+  return direction;
+}
+
+std::string ChecksumToText(std::uint32_t checksum)
+{
+  char digits[9];
+  std::snprintf(digits, sizeof(digits), "%08x", checksum);
+  return std::string(ChecksumPrefix) + digits;
+}
+
+std::uint32_t ParseChecksum(const JsonSection& section)
+{
+  const std::string text = section.text("checksum");
+  const std::string prefix = ChecksumPrefix;
+  const std::string digits =
+      text.substr(0, prefix.size()) == prefix ? text.substr(prefix.size()) : std::string();
+  if (digits.size() != 8 || digits.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    section.refuse("checksum", "must be 'crc32:' and 8 hexadecimal digits");
+  }
+  return static_cast<std::uint32_t>(std::stoul(digits, nullptr, 16));
+}
+
+VolumeInfo ParseVolume(const JsonSection& section)
+{
+  VolumeInfo volume;
+  volume.dims = ParseDims(section.section("dims"));
+  volume.spacing = ParseReals(section.section("spacing"));
+  volume.origin = ParseReals(section.section("origin"));
+  volume.direction = ParseDirection(section);
+  volume.arrayName = section.text("array_name");
+  const std::string type = section.text("array_type");
+  const std::optional<ScalarType> scalar = ScalarFromName(type);
+  if (!scalar) {
+    throw Error(ErrorCode::Unsupported, "'inr.array_type' is '" + type + "', an unknown type");
+  }
+  volume.type = *scalar;
+  const JsonSection range = section.section("data_range");
+  volume.low = range.number("low");
+  volume.high = range.number("high");
+  RequireValidVolume(volume, ErrorCode::InvalidModel);
+  return volume;
+}
+
+Quality ParseQuality(const JsonSection& section)
+{
+  return {ParseReal(section, "psnr"), ParseReal(section, "ssim"), ParseReal(section, "max_error")};
+}
+
+TrainingRecord ParseTraining(const JsonSection& section)
+{
+  TrainingRecord record;
+  record.steps = static_cast<std::uint64_t>(section.integer("steps"));
+  record.seed = static_cast<std::uint64_t>(section.integer("seed"));
+  record.seconds = section.number("seconds");
+  record.kernel = section.text("kernel");
+  record.nonFinite = static_cast<std::uint64_t>(section.integer("non_finite"));
+  return record;
+}
+
+// BSON has signed integers only: the whole range survives as two's complement.
+std::int64_t AsSigned(std::uint64_t value) { return static_cast<std::int64_t>(value); }
+
+} // namespace
+
+glm::i64vec3 ParseDims(const JsonSection& section)
+{
+  glm::i64vec3 dims;
+  for (int axis = 0; axis < 3; ++axis) {
+    dims[axis] = section.integer(AxisNames[axis]);
+  }
+  return dims;
+}
+
+InrSection ParseInrSection(const JsonSection& section)
+{
+  const std::int64_t version = section.integer("format_version");
+  if (version != FormatVersion) {
+    throw Error(ErrorCode::Unsupported, "the file has format version " + std::to_string(version) +
+                                            "; this program reads version " +
+                                            std::to_string(FormatVersion));
+  }
+  section.choice("transform", TransformNames);
+  InrSection result;
+  result.volume = ParseVolume(section);
+  result.rule = section.choice("hash_rule", RuleNames);
+  result.provenance = section.choice("macrocell_provenance", ProvenanceNames);
+  result.checksum = ParseChecksum(section);
+  if (const JsonSection quality = section.section("quality"); quality.present()) {
+    result.quality = ParseQuality(quality);
+  }
+  if (const JsonSection training = section.section("training"); training.present()) {
+    result.training = ParseTraining(training);
+  }
+  return result;
+}
+
+json InrSectionToJson(const Model& model, std::uint32_t checksum)
+{
+  const VolumeInfo& volume = model.volume;
+  json section = {{"format_version", FormatVersion},
+                  {"transform", NameOf(TransformNames, Transform::Linear)},
+                  {"dims", AxesToJson(volume.dims)},
+                  {"spacing", AxesToJson(volume.spacing)},
+                  {"origin", AxesToJson(volume.origin)},
+                  {"direction", DirectionToJson(volume.direction)},
+                  {"array_name", volume.arrayName},
+                  {"array_type", ScalarName(volume.type)},
+                  {"data_range", {{"low", volume.low}, {"high", volume.high}}},
+                  {"hash_rule", NameOf(RuleNames, model.description.grid.rule)},
+                  {"macrocell_provenance", NameOf(ProvenanceNames, model.macroCells.provenance)},
+                  {"checksum", ChecksumToText(checksum)}};
+  if (model.quality) {
+    section["quality"] = {{"psnr", RealToJson(model.quality->psnr)},
+                          {"ssim", RealToJson(model.quality->ssim)},
+                          {"max_error", RealToJson(model.quality->maxError)}};
+  }
+  if (model.training) {
+    section["training"] = {{"steps", AsSigned(model.training->steps)},
+                           {"seed", AsSigned(model.training->seed)},
+                           {"seconds", model.training->seconds},
+                           {"kernel", model.training->kernel},
+                           {"non_finite", AsSigned(model.training->nonFinite)}};
+  }
+  return section;
+}
+
+void RequireValidVolume(const VolumeInfo& volume, ErrorCode code)
+{
+  constexpr std::int64_t MaximumDimension = std::numeric_limits<std::int32_t>::max();
+  constexpr std::int64_t MaximumVoxels = std::int64_t{1} << 53;
+  std::int64_t voxels = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t size = volume.dims[axis];
+    if (size < 1 || size > MaximumDimension || size > MaximumVoxels / voxels) {
+      throw Error(code, "a volume cannot have " + std::to_string(volume.dims.x) + " x " +
+                            std::to_string(volume.dims.y) + " x " + std::to_string(volume.dims.z) +
+                            " voxels");
+    }
+    voxels *= size;
+    if (!std::isfinite(volume.spacing[axis]) || volume.spacing[axis] == 0) {
+      throw Error(code, "the spacing must be finite and not zero");
+    }
+    if (!std::isfinite(volume.origin[axis])) {
+      throw Error(code, "the origin must be finite");
+    }
+  }
+  const double determinant = glm::determinant(volume.direction);
+  if (!std::isfinite(determinant) || determinant == 0) {
+    throw Error(code, "the direction matrix must be finite and invertible");
+  }
+  if (!(volume.low <= volume.high) || !std::isfinite(volume.high - volume.low)) {
+    throw Error(code, "the value range must be finite, its low end not above its high end");
+  }
+  if (volume.arrayName.size() > MaximumNameLength) {
+    throw Error(code,
+                "the array's name is longer than " + std::to_string(MaximumNameLength) + " bytes");
+  }
+}
+
+} // namespace inr

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Error.h"
+#include "Core/Model/JsonSection.h"
+#include "Core/Model/Model.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <optional>
+
+namespace inr {
+
+/// What the root key `inr` of our own files says; see FORMAT.md.
+struct InrSection
+{
+  VolumeInfo volume;
+  HashRule rule = HashRule::Wrapping;
+  MacroCellProvenance provenance = MacroCellProvenance::File;
+  std::uint32_t checksum = 0; ///< CRC-32 of the parameter blob followed by the macro-cell blob
+  std::optional<Quality> quality;
+  std::optional<TrainingRecord> training;
+};
+
+/// Throws Error(Unsupported) for a later version or another transform, Error(InvalidModel) for
+/// values out of range.
+InrSection ParseInrSection(const JsonSection& section);
+
+nlohmann::json InrSectionToJson(const Model& model, std::uint32_t checksum);
+
+/// The integers `x`, `y` and `z` of a section; unchecked.
+glm::i64vec3 ParseDims(const JsonSection& section);
+
+/// Throws Error(`code`) unless dims are 1 to 2^31 - 1 with a product of at most 2^53, spacing is
+/// finite and not zero, origin and direction are finite, the direction can be inverted, and low <=
+/// high are finite with a finite difference. A name may have up to 1024 bytes.
+void RequireValidVolume(const VolumeInfo& volume, ErrorCode code);
+
+} // namespace inr

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstring>
+
+#if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "model files are little-endian and are read and written as they lie in memory"
+#endif
+
+namespace inr {
+
+/// The value whose bytes, of any alignment, are given.
+template <typename T> T FromBytes(const void* bytes)
+{
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  return value;
+}
+
+} // namespace inr

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Model/ModelHeader.h"
+
+#include "Core/Error.h"
+#include "Core/Model/DescriptionJson.h"
+#include "Core/Model/InrSection.h"
+
+#include <cmath>
+#include <string>
+
+namespace inr {
+namespace {
+
+using nlohmann::json;
+
+constexpr NameTable<ParameterType, 2> ParameterTypeNames = {
+    {{"__half", ParameterType::Half}, {"float", ParameterType::Float}}};
+
+const Blob* FindBlob(const Document& document, const std::string& path)
+{
+  const auto found = document.blobs.find(path);
+  return found == document.blobs.end() ? nullptr : &found->second;
+}
+
+const Blob& RequireBlob(const Document& document, const std::string& path)
+{
+  const Blob* blob = FindBlob(document, path);
+  if (blob == nullptr) {
+    throw Error(ErrorCode::InvalidModel, "the binary value '" + path + "' is missing");
+  }
+  return *blob;
+}
+
+// The parameter section is `parameters`, or in old files the root itself.
+std::string ParametersPath(const JsonSection& root)
+{
+  if (root.has("parameters")) {
+    return "parameters";
+  }
+  if (!root.has("n_params")) {
+    throw Error(ErrorCode::InvalidModel, "there are no parameters: this is the configuration of a "
+                                         "model that has not been trained");
+  }
+  return "";
+}
+
+// How far the inputs of a CutlassMLP are padded changed in 2022; only the count of parameters
+// tells. 8 and 16 never give the same count.
+Description DescriptionFor(const json& model, std::uint64_t parameterCount)
+{
+  Description description = ParseDescription(model);
+  std::uint64_t expected = 0;
+  for (const int alignment : {16, 8}) {
+    description.network.alignment = alignment;
+    const std::uint64_t count = Layout(description).parameterCount;
+    if (count == parameterCount) {
+      return description;
+    }
+    expected = expected == 0 ? count : expected;
+  }
+  throw Error(ErrorCode::InvalidModel, "the file has " + std::to_string(parameterCount) +
+                                           " parameters, but its model description needs " +
+                                           std::to_string(expected));
+}
+
+ParameterType TypeOf(const JsonSection& section, const Blob& blob, std::uint64_t count)
+{
+  const auto fits = [&](ParameterType type) {
+    return static_cast<std::uint64_t>(blob.size) == count * ParameterSize(type);
+  };
+  const ParameterType type =
+      section.choice("params_type", ParameterTypeNames,
+                     fits(ParameterType::Float) ? ParameterType::Float : ParameterType::Half);
+  if (!fits(type)) {
+    throw Error(ErrorCode::InvalidModel, "the parameters take " + std::to_string(blob.size) +
+                                             " bytes, which does not fit their number of " +
+                                             std::to_string(count));
+  }
+  return type;
+}
+
+void ReadParameterSection(const JsonSection& root, const Document& document, ModelHeader& header)
+{
+  const std::string path = ParametersPath(root);
+  const JsonSection section = path.empty() ? root : root.section("parameters");
+  const std::int64_t count = section.integer("n_params");
+  if (count < 1) {
+    section.refuse("n_params", "must be positive");
+  }
+  const auto parameterCount = static_cast<std::uint64_t>(count);
+  header.parameters = &RequireBlob(document, (path.empty() ? "" : "/" + path) + "/params_binary");
+  // A file that claims a vast model is refused by its blob's size, before any table is laid out.
+  header.model.storedAs = TypeOf(section, *header.parameters, parameterCount);
+  const json& configuration = root.has("model") ? *root.find("model") : document.header;
+  header.model.description = DescriptionFor(configuration, parameterCount);
+}
+
+void RequireValidCells(const JsonSection& section, const MacroCells& cells, const Blob& blob)
+{
+  // Dividing what is left by each count keeps every product within the blob's size.
+  std::int64_t left = blob.size / static_cast<std::int64_t>(sizeof(ValueRange));
+  std::int64_t count = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t along = cells.dims[axis];
+    if (along < 1 || along > left) {
+      section.refuse("dims", "do not fit the " + std::to_string(blob.size) + " bytes of ranges");
+    }
+    left /= along;
+    count *= along;
+    const double covered = static_cast<double>(along) * cells.spacing[axis];
+    if (!(cells.spacing[axis] > 0) || !(covered >= 1.0 - 1e-6)) {
+      section.refuse("spacings", "must be positive and let the cells cover the unit cube");
+    }
+  }
+  if (count * static_cast<std::int64_t>(sizeof(ValueRange)) != blob.size) {
+    section.refuse("dims", "do not fit the " + std::to_string(blob.size) + " bytes of ranges");
+  }
+}
+
+void ReadMacroCellSection(const JsonSection& root, const Document& document, ModelHeader& header)
+{
+  const JsonSection section = root.section("macrocell");
+  if (!section.present()) {
+    return;
+  }
+  const JsonSection spacings = section.section("spacings");
+  MacroCells& cells = header.model.macroCells;
+  cells.dims = ParseDims(section.section("dims"));
+  cells.spacing = {spacings.number("x"), spacings.number("y"), spacings.number("z")};
+  header.ranges = &RequireBlob(document, "/macrocell/data");
+  RequireValidCells(section, cells, *header.ranges);
+}
+
+void ReadOwnSection(const JsonSection& root, ModelHeader& header)
+{
+  InrSection own = ParseInrSection(root.section("inr"));
+  header.model.volume = std::move(own.volume);
+  header.model.description.grid.rule = own.rule;
+  header.model.macroCells.provenance = own.provenance;
+  header.model.quality = own.quality;
+  header.model.training = std::move(own.training);
+  header.encoding = CellEncoding::Offset;
+  header.checksum = own.checksum;
+}
+
+// Upstream's files know nothing of a volume but its dimensions.
+void ReadVolumeSection(const JsonSection& root, const ModelOverrides& overrides, Model& model)
+{
+  const JsonSection dims = root.section("volume").section("dims");
+  if (dims.present()) {
+    model.volume.dims = ParseDims(dims);
+    RequireValidVolume(model.volume, ErrorCode::InvalidModel);
+  } else if (!overrides.dims) {
+    throw Error(ErrorCode::InvalidModel,
+                "the file does not tell the volume's dimensions; give them as Dimensions");
+  }
+}
+
+void ApplyOverrides(const ModelOverrides& overrides, VolumeInfo& volume)
+{
+  volume.dims = overrides.dims.value_or(volume.dims);
+  if (overrides.dataRange) {
+    volume.low = overrides.dataRange->x;
+    volume.high = overrides.dataRange->y;
+  }
+  RequireValidVolume(volume, ErrorCode::InvalidArgument);
+}
+
+} // namespace
+
+ModelHeader ParseModelHeader(const Document& document, const ModelOverrides& overrides)
+{
+  const JsonSection root(document.header, "");
+  if (!root.has("model") && !root.has("encoding") && !root.has("network")) {
+    throw Error(ErrorCode::Malformed,
+                "this is not a model file: it has neither 'model' nor 'encoding' and 'network'");
+  }
+  ModelHeader header;
+  ReadParameterSection(root, document, header);
+  ReadMacroCellSection(root, document, header);
+  if (root.has("inr")) {
+    ReadOwnSection(root, header);
+  } else {
+    ReadVolumeSection(root, overrides, header.model);
+  }
+  ApplyOverrides(overrides, header.model.volume);
+  return header;
+}
+
+} // namespace inr

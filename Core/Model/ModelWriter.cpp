@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/AtomicFile.h"
+#include "Core/Error.h"
+#include "Core/Model/DescriptionJson.h"
+#include "Core/Model/InrSection.h"
+#include "Core/Model/ModelBlobs.h"
+#include "Core/Model/ModelFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstring>
+#include <limits>
+
+namespace inr {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t SizeLimit = std::numeric_limits<std::int32_t>::max();
+constexpr std::size_t LengthSize = sizeof(std::int32_t);
+
+// A file is text[0], macro-cell ranges, text[1], parameters, text[2].
+struct Framing
+{
+  std::array<std::string, 3> text;
+  std::int64_t rangeBytes = 0;
+  std::int64_t parameterBytes = 0;
+
+  std::int64_t total() const
+  {
+    std::int64_t sum = this->rangeBytes + this->parameterBytes;
+    for (const std::string& piece : this->text) {
+      sum += static_cast<std::int64_t>(piece.size());
+    }
+    return sum;
+  }
+};
+
+// Adds to the little-endian length at `position`; sizes over the limit are refused before anything
+// is written, so what wraps here is never seen.
+void AddToLength(std::string& bytes, std::size_t position, std::int64_t amount)
+{
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + position, LengthSize);
+  length += static_cast<std::uint32_t>(amount);
+  std::memcpy(bytes.data() + position, &length, LengthSize);
+}
+
+std::string Element(const std::string& key, const json& section)
+{
+  const std::vector<std::uint8_t> document = json::to_bson(section);
+  std::string bytes(1, '\x03');
+  bytes += key;
+  bytes += '\0';
+  bytes.append(document.begin(), document.end());
+  return bytes;
+}
+
+// An element whose binary value `blobKey` has `blobBytes` bytes that are not there yet; they belong
+// between the two results.
+std::pair<std::string, std::string> SplitElement(const std::string& key, json section,
+                                                 const std::string& blobKey, std::int64_t blobBytes)
+{
+  section[blobKey] = json::binary({});
+  std::string bytes = Element(key, section);
+  const std::size_t document = 1 + key.size() + 1;
+  const std::string marker = '\x05' + blobKey + '\0';
+  const std::size_t length = bytes.find(marker, document) + marker.size();
+  AddToLength(bytes, document, blobBytes);
+  AddToLength(bytes, length, blobBytes);
+  const std::size_t split = length + LengthSize + 1; // and the subtype
+  return {bytes.substr(0, split), bytes.substr(split)};
+}
+
+json MacroCellSection(const MacroCells& cells)
+{
+  return {{"dims", {{"x", cells.dims.x}, {"y", cells.dims.y}, {"z", cells.dims.z}}},
+          {"spacings", {{"x", cells.spacing.x}, {"y", cells.spacing.y}, {"z", cells.spacing.z}}},
+          {"groundtruth", cells.provenance == MacroCellProvenance::Decoded}};
+}
+
+json ModelSection(const Description& description)
+{
+  json section = DescriptionToJson(description);
+  section["loss"] = {{"otype", "L1"}}; // upstream cannot build a model without one
+  return section;
+}
+
+// Root keys in byte order, as upstream's library writes them.
+Framing Frame(const Model& model, std::uint32_t checksum)
+{
+  const std::uint64_t count = Layout(model.description).parameterCount;
+  Framing framing;
+  framing.parameterBytes = static_cast<std::int64_t>(count * ParameterSize(model.storedAs));
+  framing.rangeBytes =
+      static_cast<std::int64_t>(model.macroCells.ranges.size() * sizeof(ValueRange));
+
+  framing.text[0] =
+      std::string(LengthSize, '\0') + Element("inr", InrSectionToJson(model, checksum));
+  if (!model.macroCells.empty()) {
+    const auto [before, after] =
+        SplitElement("macrocell", MacroCellSection(model.macroCells), "data", framing.rangeBytes);
+    framing.text[0] += before;
+    framing.text[1] = after;
+  }
+  const json parameters = {
+      {"n_params", count},
+      {"params_type", model.storedAs == ParameterType::Half ? "__half" : "float"}};
+  const auto [before, after] =
+      SplitElement("parameters", parameters, "params_binary", framing.parameterBytes);
+  framing.text[1] += Element("model", ModelSection(model.description)) + before;
+  const glm::i64vec3& dims = model.volume.dims;
+  const json volume = {{"dims", {{"x", dims.x}, {"y", dims.y}, {"z", dims.z}}}};
+  framing.text[2] = after + Element("volume", volume) + '\0';
+  AddToLength(framing.text[0], 0, framing.total());
+  return framing;
+}
+
+// What the reader would refuse must not be written.
+void RequireWritable(const Model& model)
+{
+  const std::uint64_t count = Layout(model.description).parameterCount;
+  if (model.parameters.size() != count) {
+    throw Error(ErrorCode::InvalidModel,
+                "the model has " + std::to_string(model.parameters.size()) +
+                    " parameters where its description needs " + std::to_string(count));
+  }
+  RequireValidVolume(model.volume, ErrorCode::InvalidModel);
+  const MacroCells& cells = model.macroCells;
+  const auto cellCount = static_cast<std::int64_t>(cells.ranges.size());
+  if (!cells.empty() && cells.dims.x * cells.dims.y * cells.dims.z != cellCount) {
+    throw Error(ErrorCode::InvalidModel, "the number of macro-cell ranges does not fit their dims");
+  }
+  if (ModelFileSize(model) > SizeLimit) {
+    throw Error(ErrorCode::TooLarge, "the model would take " +
+                                         std::to_string(ModelFileSize(model)) +
+                                         " bytes; a model file must be smaller than 2 GiB");
+  }
+}
+
+void WriteFile(const Model& model, const std::string& path)
+{
+  RequireWritable(model);
+  AtomicFile file(path);
+  const std::string parameters = EncodeParameters(model.parameters, model.storedAs);
+  const std::string ranges = EncodeRanges(model.macroCells.ranges);
+  const std::uint32_t checksum = ContinueChecksum(
+      ContinueChecksum(0, parameters.data(), parameters.size()), ranges.data(), ranges.size());
+  const Framing framing = Frame(model, checksum);
+  for (const std::string* piece :
+       {&framing.text[0], &ranges, &framing.text[1], &parameters, &framing.text[2]}) {
+    file.write(piece->data(), piece->size());
+  }
+  file.commit();
+}
+
+} // namespace
+
+std::int64_t ModelFileSize(const Model& model) { return Frame(model, 0).total(); }
+
+void WriteModel(const Model& model, const std::string& path)
+{
+  try {
+    WriteFile(model, path);
+  } catch (const Error& error) {
+    // AtomicFile's messages say so already.
+    throw error.code() == ErrorCode::CannotWrite ? error
+                                                 : error.inContext("cannot write '" + path + "': ");
+  }
+}
+
+} // namespace inr
