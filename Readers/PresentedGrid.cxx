@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PresentedGrid.h"
+
+#include "Core/Error.h"
+
+#include <vtkType.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace {
+
+/// Points per axis when the spacing grows by 1/`scale`.
+glm::i64vec3 ScaledDims(const glm::i64vec3& native, double scale)
+{
+  glm::i64vec3 dims{1};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto cells = static_cast<std::int64_t>(static_cast<double>(native[axis] - 1) * scale);
+    dims[axis] = std::min(native[axis], std::max<std::int64_t>(2, cells + 1));
+  }
+  return dims;
+}
+
+/// In floating point: the product of three sizes may not fit any integer.
+double CountPoints(const glm::i64vec3& dims)
+{
+  return static_cast<double>(dims.x) * static_cast<double>(dims.y) * static_cast<double>(dims.z);
+}
+
+glm::i64vec3 FinestDims(const glm::i64vec3& native, double maximumPoints)
+{
+  double coarse = 0;
+  double fine = 1;
+  for (int step = 0; step < 64; ++step) { // halves the interval down to the last bit
+    const double middle = 0.5 * (coarse + fine);
+    (CountPoints(ScaledDims(native, middle)) <= maximumPoints ? coarse : fine) = middle;
+  }
+  return ScaledDims(native, coarse);
+}
+
+void CheckIndexable(const glm::i64vec3& dims)
+{
+  const auto longest = std::max({dims.x, dims.y, dims.z});
+  if (longest > std::numeric_limits<int>::max() ||
+      CountPoints(dims) > static_cast<double>(VTK_ID_MAX)) {
+    throw inr::Error(inr::ErrorCode::TooLarge,
+                     "a grid of " + std::to_string(dims.x) + " x " + std::to_string(dims.y) +
+                         " x " + std::to_string(dims.z) +
+                         " points is more than VTK can number; set MaximumGridPoints above 0");
+  }
+}
+
+} // namespace
+
+PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoints)
+{
+  const bool bounded =
+      maximumPoints > 0 && CountPoints(volume.dims) > static_cast<double>(maximumPoints);
+  const glm::i64vec3 dims =
+      bounded ? FinestDims(volume.dims, static_cast<double>(maximumPoints)) : volume.dims;
+  CheckIndexable(dims);
+
+  PresentedGrid grid;
+  grid.dims = glm::ivec3(dims);
+  grid.spacing = volume.spacing;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (dims[axis] != volume.dims[axis]) {
+      grid.spacing[axis] *=
+          static_cast<double>(volume.dims[axis] - 1) / static_cast<double>(dims[axis] - 1);
+    }
+  }
+  return grid;
+}

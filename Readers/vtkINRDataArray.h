@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkINRDataArray
+ * @brief the handle to an implicit neural representation inside a point array
+ *
+ * vtkINRReader gives its image a point array whose values are computed when somebody asks for them.
+ * The array has the scalar type of the source volume, so it is one of several template
+ * instances; this interface is what they share. It is no vtkObject: hold the array itself.
+ */
+#ifndef vtkINRDataArray_h
+#define vtkINRDataArray_h
+
+#include "Core/Model/Model.h"    // for inr::ModelPointer
+#include "vtkINRReadersModule.h" // for export macro
+
+#include <vtkSmartPointer.h> // for return value
+
+class vtkAbstractArray;
+class vtkDataArray;
+
+class VTKINRREADERS_EXPORT vtkINRDataArray
+{
+public:
+  /// The interface of `array`, or null if it is an ordinary array or null.
+  static vtkINRDataArray* SafeDownCast(vtkAbstractArray* array);
+
+  /// An array over the points `extent` (inclusive limits) of a grid that spans the point bounds of
+  /// the model's native grid with `presentedDims` points. Nothing is evaluated here. Throws
+  /// inr::Error when the model contradicts itself or the extent lies outside the grid.
+  static vtkSmartPointer<vtkDataArray> Create(inr::ModelPointer model, const int presentedDims[3],
+                                              const int extent[6]);
+
+  virtual const inr::ModelPointer& GetModel() const = 0;
+
+  /// Points per axis of the whole presented grid, whatever part of it this array holds.
+  virtual void GetPresentedDimensions(int dims[3]) const = 0;
+
+  /// Values computed so far, over all arrays that share this one's cache.
+  virtual vtkIdType GetNumberOfEvaluations() const = 0;
+
+  vtkINRDataArray(const vtkINRDataArray&) = delete;
+  vtkINRDataArray& operator=(const vtkINRDataArray&) = delete;
+
+protected:
+  vtkINRDataArray() = default;
+  virtual ~vtkINRDataArray() = default;
+};
+
+#endif

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkINRReader.h"
+
+#include "Core/Error.h"
+#include "ModelSource.h"
+#include "PresentedGrid.h"
+#include "Scalars.h"
+#include "vtkINRDataArray.h"
+
+#include <vtkDoubleArray.h>
+#include <vtkExtentTranslator.h>
+#include <vtkFieldData.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTypeInt64Array.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <string>
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+vtkStandardNewMacro(vtkINRReader);
+
+class vtkINRReader::Internals
+{
+public:
+  ModelSource Source;
+  PresentedGrid Grid;
+  bool Failed = false; ///< the header was not to be had, and the user has been told
+};
+
+namespace {
+
+constexpr int EmptyExtent[6] = {0, -1, 0, -1, 0, -1};
+
+void WholeExtent(const glm::ivec3& dims, int extent[6])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    extent[2 * axis] = 0;
+    extent[2 * axis + 1] = dims[axis] - 1;
+  }
+}
+
+/// The part of the requested extent that this process is to produce. The pipeline would do it too,
+/// but for ghost levels it then makes a ghost array as large as the grid.
+void RequestedExtent(vtkInformation* outInfo, int extent[6])
+{
+  int requested[6];
+  outInfo->Get(Pipeline::UPDATE_EXTENT(), requested);
+  const int pieces = outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  if (pieces <= 1) {
+    std::copy_n(requested, 6, extent);
+    return;
+  }
+  vtkNew<vtkExtentTranslator> translator;
+  translator->PieceToExtentThreadSafe(outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces,
+                                      outInfo->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()),
+                                      requested, extent, vtkExtentTranslator::BLOCK_MODE, 0);
+}
+
+bool IsEmpty(const int extent[6])
+{
+  return extent[1] < extent[0] || extent[3] < extent[2] || extent[5] < extent[4];
+}
+
+/// Row by row, as VTK keeps it; glm's matrices are columns.
+void CopyDirection(const glm::dmat3& direction, double elements[9])
+{
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      elements[3 * row + column] = direction[column][row];
+    }
+  }
+}
+
+template <class Array, class Value>
+void AddTuple(vtkFieldData* fields, const char* name, const Value* values, int components)
+{
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(1);
+  for (int k = 0; k < components; ++k) {
+    array->SetValue(k, values[k]);
+  }
+  fields->AddArray(array);
+}
+
+void AddKnown(vtkFieldData* fields, const char* name, double value)
+{
+  if (!std::isnan(value)) {
+    AddTuple<vtkDoubleArray>(fields, name, &value, 1);
+  }
+}
+
+} // namespace
+
+vtkINRReader::vtkINRReader() : Internal(std::make_unique<Internals>())
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+vtkINRReader::~vtkINRReader()
+{
+  this->SetFileName(nullptr);
+  this->SetArrayName(nullptr);
+}
+
+int vtkINRReader::CanReadFile(const char* fileName)
+{
+  return fileName && inr::IsModelFile(fileName) ? 1 : 0;
+}
+
+int vtkINRReader::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                     vtkInformationVector* outputVector)
+{
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  outInfo->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  this->Internal->Failed = true;
+  try {
+    this->ReadInformation(outInfo);
+    this->Internal->Failed = false;
+  } catch (const std::exception& error) { // inr::Error, or no memory
+    outInfo->Set(Pipeline::WHOLE_EXTENT(), EmptyExtent, 6);
+    vtkErrorMacro("Cannot open an implicit neural representation: " << error.what());
+  }
+  return 1; // a failed request would add the pipeline's own error to ours
+}
+
+void vtkINRReader::ReadInformation(vtkInformation* outInfo)
+{
+  if (!this->FileName || !*this->FileName) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
+  }
+  inr::ModelOverrides overrides;
+  if (this->Dimensions[0] != 0 || this->Dimensions[1] != 0 || this->Dimensions[2] != 0) {
+    overrides.dims = glm::i64vec3(this->Dimensions[0], this->Dimensions[1], this->Dimensions[2]);
+  }
+  if (this->DataRange[0] != this->DataRange[1]) {
+    overrides.dataRange = glm::dvec2(this->DataRange[0], this->DataRange[1]);
+  }
+  this->Internal->Source.Select(this->FileName, overrides);
+  const inr::VolumeInfo& volume = this->Internal->Source.Header().volume;
+  this->Internal->Grid = PresentGrid(volume, this->MaximumGridPoints);
+  this->Describe();
+
+  int extent[6];
+  WholeExtent(this->Internal->Grid.dims, extent);
+  double direction[9];
+  CopyDirection(volume.direction, direction);
+  outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
+  outInfo->Set(vtkDataObject::SPACING(), &this->Internal->Grid.spacing.x, 3);
+  outInfo->Set(vtkDataObject::ORIGIN(), &volume.origin.x, 3);
+  outInfo->Set(vtkDataObject::DIRECTION(), direction, 9);
+  vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VtkTypeOf(volume.type), 1);
+}
+
+void vtkINRReader::Describe()
+{
+  const inr::Model& header = this->Internal->Source.Header();
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  for (int axis = 0; axis < 3; ++axis) {
+    this->NativeDimensions[axis] = header.volume.dims[axis];
+    this->NativeSpacing[axis] = header.volume.spacing[axis];
+  }
+  this->PSNR = header.quality ? header.quality->psnr : unknown;
+  this->SSIM = header.quality ? header.quality->ssim : unknown;
+  this->MaximumError = header.quality ? header.quality->maxError : unknown;
+
+  const glm::dvec3 dims(header.volume.dims);
+  this->Ratio = dims.x * dims.y * dims.z *
+                static_cast<double>(inr::ScalarSize(header.volume.type)) /
+                static_cast<double>(this->Internal->Source.FileSize());
+}
+
+int vtkINRReader::RequestData(vtkInformation*, vtkInformationVector**,
+                              vtkInformationVector* outputVector)
+{
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  if (this->Internal->Failed) {
+    vtkImageData::GetData(outInfo)->Initialize();
+    return 1;
+  }
+  try {
+    this->ReadData(outInfo);
+  } catch (const std::exception& error) {
+    vtkImageData::GetData(outInfo)->Initialize();
+    vtkErrorMacro("Cannot open an implicit neural representation: " << error.what());
+  }
+  return 1;
+}
+
+void vtkINRReader::ReadData(vtkInformation* outInfo)
+{
+  vtkImageData* output = vtkImageData::GetData(outInfo);
+  output->Initialize();
+  int extent[6];
+  RequestedExtent(outInfo, extent);
+  if (IsEmpty(extent)) { // more processes than cells
+    return;
+  }
+
+  const inr::ModelPointer& model = this->Internal->Source.Model();
+  auto array = vtkINRDataArray::Create(model, &this->Internal->Grid.dims.x, extent);
+  if (this->ArrayName && *this->ArrayName) {
+    array->SetName(this->ArrayName);
+  }
+  double direction[9];
+  CopyDirection(model->volume.direction, direction);
+  output->SetExtent(extent);
+  output->SetOrigin(&model->volume.origin.x);
+  output->SetSpacing(&this->Internal->Grid.spacing.x);
+  output->SetDirectionMatrix(direction);
+  output->GetPointData()->SetScalars(array);
+  this->AddFieldData(output);
+}
+
+void vtkINRReader::AddFieldData(vtkDataObject* output)
+{
+  vtkFieldData* fields = output->GetFieldData();
+  AddTuple<vtkTypeInt64Array>(fields, "INRNativeDimensions", this->NativeDimensions, 3);
+  AddTuple<vtkDoubleArray>(fields, "INRNativeSpacing", this->NativeSpacing, 3);
+  AddKnown(fields, "INRRatio", this->Ratio);
+  AddKnown(fields, "INRPSNR", this->PSNR);
+  AddKnown(fields, "INRSSIM", this->SSIM);
+  AddKnown(fields, "INRMaximumError", this->MaximumError);
+}
+
+void vtkINRReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
+     << indent << "ArrayName: " << (this->ArrayName ? this->ArrayName : "(as in the file)") << "\n"
+     << indent << "MaximumGridPoints: " << this->MaximumGridPoints << "\n"
+     << indent << "DataRange: " << this->DataRange[0] << " " << this->DataRange[1] << "\n"
+     << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
+     << this->Dimensions[2] << "\n";
+}

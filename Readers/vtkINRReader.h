@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkINRReader
+ * @brief opens an implicit neural representation as virtual image data
+ *
+ * Reads .inr files and the *_params.json files of instantvnr and cINR. The output has the point
+ * bounds of the original volume and one point array, a vtkINRDataArray, whose values are computed
+ * when somebody asks for them. The native grid may be far too large for stock filters, so the grid
+ * presented to them has at most MaximumGridPoints points; vtkINRVolumeMapper always shows the
+ * native resolution, and vtkINRDecode computes native voxels.
+ *
+ * The output's field data tells about the volume behind the grid: INRNativeDimensions,
+ * INRNativeSpacing, INRRatio and, where the file has them, INRPSNR (dB), INRSSIM, INRMaximumError.
+ *
+ * A file that cannot be read gives one error and an empty output; mend the file, call Modified(),
+ * and the reader goes on.
+ */
+#ifndef vtkINRReader_h
+#define vtkINRReader_h
+
+#include "vtkINRReadersModule.h" // for export macro
+
+#include <vtkImageAlgorithm.h>
+
+#include <memory> // for Internals
+
+class VTKINRREADERS_EXPORT vtkINRReader : public vtkImageAlgorithm
+{
+public:
+  static vtkINRReader* New();
+  vtkTypeMacro(vtkINRReader, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// The model file.
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  /// 1 if the file's content is a model file, whatever its name; INRIA's images, which are called
+  /// .inr too, are not.
+  virtual int CanReadFile(VTK_FILEPATH const char* fileName);
+
+  ///@{
+  /// Name of the point array; empty (default) = the name in the file.
+  vtkSetStringMacro(ArrayName);
+  vtkGetStringMacro(ArrayName);
+  ///@}
+
+  ///@{
+  /// The output is the finest grid of at most this many points that has exactly the native point
+  /// bounds. Default 2^24; 0 = the native grid.
+  vtkSetClampMacro(MaximumGridPoints, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(MaximumGridPoints, vtkIdType);
+  ///@}
+
+  ///@{
+  /// Value range for files that lack it (0 and 1 of the network's output stand for these). Equal
+  /// values (default 0, 0) = as in the file.
+  vtkSetVector2Macro(DataRange, double);
+  vtkGetVector2Macro(DataRange, double);
+  ///@}
+
+  ///@{
+  /// Voxels per axis for files that lack or misstate them; 0, 0, 0 (default) = as in the file.
+  vtkSetVector3Macro(Dimensions, int);
+  vtkGetVector3Macro(Dimensions, int);
+  ///@}
+
+  ///@{
+  /// What the file says, valid after UpdateInformation: voxels per axis and their distance in the
+  /// original volume.
+  vtkGetVector3Macro(NativeDimensions, vtkIdType);
+  vtkGetVector3Macro(NativeSpacing, double);
+  ///@}
+
+  ///@{
+  /// Quality measured when the file was written, against the original data: PSNR in dB (infinite
+  /// for an exact file), SSIM, largest error in data units. NaN where the file does not say.
+  vtkGetMacro(PSNR, double);
+  vtkGetMacro(SSIM, double);
+  vtkGetMacro(MaximumError, double);
+  ///@}
+
+  /// Bytes of the original volume over bytes of the file.
+  vtkGetMacro(Ratio, double);
+
+protected:
+  vtkINRReader();
+  ~vtkINRReader() override;
+
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkINRReader(const vtkINRReader&) = delete;
+  void operator=(const vtkINRReader&) = delete;
+
+  class Internals;
+
+  void ReadInformation(vtkInformation* outInfo);
+  void ReadData(vtkInformation* outInfo);
+  void Describe();
+  void AddFieldData(vtkDataObject* output);
+
+  char* FileName = nullptr;
+  char* ArrayName = nullptr;
+  vtkIdType MaximumGridPoints = vtkIdType{1} << 24;
+  double DataRange[2] = {0, 0};
+  int Dimensions[3] = {0, 0, 0};
+
+  vtkIdType NativeDimensions[3] = {0, 0, 0};
+  double NativeSpacing[3] = {1, 1, 1};
+  double PSNR = 0;
+  double SSIM = 0;
+  double MaximumError = 0;
+  double Ratio = 0;
+
+  std::unique_ptr<Internals> Internal;
+};
+
+#endif

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkINRTypedArray
+ * @brief a read-only array of one component whose values an INR computes on demand
+ *
+ * Ranges come from the file and evaluate nothing. Copies of the same type share decoder and cache.
+ * NewInstance gives the ordinary array of the type, so that filters write where they can.
+ */
+#ifndef vtkINRTypedArray_h
+#define vtkINRTypedArray_h
+
+#include "BrickCache.h"
+#include "VTKCompat.h"
+#include "vtkINRDataArray.h"
+
+#include <vtkGenericDataArray.h>
+#include <vtkObjectFactory.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+template <class T>
+class vtkINRTypedArray : public vtkGenericDataArray<vtkINRTypedArray<T>, T>, public vtkINRDataArray
+{
+  using Self = vtkINRTypedArray<T>;
+  using GenericArray = vtkGenericDataArray<Self, T>;
+
+public:
+  vtkAbstractTypeMacroWithNewInstanceType(Self, GenericArray, vtkDataArray, "vtkINRDataArray");
+  vtkAOSArrayNewInstanceMacro(Self);
+  static Self* New() { VTK_STANDARD_NEW_BODY(Self); }
+  using typename GenericArray::ValueType;
+
+  /// GetVoidPointer hands out a decoded copy of at most this many values.
+  static constexpr vtkIdType MaximumCopiedValues = vtkIdType{1} << 28;
+
+  void Initialize(std::shared_ptr<const GridDecoder> decoder, const GridPart& part)
+  {
+    this->Values = std::make_shared<Shared>(std::move(decoder), part);
+    this->Adopt();
+  }
+
+  const inr::ModelPointer& GetModel() const override { return this->Decoder().GetModel(); }
+  void GetPresentedDimensions(int dims[3]) const override
+  {
+    for (int axis = 0; axis < 3; ++axis) {
+      dims[axis] = this->Decoder().GetPresentedDimensions()[axis];
+    }
+  }
+  vtkIdType GetNumberOfEvaluations() const override
+  {
+    return this->Decoder().GetNumberOfEvaluations();
+  }
+
+  ValueType GetValue(vtkIdType index) const
+  {
+    const T* copy = this->Values->Copy.load(std::memory_order_acquire);
+    return copy ? copy[index] : this->Values->Cache.Get(index);
+  }
+  void GetTypedTuple(vtkIdType index, ValueType* tuple) const { *tuple = this->GetValue(index); }
+  ValueType GetTypedComponent(vtkIdType index, int) const { return this->GetValue(index); }
+
+  void SetValue(vtkIdType, ValueType) { this->RefuseToWrite(); }
+  void SetTypedTuple(vtkIdType, const ValueType*) { this->RefuseToWrite(); }
+  void SetTypedComponent(vtkIdType, int, ValueType) { this->RefuseToWrite(); }
+
+  /// A decoded copy of all values, kept for the next call; null, with an error, for too many.
+  void* GetVoidPointer(vtkIdType index) override
+  {
+    const T* copy = this->Values->Copy.load(std::memory_order_acquire);
+    copy = copy ? copy : this->MakeCopy();
+    return copy ? const_cast<T*>(copy) + index : nullptr;
+  }
+  bool HasStandardMemoryLayout() const override { return false; }
+
+  /// KiB that the values take now, not what all of them would.
+  unsigned long GetActualMemorySize() const override
+  {
+    const std::size_t bytes =
+        this->Values ? this->Values->Cache.MemorySize() + this->Values->CopyBytes() : 0;
+    return static_cast<unsigned long>(bytes / 1024 + 1);
+  }
+
+  void ShallowCopy(vtkDataArray* other) override { this->Share(other); }
+  void DeepCopy(vtkDataArray* other) override { this->Share(other); }
+  void DeepCopy(vtkAbstractArray* other) override { this->Share(other); }
+
+protected:
+  vtkINRTypedArray() = default;
+  ~vtkINRTypedArray() override = default;
+
+  bool AllocateTuples(vtkIdType) { return this->RefuseToWrite(); }
+  bool ReallocateTuples(vtkIdType) { return this->RefuseToWrite(); }
+
+  bool ComputeScalarRange(double* range) override { return this->RangeFromFile(range); }
+  bool ComputeVectorRange(double range[2]) override { return this->RangeFromFile(range); }
+  bool ComputeFiniteScalarRange(double* range) override { return this->RangeFromFile(range); }
+  bool ComputeFiniteVectorRange(double range[2]) override { return this->RangeFromFile(range); }
+#ifdef INR_VTK_GHOST_RANGES
+  bool ComputeScalarRange(double* range, const unsigned char*, unsigned char) override
+  {
+    return this->RangeFromFile(range);
+  }
+  bool ComputeVectorRange(double range[2], const unsigned char*, unsigned char) override
+  {
+    return this->RangeFromFile(range);
+  }
+  bool ComputeFiniteScalarRange(double* range, const unsigned char*, unsigned char) override
+  {
+    return this->RangeFromFile(range);
+  }
+  bool ComputeFiniteVectorRange(double range[2], const unsigned char*, unsigned char) override
+  {
+    return this->RangeFromFile(range);
+  }
+#endif
+
+private:
+  friend class vtkGenericDataArray<vtkINRTypedArray<T>, T>;
+  vtkINRTypedArray(const vtkINRTypedArray&) = delete;
+  void operator=(const vtkINRTypedArray&) = delete;
+
+  /// What copies of one array share.
+  struct Shared
+  {
+    Shared(std::shared_ptr<const GridDecoder> decoder, const GridPart& part)
+        : Cache(std::move(decoder), part)
+    {}
+    std::size_t CopyBytes() const
+    {
+      return this->Copy.load(std::memory_order_acquire) ? this->CopyStore.size() * sizeof(T) : 0;
+    }
+
+    BrickCache<T> Cache;
+    std::mutex CopyMutex;
+    std::vector<T> CopyStore;
+    std::atomic<const T*> Copy{nullptr};
+  };
+
+  const GridDecoder& Decoder() const { return this->Values->Cache.GetDecoder(); }
+
+  void Adopt()
+  {
+    const glm::i64vec3 size = this->Values->Cache.GetPart().size;
+    this->NumberOfComponents = 1;
+    this->Size = size.x * size.y * size.z;
+    this->MaxId = this->Size - 1;
+    this->DataChanged();
+  }
+
+  void Share(vtkAbstractArray* other)
+  {
+    auto* same = dynamic_cast<Self*>(other);
+    if (!same) {
+      this->RefuseToWrite();
+      return;
+    }
+    if (same != this) {
+      this->Values = same->Values;
+      this->SetName(same->GetName());
+      this->Adopt();
+    }
+  }
+
+  bool RangeFromFile(double* range) const
+  {
+    range[0] = this->GetModel()->volume.low;
+    range[1] = this->GetModel()->volume.high;
+    return this->MaxId >= 0;
+  }
+
+  const T* MakeCopy();
+
+  bool RefuseToWrite()
+  {
+    vtkErrorMacro("The values of an implicit neural representation cannot be changed; use "
+                  "INRDecode to get ordinary ones.");
+    return false;
+  }
+
+  std::shared_ptr<Shared> Values;
+};
+
+template <class T> const T* vtkINRTypedArray<T>::MakeCopy()
+{
+  Shared& shared = *this->Values;
+  const std::lock_guard<std::mutex> lock(shared.CopyMutex);
+  if (!shared.Copy) {
+    if (this->Size > MaximumCopiedValues) {
+      vtkErrorMacro("A filter asks for a copy of all "
+                    << this->Size
+                    << " values of an implicit neural representation, more than the limit of "
+                    << MaximumCopiedValues
+                    << ". Lower MaximumGridPoints of the reader, or use "
+                       "INRDecode for a part or a coarser level.");
+      return nullptr;
+    }
+    try {
+      shared.CopyStore.resize(static_cast<std::size_t>(this->Size));
+      shared.Cache.DecodeAll(shared.CopyStore.data());
+    } catch (const std::bad_alloc&) {
+      vtkErrorMacro("Not enough memory for a copy of " << this->Size << " values.");
+      return nullptr;
+    }
+    shared.Copy.store(shared.CopyStore.data(), std::memory_order_release);
+  }
+  return shared.Copy;
+}
+
+#endif
