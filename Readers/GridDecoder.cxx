@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GridDecoder.h"
 
+#include <algorithm>
+
 GridDecoder::GridDecoder(inr::ModelPointer model, const glm::ivec3& presentedDims)
     : Model(std::move(model)), Dims(presentedDims), Low(this->Model->volume.low),
       Extent(this->Model->volume.high - this->Model->volume.low),
@@ -22,5 +24,6 @@ void GridDecoder::Decode(const glm::i64vec3& first, const glm::i64vec3& size, fl
   lattice.step = this->Step;
   lattice.points = size;
   inr::EvaluateLattice(*this->Evaluator, this->Arena, lattice, values);
+  std::transform(values, values + size.x * size.y * size.z, values, inr::NormalisedOutput);
   this->Evaluations += size.x * size.y * size.z;
 }

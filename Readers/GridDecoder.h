@@ -24,7 +24,7 @@ public:
   const glm::ivec3& GetPresentedDimensions() const { return this->Dims; }
   std::int64_t GetNumberOfEvaluations() const { return this->Evaluations; }
 
-  /// Normalised values at the points [first, first + size), x fastest.
+  /// Normalised values, in [0, 1], at the points [first, first + size), x fastest.
   void Decode(const glm::i64vec3& first, const glm::i64vec3& size, float* values) const;
 
   /// Normalised to data values.

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "StopSignals.h"
+
+#include <atomic>
+#include <csignal>
+
+namespace {
+
+// Lock-free, so that a signal handler may write it.
+std::atomic<int> ReceivedSignal{0};
+
+void Remember(int signal) { ReceivedSignal = signal; }
+
+} // namespace
+
+struct StopSignals::Handlers
+{
+  struct sigaction Interrupt;
+  struct sigaction Terminate;
+};
+
+StopSignals::StopSignals() : Previous(new Handlers)
+{
+  ReceivedSignal = 0;
+  struct sigaction action = {};
+  action.sa_handler = Remember;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, &this->Previous->Interrupt);
+  sigaction(SIGTERM, &action, &this->Previous->Terminate);
+}
+
+StopSignals::~StopSignals()
+{
+  sigaction(SIGINT, &this->Previous->Interrupt, nullptr);
+  sigaction(SIGTERM, &this->Previous->Terminate, nullptr);
+  delete this->Previous;
+  if (const int signal = ReceivedSignal.exchange(0)) {
+    std::raise(signal);
+  }
+}
+
+bool StopSignals::Received() const { return ReceivedSignal != 0; }

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TrainingInput.h"
+
+#include "Core/Error.h"
+
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+namespace {
+
+template <class T> inr::ScalarType IntegerType()
+{
+  constexpr bool isSigned = std::numeric_limits<T>::is_signed;
+  switch (sizeof(T)) {
+  case 1:
+    return isSigned ? inr::ScalarType::Int8 : inr::ScalarType::UInt8;
+  case 2:
+    return isSigned ? inr::ScalarType::Int16 : inr::ScalarType::UInt16;
+  case 4:
+    return isSigned ? inr::ScalarType::Int32 : inr::ScalarType::UInt32;
+  default:
+    return isSigned ? inr::ScalarType::Int64 : inr::ScalarType::UInt64;
+  }
+}
+
+template <class T> inr::ScalarType TypeOf(const T*)
+{
+  if constexpr (std::is_floating_point_v<T>) {
+    return sizeof(T) == 4 ? inr::ScalarType::Float32 : inr::ScalarType::Float64;
+  } else {
+    return IntegerType<T>();
+  }
+}
+
+std::optional<inr::ScalarType> ScalarTypeOf(int vtkType)
+{
+  switch (vtkType) {
+    vtkTemplateMacro(return TypeOf(static_cast<const VTK_TT*>(nullptr)));
+  default:
+    return std::nullopt;
+  }
+}
+
+void Require(bool condition, const std::string& message)
+{
+  if (!condition) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument, message);
+  }
+}
+
+vtkSmartPointer<vtkDataArray> Contiguous(vtkDataArray* array)
+{
+  if (array->HasStandardMemoryLayout()) {
+    return array;
+  }
+  auto copy =
+      vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
+  copy->DeepCopy(array);
+  return copy;
+}
+
+} // namespace
+
+TrainingInput MakeTrainingInput(vtkImageData* image, vtkDataArray* array)
+{
+  const std::string name = array->GetName() ? array->GetName() : "Scalars";
+  int dims[3];
+  image->GetDimensions(dims);
+  TrainingInput input;
+  input.info.dims = glm::i64vec3(dims[0], dims[1], dims[2]);
+  const vtkIdType points = image->GetNumberOfPoints();
+  Require(points > 0, "the image has no points");
+  Require(array->GetNumberOfComponents() == 1,
+          "array '" + name + "' has " + std::to_string(array->GetNumberOfComponents()) +
+              " components; take one of them, or the magnitude, with a Calculator first");
+  Require(array->GetNumberOfTuples() == points,
+          "array '" + name + "' has " + std::to_string(array->GetNumberOfTuples()) +
+              " values for " + std::to_string(points) + " points");
+  const std::optional<inr::ScalarType> type = ScalarTypeOf(array->GetDataType());
+  Require(type.has_value(),
+          "array '" + name + "' holds " + array->GetDataTypeAsString() + ", not numbers");
+
+  int extent[6];
+  image->GetExtent(extent);
+  image->TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], &input.info.origin.x);
+  image->GetSpacing(&input.info.spacing.x);
+  const double* direction = image->GetDirectionMatrix()->GetData(); // rows; glm keeps columns
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      input.info.direction[column][row] = direction[3 * row + column];
+    }
+  }
+  input.info.arrayName = name;
+  input.info.type = *type;
+  input.values = Contiguous(array);
+  input.data.values = input.values->GetVoidPointer(0);
+  input.data.type = *type;
+  input.data.dims = input.info.dims;
+  return input;
+}

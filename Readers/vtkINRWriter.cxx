@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkINRWriter.h"
+
+#include "Core/AtomicFile.h"
+#include "Core/Error.h"
+#include "Core/Model/DescriptionJson.h"
+#include "Core/Model/ModelFile.h"
+#include "Core/Training/Trainer.h"
+#include "StopSignals.h"
+#include "TrainingInput.h"
+#include "VTKCompat.h"
+
+#include <vtkAlgorithm.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkObjectFactory.h>
+
+#include <exception>
+#include <string>
+
+vtkStandardNewMacro(vtkINRWriter);
+
+vtkINRWriter::~vtkINRWriter()
+{
+  this->SetFileName(nullptr);
+  this->SetModelConfig(nullptr);
+}
+
+int vtkINRWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  // Anything may be connected, so that what is not image data gets our message, not the pipeline's.
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
+  return 1;
+}
+
+void vtkINRWriter::WriteData()
+{
+  try {
+    if (!this->FileName || !*this->FileName) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
+    }
+    const TrainingInput input = this->FindInput();
+    // Learn that the target is not writable now, not after minutes of training.
+    inr::AtomicFile(std::string(this->FileName));
+    this->Train(input);
+  } catch (const std::exception& error) { // inr::Error, or no memory
+    this->SetErrorCode(1);
+    vtkErrorMacro("Cannot save '" << (this->FileName ? this->FileName : "")
+                                  << "' as an implicit neural representation: " << error.what());
+  }
+}
+
+TrainingInput vtkINRWriter::FindInput()
+{
+  vtkDataObject* data = this->GetInput();
+  auto* image = vtkImageData::SafeDownCast(data);
+  if (!image) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument,
+                     std::string("the data set is a ") + (data ? data->GetClassName() : "null") +
+                         ", not image data; resample it with ResampleToImage first");
+  }
+  int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  vtkAbstractArray* array = this->GetInputAbstractArrayToProcess(0, image, association);
+  if (!array) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument,
+                     "the image has no such point array, or none is chosen");
+  }
+  if (association != vtkDataObject::FIELD_ASSOCIATION_POINTS) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument,
+                     std::string("array '") + array->GetName() +
+                         "' is cell data; make it point data with CellDataToPointData first");
+  }
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  if (!numbers) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument, std::string("array '") + array->GetName() +
+                                                          "' is a " + array->GetClassName() +
+                                                          ", which does not hold numbers");
+  }
+  return MakeTrainingInput(image, numbers);
+}
+
+bool vtkINRWriter::ShouldStop()
+{
+#ifdef INR_VTK_CHECK_ABORT
+  return this->CheckAbort() || this->GetAbortExecute() != 0;
+#else
+  return this->GetAbortExecute() != 0;
+#endif
+}
+
+void vtkINRWriter::Train(const TrainingInput& input)
+{
+  inr::TrainingOptions options;
+  options.targetPsnr = this->TargetPSNR;
+  options.targetRatio = this->TargetRatio;
+  options.maximumSteps = static_cast<std::uint64_t>(this->MaximumSteps);
+  options.timeLimit = this->TimeLimit;
+  options.seed = static_cast<std::uint64_t>(this->Seed);
+  options.macroCellSize = this->MacroCellSize;
+  if (this->ModelConfig && *this->ModelConfig) {
+    options.description = inr::ParseDescription(std::string(this->ModelConfig));
+  }
+
+  const StopSignals signals;
+  const auto observe = [&](const inr::TrainingProgress& progress) {
+    const bool training = progress.phase == inr::TrainingPhase::Training;
+    this->SetProgressText(training ? "Training INR" : "Measuring INR quality");
+    this->UpdateProgress(progress.fraction);
+    return !signals.Received() && !this->ShouldStop();
+  };
+  const inr::ModelPointer model = inr::TrainModel(input.data, input.info, options, observe);
+  inr::WriteModel(*model, this->FileName);
+
+  const auto voxelBytes = static_cast<double>(input.data.voxels()) *
+                          static_cast<double>(inr::ScalarSize(input.data.type));
+  this->PSNR = model->quality->psnr;
+  this->SSIM = model->quality->ssim;
+  this->MaximumError = model->quality->maxError;
+  this->Ratio = voxelBytes / static_cast<double>(inr::ModelFileSize(*model));
+  this->Steps = static_cast<vtkIdType>(model->training->steps);
+  this->TrainingSeconds = model->training->seconds;
+  this->UpdateProgress(1.0);
+  if (model->training->nonFinite > 0) {
+    vtkWarningMacro("Array '" << input.info.arrayName << "' has " << model->training->nonFinite
+                              << " NaN or infinite values; they were left out of the training.");
+  }
+}
+
+void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
+     << indent << "TargetPSNR: " << this->TargetPSNR << "\n"
+     << indent << "TargetRatio: " << this->TargetRatio << "\n"
+     << indent << "MaximumSteps: " << this->MaximumSteps << "\n"
+     << indent << "TimeLimit: " << this->TimeLimit << "\n"
+     << indent << "MacroCellSize: " << this->MacroCellSize << "\n"
+     << indent << "Seed: " << this->Seed << "\n"
+     << indent << "ModelConfig: " << (this->ModelConfig ? this->ModelConfig : "(chosen)") << "\n";
+}

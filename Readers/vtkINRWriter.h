@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkINRWriter
+ * @brief trains an implicit neural representation of image data and saves it as a model file
+ *
+ * The point array to save is chosen with SetInputArrayToProcess (default: the active scalars); it
+ * has one component of any number type. Training ends when TargetPSNR is reached, after
+ * MaximumSteps or after TimeLimit, whichever comes first. With the same seed, steps and kernel
+ * family the result is the same on any number of threads.
+ *
+ * NaNs and infinities are left out: they carry no gradient, count neither in the range nor in the
+ * quality, and are reported with a warning; where they were, the file holds a smooth continuation.
+ *
+ * Progress events tell the truth. AbortExecute, SIGINT and SIGTERM stop the training; then, as
+ * after any error, no file is left behind.
+ */
+#ifndef vtkINRWriter_h
+#define vtkINRWriter_h
+
+#include "vtkINRReadersModule.h" // for export macro
+
+#include <vtkWriter.h>
+
+struct TrainingInput;
+
+class VTKINRREADERS_EXPORT vtkINRWriter : public vtkWriter
+{
+public:
+  static vtkINRWriter* New();
+  vtkTypeMacro(vtkINRWriter, vtkWriter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// The model file to write.
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  ///@{
+  /// Stop at this peak signal-to-noise ratio in dB; 0 (default) = no target.
+  vtkSetClampMacro(TargetPSNR, double, 0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TargetPSNR, double);
+  ///@}
+
+  ///@{
+  /// Choose a model whose file is about this many times smaller than the data; 0 (default) = by the
+  /// volume's size.
+  vtkSetClampMacro(TargetRatio, double, 0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TargetRatio, double);
+  ///@}
+
+  ///@{
+  /// Stop after so many steps of 65,536 samples; 0 (default) = no limit.
+  vtkSetClampMacro(MaximumSteps, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(MaximumSteps, vtkIdType);
+  ///@}
+
+  ///@{
+  /// Stop after so many seconds; 0 = no limit. Default 300.
+  vtkSetClampMacro(TimeLimit, double, 0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimeLimit, double);
+  ///@}
+
+  ///@{
+  /// Edge of the macro-cells in voxels; 0 (default) = the smallest power of two from 16 that gives
+  /// at most 2^22 cells.
+  vtkSetClampMacro(MacroCellSize, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MacroCellSize, int);
+  ///@}
+
+  ///@{
+  /// Start of the random numbers. Default 1.
+  vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /// The model as tiny-cuda-nn configuration (JSON text with "encoding" and "network"); overrides
+  /// TargetRatio. Empty (default) = chosen.
+  vtkSetStringMacro(ModelConfig);
+  vtkGetStringMacro(ModelConfig);
+  ///@}
+
+  ///@{
+  /// What the last Write achieved: quality against the data (PSNR in dB, infinite when exact),
+  /// bytes of the data over bytes of the file, steps and seconds of training. 0 before.
+  vtkGetMacro(PSNR, double);
+  vtkGetMacro(SSIM, double);
+  vtkGetMacro(MaximumError, double);
+  vtkGetMacro(Ratio, double);
+  vtkGetMacro(Steps, vtkIdType);
+  vtkGetMacro(TrainingSeconds, double);
+  ///@}
+
+protected:
+  vtkINRWriter() = default;
+  ~vtkINRWriter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  void WriteData() override;
+
+private:
+  vtkINRWriter(const vtkINRWriter&) = delete;
+  void operator=(const vtkINRWriter&) = delete;
+
+  TrainingInput FindInput();
+  void Train(const TrainingInput& input);
+  bool ShouldStop();
+
+  char* FileName = nullptr;
+  double TargetPSNR = 0;
+  double TargetRatio = 0;
+  vtkIdType MaximumSteps = 0;
+  double TimeLimit = 300;
+  int MacroCellSize = 0;
+  int Seed = 1;
+  char* ModelConfig = nullptr;
+
+  double PSNR = 0;
+  double SSIM = 0;
+  double MaximumError = 0;
+  double Ratio = 0;
+  vtkIdType Steps = 0;
+  double TrainingSeconds = 0;
+};
+
+#endif
