@@ -8,8 +8,9 @@
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
+#include "vtkSMBoundsDomain.h"
+#include "vtkSMDoubleVectorProperty.h"
 #include "vtkSMPVRepresentationProxy.h"
-#include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
@@ -56,35 +57,48 @@ void ColourByData(vtkSMPVRepresentationProxy* representation, const char* array)
   representation->RescaleTransferFunctionToDataRange(hasRange, false);
 }
 
-/// Native points of an INR; of other data, their own.
-double NativePoints(vtkPVDataInformation* data)
+/// Cells of the native grid of an INR; of other data, their own.
+double NativeCells(vtkPVDataInformation* data)
 {
-  auto* native = data->GetFieldDataInformation()->GetArrayInformation("NativeDimensions");
+  auto* native = data->GetFieldDataInformation()->GetArrayInformation("INRNativeDimensions");
   if (!native || native->GetNumberOfComponents() != 3) {
-    return static_cast<double>(data->GetNumberOfPoints());
+    return static_cast<double>(data->GetNumberOfCells());
   }
-  double points = 1;
+  double cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    points *= native->GetComponentRange(axis)[0];
+    cells *= std::max(native->GetComponentRange(axis)[0] - 1, 1.0);
   }
-  return points;
+  return cells;
 }
 
-/// ParaView's default is about the edge of a cell, which makes a volume of 4096^3 look solid and
-/// would follow MaximumGridPoints here. This one is the edge of a cell of the native grid, but of
-/// no finer grid than 256^3.
+/// ParaView's default is about the diagonal of a cell, which makes a volume of 4096^3 look solid
+/// and would follow MaximumGridPoints here. This one is the diagonal of a cell of the native grid,
+/// or of a grid of 256^3 points where that is coarser.
 double DefaultUnitDistance(vtkPVDataInformation* data)
 {
   const double* bounds = data->GetBounds();
   const double diagonal =
       std::hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]);
-  return diagonal / std::cbrt(std::clamp(NativePoints(data), 1.0, 256.0 * 256.0 * 256.0));
+  return diagonal / std::cbrt(std::clamp(NativeCells(data), 1.0, 255.0 * 255.0 * 255.0));
+}
+
+/// Whether the property still has the value that its domain gives to new proxies.
+bool IsDomainDefault(vtkSMProperty* property)
+{
+  auto* values = vtkSMDoubleVectorProperty::SafeDownCast(property);
+  auto* domain = values ? values->FindDomain<vtkSMBoundsDomain>() : nullptr;
+  if (!domain) {
+    return false;
+  }
+  domain->SetDefaultValues(values, true);
+  const bool same = values->GetElement(0) == values->GetUncheckedElement(0);
+  values->ClearUncheckedElements();
+  return same;
 }
 
 void SetUnitDistance(vtkSMProxy* representation, vtkPVDataInformation* data)
 {
-  vtkSMProperty* property = representation->GetProperty(UnitDistance);
-  if (property && property->IsValueDefault()) {
+  if (IsDomainDefault(representation->GetProperty(UnitDistance))) {
     vtkSMPropertyHelper(representation, UnitDistance).Set(DefaultUnitDistance(data));
     representation->UpdateVTKObjects();
   }
