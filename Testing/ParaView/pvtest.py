@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the pvpython tests share. Places come from the environment that CMakeLists.txt sets:
+INR_PLUGIN (the plugin's .so), INR_DATA (Testing/Data), INR_BASELINES (Testing/Baselines) and
+INR_OUTPUT (a folder for what a test writes)."""
+import os
+import sys
+
+import numpy as np
+from paraview import simple
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+
+OUTPUT = os.environ["INR_OUTPUT"]
+# Trained by TestSaveData.py, used by the tests that follow it.
+MODEL = os.path.join(OUTPUT, "les_wmag91.inr")
+ARRAY = "wmag"
+
+
+def load_plugin():
+    simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=False, ns=vars(simple))
+    simple._DisableFirstRenderCameraReset()
+
+
+def data_file(name):
+    return os.path.join(os.environ["INR_DATA"], name)
+
+
+def output_file(name):
+    return os.path.join(OUTPUT, name)
+
+
+class Messages:
+    """Collects what VTK and ParaView report while the block runs."""
+
+    def __enter__(self):
+        self.window = vtkStringOutputWindow()
+        self.previous = vtkOutputWindow.GetInstance()
+        vtkOutputWindow.SetInstance(self.window)
+        return self
+
+    def __exit__(self, *unused):
+        self.text = self.window.GetOutput() or ""
+        vtkOutputWindow.SetInstance(self.previous)
+        sys.stdout.write(self.text)
+
+    def errors(self):
+        return self.text.count("ERROR: ")
+
+
+def show_view(size=(300, 300)):
+    """A render view without decoration, white like paper."""
+    view = simple.CreateView("RenderView")
+    view.ViewSize = list(size)
+    view.OrientationAxesVisibility = 0
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    simple.SetActiveView(view)
+    return view
+
+
+def look_at(view):
+    """One slanted camera for all pictures."""
+    view.ResetActiveCameraToPositiveX()
+    view.ResetCamera()
+    camera = view.GetActiveCamera()
+    camera.Azimuth(35)
+    camera.Elevation(25)
+    camera.OrthogonalizeViewUp()
+    view.ResetCamera()
+
+
+def picture(view, name):
+    """Renders, saves `name`.png beside the other outputs and returns RGB in [0, 1], (h, w, 3)."""
+    path = output_file(name + ".png")
+    simple.SaveScreenshot(path, view, ImageResolution=list(view.ViewSize))
+    return read_png(path)
+
+
+def read_png(path):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOImage import vtkPNGReader
+
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    image = reader.GetOutput()
+    width, height, _ = image.GetDimensions()
+    pixels = vtk_to_numpy(image.GetPointData().GetScalars())
+    return pixels.reshape(height, width, -1)[..., :3] / 255.0
+
+
+def psnr(a, b):
+    """dB, peak 1, over the pixels where either picture shows something other than white."""
+    seen = np.any((a < 1) | (b < 1), axis=2)
+    return -10 * np.log10(max(np.mean((a[seen] - b[seen]) ** 2), 1e-12))
+
+
+def box_mean(image, size=7):
+    sums = np.cumsum(np.cumsum(np.pad(image, ((1, 0), (1, 0), (0, 0))), axis=0), axis=1)
+    total = sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]
+    return total / size**2
+
+
+def ssim(a, b):
+    """Mean structural similarity (Wang et al., IEEE TIP 2004), uniform 7x7 window, range 1."""
+    mean_a, mean_b = box_mean(a), box_mean(b)
+    variance_a = box_mean(a * a) - mean_a**2
+    variance_b = box_mean(b * b) - mean_b**2
+    covariance = box_mean(a * b) - mean_a * mean_b
+    c1, c2 = 0.01**2, 0.03**2
+    return np.mean(
+        (2 * mean_a * mean_b + c1)
+        * (2 * covariance + c2)
+        / ((mean_a**2 + mean_b**2 + c1) * (variance_a + variance_b + c2))
+    )
+
+
+def check(condition, *told):
+    if not condition:
+        sys.stderr.write("FAILED: " + " ".join(str(item) for item in told) + "\n")
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(1)  # sys.exit() crashes ParaView 5.11 once it has a window
+
+
+def check_baseline(image, name, floor=0.95):
+    """The picture resembles the committed one. The floor leaves room for other kernels, which train
+    to slightly other parameters, and other versions of Mesa."""
+    path = os.path.join(os.environ["INR_BASELINES"], "ParaView", name + ".png")
+    check(os.path.exists(path), "no baseline", path)
+    baseline = read_png(path)
+    check(baseline.shape == image.shape, "sizes differ", baseline.shape, image.shape)
+    similarity = ssim(image, baseline)
+    print(f"{name}: SSIM with baseline {similarity:.4f}")
+    check(similarity >= floor, name, "has SSIM", similarity, "with its baseline, floor", floor)
