@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Image/Exr.h"
+
+#include "Core/AtomicFile.h"
+#include "Core/Error.h"
+
+#include <Imath/ImathBox.h>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <exception>
+#include <utility>
+
+namespace inr {
+
+namespace {
+
+constexpr const char* ColorChannels[] = {"R", "G", "B", "A"};
+
+/// One channel of `image` as OpenEXR addresses it: EXR's first row is the top one, ours the bottom.
+Imf::Slice SliceOf(Image& image, int channel)
+{
+  const auto pixelStride = static_cast<std::ptrdiff_t>(sizeof(float)) * image.channels;
+  const std::ptrdiff_t rowStride = pixelStride * image.width;
+  auto* bottom = reinterpret_cast<char*>(image.pixels.data() + channel);
+  // The strides are unsigned in the interface and wrap as its own documentation has it.
+  return {Imf::FLOAT, bottom + rowStride * (image.height - 1),
+          static_cast<std::size_t>(pixelStride), static_cast<std::size_t>(-rowStride)};
+}
+
+void CheckShapes(const Image& rgba, const Image& depth)
+{
+  const bool withDepth = !depth.pixels.empty();
+  if (rgba.channels != 4 || rgba.width < 1 || rgba.height < 1 ||
+      (withDepth &&
+       (depth.channels != 1 || depth.width != rgba.width || depth.height != rgba.height))) {
+    throw Error(ErrorCode::InvalidArgument,
+                "an EXR file takes RGBA and, of the same size, one channel of depth");
+  }
+}
+
+void WriteChannels(const std::string& path, Image& rgba, Image& depth)
+{
+  Imf::Header header(rgba.width, rgba.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer buffer;
+  for (int c = 0; c < 4; ++c) {
+    header.channels().insert(ColorChannels[c], Imf::Channel(Imf::FLOAT));
+    buffer.insert(ColorChannels[c], SliceOf(rgba, c));
+  }
+  if (!depth.pixels.empty()) {
+    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    buffer.insert("Z", SliceOf(depth, 0));
+  }
+  Imf::OutputFile file(path.c_str(), header, 1);
+  file.setFrameBuffer(buffer);
+  file.writePixels(rgba.height);
+}
+
+} // namespace
+
+void WriteExr(const std::string& path, const Image& rgba, const Image& depth)
+{
+  CheckShapes(rgba, depth);
+  AtomicFile file(path);
+  try {
+    Image colors = rgba; // OpenEXR's slices are not const
+    Image distances = depth;
+    WriteChannels(file.temporaryPath(), colors, distances);
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::CannotWrite, "cannot write '" + path + "': " + error.what());
+  }
+  file.commit();
+}
+
+Image ReadExr(const std::string& path, Image* depth)
+{
+  try {
+    Imf::InputFile file(path.c_str(), 1);
+    const Imath::Box2i window = file.header().dataWindow();
+    const Imf::ChannelList& channels = file.header().channels();
+    Image rgba(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, 4);
+    Image distances;
+    Imf::FrameBuffer buffer;
+    for (int c = 0; c < 4; ++c) {
+      if (channels.findChannel(ColorChannels[c]) == nullptr) {
+        throw Error(ErrorCode::Malformed, "'" + path + "' has no channel " + ColorChannels[c]);
+      }
+      buffer.insert(ColorChannels[c], SliceOf(rgba, c));
+    }
+    if (channels.findChannel("Z") != nullptr) {
+      distances = Image(rgba.width, rgba.height, 1);
+      buffer.insert("Z", SliceOf(distances, 0));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    if (depth != nullptr) {
+      *depth = std::move(distances);
+    }
+    return rgba;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::CannotRead, "cannot read '" + path + "': " + error.what());
+  }
+}
+
+} // namespace inr
