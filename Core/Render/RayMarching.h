@@ -75,6 +75,14 @@ INR_HOST_DEVICE inline CellVisit VisitCell(const Majorants& majorants,
   return {&majorants.cell(at), exit};
 }
 
+/// Where a field is asked for at a point of a ray: inside a slab of a single voxel, always at it.
+INR_HOST_DEVICE inline glm::vec3 FieldPosition(const MarchSettings& settings,
+                                               const glm::dvec3& index)
+{
+  const glm::dvec3 inside = glm::clamp(index, glm::dvec3(0.0), settings.dims - 1.0);
+  return glm::vec3((inside + 0.5) / settings.dims);
+}
+
 /// How many lattice intervals one sample may stand for: more where little can be seen. The interval
 /// must start on a multiple of its size and end inside the cell.
 INR_HOST_DEVICE inline int StepsAtOnce(const MarchSettings& settings, std::int64_t k,
@@ -117,7 +125,7 @@ INR_HOST_DEVICE inline int PlaceSamples(const Majorants& majorants, const MarchS
     const double end =
         glm::min(static_cast<double>(state.next + steps) * settings.step, ray.length);
     const double at = glm::min(begin + state.jitter * steps * settings.step, ray.length);
-    samples[count++] = {glm::vec3((ray.at(at) + 0.5) / settings.dims), visit.cell->range,
+    samples[count++] = {FieldPosition(settings, ray.at(at)), visit.cell->range,
                         static_cast<float>((end - begin) * settings.unitsPerT),
                         static_cast<float>(at)};
     state.next += steps;

@@ -112,13 +112,11 @@ double GradientDescent::step(const SampleSource& source)
 void GradientDescent::drawBatch(const SampleSource& source)
 {
   const std::uint64_t stream = StreamSeed(this->Seed, BatchStream);
-  const std::uint64_t firstCounter = this->Steps * BatchSize * 3;
+  const std::uint64_t drawn = this->Steps * BatchSize;
   this->Threads.forEachBlock(BatchSize, ShardSize, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t k = begin; k < end; ++k) {
-      for (int axis = 0; axis < 3; ++axis) {
-        this->Positions[k][axis] =
-            RandomUnit(stream, firstCounter + static_cast<std::uint64_t>(3 * k + axis));
-      }
+      this->Positions[k] =
+          RandomPosition(stream, drawn + static_cast<std::uint64_t>(k), source.dims());
     }
     source.sample(&this->Positions[begin], end - begin, &this->Targets[begin]);
   });

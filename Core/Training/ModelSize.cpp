@@ -12,8 +12,8 @@ namespace {
 /// the root of the voxels, which gives 13:1 for 91^3 floats and 6,000:1 for 4096^3.
 double DefaultParameters(double voxels) { return 128.0 * std::sqrt(voxels); }
 
-/// A volume is never "compressed" to more than a quarter of its size.
-constexpr double SmallestRatio = 4.0;
+/// A volume is never "compressed" to more than half of its size.
+constexpr double SmallestRatio = 2.0;
 constexpr double BytesPerParameter = 2.0; // half
 constexpr double FramingBytes = 2048.0;
 
@@ -30,12 +30,16 @@ double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio)
   return (bytes / ratio - cellBytes - FramingBytes) / BytesPerParameter;
 }
 
-/// Levels double in resolution up to the volume's longest side.
-int LevelsFor(const glm::i64vec3& dims, int baseResolution)
+/// Neighbouring levels' resolutions: more levels fit better for the same file than doubling does.
+constexpr float LevelGrowth = 1.5f;
+constexpr int BaseResolution = 8;
+
+/// Enough levels to reach the volume's longest side.
+int LevelsFor(const glm::i64vec3& dims)
 {
   const auto longest = static_cast<double>(std::max({dims.x, dims.y, dims.z}));
-  const double doublings = std::log2(std::max(1.0, longest / baseResolution));
-  return std::clamp(static_cast<int>(std::ceil(doublings)) + 1, 2, 16);
+  const double steps = std::log(std::max(1.0, longest / BaseResolution)) / std::log(LevelGrowth);
+  return std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, 16);
 }
 
 } // namespace
@@ -45,9 +49,10 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
   const double budget = ParameterBudget(dims, type, ratio);
   Description description;
   description.grid.features = 4;
-  description.grid.baseResolution = 8;
-  description.grid.levels = LevelsFor(dims, description.grid.baseResolution);
-  description.network.neurons = budget < 2e6 ? 32 : 64;
+  description.grid.baseResolution = BaseResolution;
+  description.grid.perLevelScale = LevelGrowth;
+  description.grid.levels = LevelsFor(dims);
+  description.network.neurons = budget < 2e4 ? 16 : budget < 2e6 ? 32 : 64;
   description.network.hiddenLayers = 2;
   // The largest table that fits; the smallest one when nothing does.
   for (int log2Size = 6; log2Size <= 22; ++log2Size) {

@@ -18,9 +18,7 @@ PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed)
 {
   const std::uint64_t stream = RandomBits(seed, EstimateStream);
   for (std::int64_t k = 0; k < SampleCount; ++k) {
-    for (int axis = 0; axis < 3; ++axis) {
-      this->Positions[k][axis] = RandomUnit(stream, static_cast<std::uint64_t>(3 * k + axis));
-    }
+    this->Positions[k] = RandomPosition(stream, static_cast<std::uint64_t>(k), source.dims());
   }
   source.sample(this->Positions.data(), SampleCount, this->Targets.data());
 }

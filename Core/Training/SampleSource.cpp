@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/SampleSource.h"
 
+#include "Core/Random.h"
 #include "Core/Training/Scalars.h"
 
 #include <algorithm>
@@ -44,6 +45,17 @@ double Trilinear(const T* values, const AxisTaps& x, const AxisTaps& y, const Ax
 }
 
 } // namespace
+
+glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64vec3& dims)
+{
+  glm::vec3 position(0.5f);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (dims[axis] > 1) {
+      position[axis] = RandomUnit(stream, 3 * k + static_cast<std::uint64_t>(axis));
+    }
+  }
+  return position;
+}
 
 InMemorySource::InMemorySource(const VolumeData& volume, double low, double high)
     : Volume(volume), Low(low), Scale(1.0 / (high - low))

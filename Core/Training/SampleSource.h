@@ -15,11 +15,18 @@ class SampleSource
 public:
   virtual ~SampleSource() = default;
 
+  /// Voxels per axis.
+  virtual const glm::i64vec3& dims() const = 0;
+
   /// Normalised trilinear values at `count` positions in the unit cube: voxel i of n sits at
   /// (i + 0.5)/n, positions beyond the outermost voxel centres are clamped to them. NaN where a
   /// voxel of the cell is NaN or infinite.
   virtual void sample(const glm::vec3* positions, std::int64_t count, float* targets) const = 0;
 };
+
+/// Random position number `k` of a stream: uniform in the unit cube, but in the middle of an axis
+/// of a single voxel, where nothing changes and nothing else is ever asked for.
+glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64vec3& dims);
 
 /// The whole volume in memory, in its own type.
 class InMemorySource : public SampleSource
@@ -28,6 +35,7 @@ public:
   /// Values are normalised to (v - low)/(high - low); low < high. `volume` must outlive this.
   InMemorySource(const VolumeData& volume, double low, double high);
 
+  const glm::i64vec3& dims() const override { return this->Volume.dims; }
   void sample(const glm::vec3* positions, std::int64_t count, float* targets) const override;
 
 private:

@@ -52,6 +52,16 @@ TEST(Geometry, SlabIsOneSpacingThick)
   EXPECT_NEAR(image.pixel(2, 2)[3], AlphaOver(1.0), 1e-5);
 }
 
+TEST(Geometry, SlabIsAskedAtItsVoxelOnly)
+{
+  inr::Renderer renderer = FieldRenderer(
+      {9, 9, 1}, [](const glm::vec3& u) { return u.z == 0.5f ? 0.25f : std::nanf(""); });
+  renderer.setTransferFunction(OpacityRamp(0.4f));
+  inr::Image image;
+  renderer.render(ParallelFrame(4, {1, 1}, {7, 7}, -5, 5), image);
+  EXPECT_NEAR(image.pixel(2, 2)[3], 0.1f, 1e-5);
+}
+
 TEST(Geometry, CameraInsideSeesWhatIsAhead)
 {
   inr::Renderer renderer = Homogeneous(Dims);

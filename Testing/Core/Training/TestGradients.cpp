@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The trainer's gradients against finite differences of its own loss.
+#include "Core/Training/GradientDescent.h"
+#include "Testing/Core/Kernels.h"
+#include "Testing/Core/RandomModel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+constexpr std::int64_t SampleCount = 1000; // not a multiple of any block
+
+/// Targets far to either side of any output keep the loss' kink away, so that it is smooth.
+std::vector<float> FarTargets()
+{
+  std::vector<float> targets(SampleCount);
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    targets[k] = k % 3 == 0 ? 100.0f : -100.0f;
+  }
+  return targets;
+}
+
+struct Problem
+{
+  Problem(const inr::Description& description, const std::string& kernel)
+      : Threads(2), Descent(description, 1, inr::ChooseInstructionSet(kernel), Threads),
+        Positions(RandomPositions(SampleCount)), Targets(FarTargets())
+  {
+    for (std::size_t k = 0; k < this->Descent.parameters().size(); ++k) {
+      this->Descent.parameters()[k] = 0.8f * inr::RandomUnit(5, k) - 0.4f;
+    }
+  }
+
+  double loss() { return this->Descent.computeGradient(this->Positions, this->Targets); }
+
+  /// Central difference along `direction`.
+  double slopeAlong(const std::vector<float>& direction)
+  {
+    constexpr float step = 2e-3f;
+    std::vector<float>& parameters = this->Descent.parameters();
+    const std::vector<float> here = parameters;
+    double ends[2];
+    for (const int side : {0, 1}) {
+      for (std::size_t k = 0; k < here.size(); ++k) {
+        parameters[k] = here[k] + (side == 0 ? -step : step) * direction[k];
+      }
+      ends[side] = this->loss();
+    }
+    parameters = here;
+    return (ends[1] - ends[0]) / (2.0 * step);
+  }
+
+  inr::Arena Threads;
+  inr::GradientDescent Descent;
+  std::vector<glm::vec3> Positions;
+  std::vector<float> Targets;
+};
+
+/// A random +-1 direction within [begin, end).
+std::vector<float> Direction(std::size_t size, std::size_t begin, std::size_t end)
+{
+  std::vector<float> direction(size, 0.0f);
+  for (std::size_t k = begin; k < end; ++k) {
+    direction[k] = inr::RandomUnit(9, k) < 0.5f ? -1.0f : 1.0f;
+  }
+  return direction;
+}
+
+void ExpectGradient(const inr::Description& description, const std::string& kernel,
+                    const std::string& what)
+{
+  Problem problem(description, kernel);
+  problem.loss();
+  const std::vector<float> gradient = problem.Descent.gradient();
+  const inr::Layout layout(description);
+  // The network alone and the grid alone: an error in one must not hide behind the other.
+  const std::pair<std::size_t, std::size_t> parts[] = {{0, layout.gridOffset},
+                                                       {layout.gridOffset, gradient.size()}};
+  for (const auto& [begin, end] : parts) {
+    const std::vector<float> direction = Direction(gradient.size(), begin, end);
+    double expected = 0;
+    double scale = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      expected += static_cast<double>(gradient[k]) * direction[k];
+      scale += std::abs(static_cast<double>(gradient[k]));
+    }
+    ASSERT_GT(scale, 0) << what;
+    EXPECT_NEAR(problem.slopeAlong(direction), expected, 0.004 * scale + 1e-4)
+        << what << " " << kernel;
+  }
+}
+
+TEST(Gradients, MatchFiniteDifferencesForEveryActivation)
+{
+  using inr::Activation;
+  for (const Activation activation :
+       {Activation::None, Activation::ReLU, Activation::LeakyReLU, Activation::Exponential,
+        Activation::Sigmoid, Activation::Sine, Activation::Squareplus, Activation::Softplus,
+        Activation::Tanh}) {
+    inr::Description description = SmallDescription();
+    description.network.activation = activation;
+    for (const std::string& kernel : UsableKernels()) {
+      ExpectGradient(description, kernel,
+                     "activation " + std::to_string(static_cast<int>(activation)));
+    }
+  }
+}
+
+TEST(Gradients, MatchForEveryShape)
+{
+  for (const int features : {1, 2, 4, 8}) {
+    for (const int hidden : {0, 1, 3}) {
+      inr::Description description = SmallDescription();
+      description.grid.features = features;
+      description.network.hiddenLayers = hidden;
+      description.network.activation = inr::Activation::Tanh;
+      description.network.outputActivation = inr::Activation::Sigmoid;
+      ExpectGradient(description, "",
+                     "features " + std::to_string(features) + " hidden " + std::to_string(hidden));
+    }
+  }
+}
+
+TEST(Gradients, MatchForEveryGrid)
+{
+  for (const inr::GridType type :
+       {inr::GridType::Hash, inr::GridType::Dense, inr::GridType::Tiled}) {
+    for (const inr::GridInterpolation interpolation :
+         {inr::GridInterpolation::Linear, inr::GridInterpolation::Smoothstep,
+          inr::GridInterpolation::Nearest}) {
+      inr::Description description = SmallDescription();
+      description.grid.type = type;
+      description.grid.interpolation = interpolation;
+      description.network.activation = inr::Activation::Sigmoid;
+      ExpectGradient(description, "", "grid " + std::to_string(static_cast<int>(type)));
+    }
+  }
+}
+
+TEST(Gradients, UnknownTargetsCarryNone)
+{
+  Problem problem(SmallDescription(), "");
+  std::fill(problem.Targets.begin(), problem.Targets.end(), NAN);
+  EXPECT_EQ(problem.loss(), 0.0);
+  for (const float component : problem.Descent.gradient()) {
+    ASSERT_EQ(component, 0.0f);
+  }
+}
+
+TEST(LearningRate, FallsToItsFloor)
+{
+  const inr::LearningRate rate;
+  EXPECT_EQ(rate.at(0), rate.initial);
+  EXPECT_LT(rate.at(rate.decayStart + 100 * rate.decayInterval), 0.5f * rate.initial);
+  EXPECT_EQ(rate.at(1u << 30), rate.floor);
+}
+
+} // namespace

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Error.h"
+#include "Core/Inference/Evaluator.h"
+#include "Testing/Core/Kernels.h"
+#include "Testing/Core/Training/Fields.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace {
+
+bool SameRanges(const inr::MacroCells& a, const inr::MacroCells& b)
+{
+  return std::equal(a.ranges.begin(), a.ranges.end(), b.ranges.begin(), b.ranges.end(),
+                    [](const inr::ValueRange& x, const inr::ValueRange& y) {
+                      return x.low == y.low && x.high == y.high;
+                    });
+}
+
+TEST(Trainer, LearnsASmoothField)
+{
+  const Field<float> field = Waves<float>({48, 40, 36}, inr::ScalarType::Float32, -3, 5);
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(400));
+  EXPECT_GT(model->quality->psnr, 36);
+  EXPECT_GT(model->quality->ssim, 0.97);
+  EXPECT_EQ(model->training->steps, 400u);
+}
+
+TEST(Trainer, LearnsTurbulence)
+{
+  std::ifstream file(INR_RAW_DIR "/les_wmag91.raw", std::ios::binary);
+  Field<float> field{{91, 91, 91}, inr::ScalarType::Float32, std::vector<float>(91 * 91 * 91)};
+  file.read(reinterpret_cast<char*>(field.values.data()), 4 * 91 * 91 * 91);
+  ASSERT_TRUE(file.good());
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(600));
+  EXPECT_GT(model->quality->psnr, 34.0);
+  EXPECT_GT(model->quality->ssim, 0.90);
+}
+
+TEST(Trainer, ThreadsDoNotChangeTheResult)
+{
+  const Field<float> field = Waves();
+  inr::TrainingOptions options = Steps(12);
+  options.threads = 1;
+  const inr::ModelPointer one = inr::TrainModel(field.data(), {}, options);
+  for (const int threads : {2, 5}) {
+    options.threads = threads;
+    const inr::ModelPointer more = inr::TrainModel(field.data(), {}, options);
+    EXPECT_EQ(one->parameters, more->parameters) << threads;
+    EXPECT_TRUE(SameRanges(one->macroCells, more->macroCells));
+    EXPECT_EQ(one->quality->psnr, more->quality->psnr);
+    EXPECT_EQ(one->quality->ssim, more->quality->ssim);
+  }
+}
+
+TEST(Trainer, SeedsDiffer)
+{
+  const Field<float> field = Waves();
+  inr::TrainingOptions options = Steps(3);
+  const inr::ModelPointer one = inr::TrainModel(field.data(), {}, options);
+  options.seed = 2;
+  EXPECT_NE(one->parameters, inr::TrainModel(field.data(), {}, options)->parameters);
+}
+
+TEST(Trainer, AStopByTheClockIsRepeatedByItsSteps)
+{
+  const Field<float> field = Waves();
+  inr::TrainingOptions timed;
+  timed.timeLimit = 0.3;
+  const inr::ModelPointer first = inr::TrainModel(field.data(), {}, timed);
+  ASSERT_GT(first->training->steps, 0u);
+  const inr::ModelPointer again = inr::TrainModel(field.data(), {}, Steps(first->training->steps));
+  EXPECT_EQ(first->parameters, again->parameters);
+}
+
+TEST(Trainer, StopsAtTheTargetQuality)
+{
+  const Field<float> field = Waves();
+  inr::TrainingOptions options = Steps(5000);
+  options.targetPsnr = 24;
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
+  EXPECT_LT(model->training->steps, 5000u);
+  EXPECT_GT(model->quality->psnr, 23.0); // measured at voxels, stopped by an estimate
+}
+
+TEST(Trainer, QualityIsThatOfTheStoredParameters)
+{
+  const Field<float> field = Waves();
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(60));
+  std::vector<float> decoded(field.values.size());
+  inr::EvaluateLattice(*inr::MakeEvaluator(model), inr::Arena(1),
+                       inr::VoxelLattice(field.dims, {0, 0, 0}, field.dims), decoded.data());
+  double largest = 0;
+  for (std::size_t k = 0; k < decoded.size(); ++k) {
+    const double value = inr::ValueOf(model->volume, inr::NormalisedOutput(decoded[k]));
+    largest = std::max(largest, std::abs(value - field.values[k]));
+  }
+  EXPECT_NEAR(model->quality->maxError, largest, 1e-6);
+}
+
+template <class T> void ExpectTrains(inr::ScalarType type, double low, double high)
+{
+  const Field<T> field = Waves<T>({16, 14, 12}, type, low, high);
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(80));
+  EXPECT_GT(model->quality->psnr, 16) << inr::ScalarName(type);
+  EXPECT_EQ(model->volume.type, type);
+  EXPECT_GT(model->volume.high, model->volume.low);
+}
+
+TEST(Trainer, TakesEveryScalarType)
+{
+  ExpectTrains<std::int8_t>(inr::ScalarType::Int8, -100, 100);
+  ExpectTrains<std::uint8_t>(inr::ScalarType::UInt8, 0, 255);
+  ExpectTrains<std::int16_t>(inr::ScalarType::Int16, -30000, 30000);
+  ExpectTrains<std::uint16_t>(inr::ScalarType::UInt16, 0, 60000);
+  ExpectTrains<std::int32_t>(inr::ScalarType::Int32, -2e9, 2e9);
+  ExpectTrains<std::uint32_t>(inr::ScalarType::UInt32, 0, 4e9);
+  ExpectTrains<std::int64_t>(inr::ScalarType::Int64, -9e18, 9e18);
+  ExpectTrains<std::uint64_t>(inr::ScalarType::UInt64, 0, 1.8e19);
+  ExpectTrains<float>(inr::ScalarType::Float32, -1e-30, 1e-30);
+  ExpectTrains<double>(inr::ScalarType::Float64, 1e10, 1e10 + 1e-3); // digits a float cannot hold
+}
+
+TEST(Trainer, LeavesOutNaNsAndInfinities)
+{
+  Field<float> field = Waves();
+  field.values[100] = std::numeric_limits<float>::quiet_NaN();
+  field.values[2000] = std::numeric_limits<float>::infinity();
+  field.values[3000] = -std::numeric_limits<float>::infinity();
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(80));
+  EXPECT_EQ(model->training->nonFinite, 3u);
+  EXPECT_LE(model->volume.high, 1.0);
+  EXPECT_GT(model->quality->psnr, 18);
+  for (const float parameter : model->parameters) {
+    ASSERT_TRUE(std::isfinite(parameter));
+  }
+}
+
+TEST(Trainer, ConstantVolumesAreExact)
+{
+  Field<float> field = Waves();
+  std::fill(field.values.begin(), field.values.end(), 4.25f);
+  field.values[7] = std::numeric_limits<float>::quiet_NaN();
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(50));
+  EXPECT_EQ(model->training->steps, 0u);
+  EXPECT_EQ(model->quality->maxError, 0.0);
+  EXPECT_EQ(model->quality->psnr, HUGE_VAL);
+  float value = 1;
+  const glm::vec3 middle(0.5f);
+  inr::MakeEvaluator(model)->evaluate(&middle, 1, &value);
+  EXPECT_EQ(inr::ValueOf(model->volume, value), 4.25);
+}
+
+TEST(Trainer, AVolumeOfNaNsIsZero)
+{
+  Field<float> field = Waves();
+  std::fill(field.values.begin(), field.values.end(), NAN);
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(5));
+  EXPECT_EQ(model->volume.low, 0.0);
+  EXPECT_EQ(model->training->nonFinite, field.values.size());
+}
+
+TEST(Trainer, TakesAxesOfOneVoxel)
+{
+  for (const glm::i64vec3& dims : {glm::i64vec3(200, 150, 1), glm::i64vec3(1, 120, 130)}) {
+    const Field<float> field = Waves<float>(dims, inr::ScalarType::Float32, 0, 1);
+    EXPECT_GT(inr::TrainModel(field.data(), {}, Steps(150))->quality->psnr, 20);
+  }
+}
+
+TEST(Trainer, ProgressRisesAndEndsInMeasuring)
+{
+  const Field<float> field = Waves();
+  double last = 0;
+  bool measured = false;
+  inr::TrainModel(field.data(), {}, Steps(20), [&](const inr::TrainingProgress& progress) {
+    EXPECT_GE(progress.fraction, last);
+    EXPECT_LE(progress.fraction, 1.0);
+    last = progress.fraction;
+    measured = measured || progress.phase == inr::TrainingPhase::Measuring;
+    return true;
+  });
+  EXPECT_TRUE(measured);
+  EXPECT_GT(last, 0.9);
+}
+
+TEST(Trainer, CanBeStopped)
+{
+  const Field<float> field = Waves();
+  int calls = 0;
+  try {
+    inr::TrainModel(field.data(), {}, Steps(1000),
+                    [&](const inr::TrainingProgress&) { return ++calls < 3; });
+    FAIL() << "went on";
+  } catch (const inr::Error& error) {
+    EXPECT_EQ(error.code(), inr::ErrorCode::Cancelled);
+    EXPECT_EQ(calls, 3);
+  }
+}
+
+TEST(Trainer, RefusesToTrainForEverOrOnNothing)
+{
+  const Field<float> field = Waves();
+  EXPECT_THROW(inr::TrainModel(field.data(), {}, Steps(0)), inr::Error);
+  inr::VolumeData nothing = field.data();
+  nothing.dims.y = 0;
+  EXPECT_THROW(inr::TrainModel(nothing, {}, Steps(5)), inr::Error);
+}
+
+TEST(Trainer, EveryKernelLearns)
+{
+  const Field<float> field = Waves();
+  for (const std::string& kernel : UsableKernels()) {
+    inr::TrainingOptions options = Steps(150);
+    options.kernel = kernel;
+    const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
+    EXPECT_GT(model->quality->psnr, 20) << kernel;
+    EXPECT_EQ(model->training->kernel, kernel);
+  }
+}
+
+} // namespace
