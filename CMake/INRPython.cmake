@@ -17,3 +17,9 @@ vtk_module_wrap_python(
   BUILD_STATIC OFF
   INSTALL_HEADERS OFF)
 set(CMAKE_INSTALL_RPATH "${inr_saved_install_rpath}")
+
+# The package's own file; the generated modules land beside it.
+configure_file("${CMAKE_CURRENT_LIST_DIR}/inrvolume-init.py"
+  "${CMAKE_BINARY_DIR}/${INR_PYTHON_DIRECTORY}/inrvolume/__init__.py" COPYONLY)
+install(FILES "${CMAKE_CURRENT_LIST_DIR}/inrvolume-init.py"
+  DESTINATION "${INR_PYTHON_DIRECTORY}/inrvolume" RENAME __init__.py)

@@ -1,0 +1,59 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Builds everything on Debian 12 and runs every test but those labelled `long`; installs what is
+# missing. Ends with "N passed, N failed"; its status is 0 when nothing failed.
+#
+#   Testing/run.sh [CTEST-OPTION...]     e.g. Testing/run.sh -L core
+set -uo pipefail
+
+cd "$(dirname "$0")/.."
+bash CMake/install-debian-packages.sh test || exit 1
+
+passed=0
+failed=0
+
+# build PRESET: configures and builds; a failure counts as one failed test.
+build() {
+  echo "== Building preset $1"
+  if cmake --preset "$1" > "build-$1.log" 2>&1 && cmake --build --preset "$1" >> "build-$1.log" 2>&1; then
+    passed=$((passed + 1))
+    rm -f "build-$1.log"
+    return 0
+  fi
+  tail -n 60 "build-$1.log"
+  echo "== Preset $1 does not build (build-$1.log)"
+  failed=$((failed + 1))
+  return 1
+}
+
+# run_tests FOLDER [CTEST-OPTION...]: adds the folder's tests to the sums.
+run_tests() {
+  local folder=$1 summary
+  shift
+  ctest --test-dir "$folder" -j "$(nproc)" -LE long --output-on-failure "$@" | tee "$folder/ctest.log"
+  summary=$(grep -E 'tests passed, .* failed out of' "$folder/ctest.log")
+  if [[ $summary =~ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]; then
+    failed=$((failed + BASH_REMATCH[1]))
+    passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1]))
+  elif ! grep -q 'No tests were found' "$folder/ctest.log"; then
+    failed=$((failed + 1))
+  fi
+}
+
+# Everything: Core, the VTK modules, the plugin in ParaView's own tools and window.
+build release && run_tests build "$@"
+
+# The same readers and mapper against plain VTK, unpacked beside the build, no ParaView.
+if [ -d build-vtk/vtk/usr ] || Testing/fetch-vtk.sh build-vtk/vtk; then
+  build vtk && run_tests build-vtk -L 'vtk|image' "$@"
+else
+  echo "== Plain VTK is not to be had"
+  failed=$((failed + 1))
+fi
+
+# Core alone, as on a machine without VTK, under the sanitizers.
+build core
+build asan && run_tests build-asan -L 'core|fuzz' "$@"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
