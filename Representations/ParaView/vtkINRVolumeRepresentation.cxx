@@ -27,6 +27,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
 {
   // Not the direct superclass: it would deliver the volume to the process that draws, and a virtual
   // image has no end of values.
+  // NOLINTNEXTLINE(bugprone-parent-virtual-call)
   if (!this->vtkVolumeRepresentation::ProcessViewRequest(request, in, out)) {
     return 0;
   }
@@ -46,7 +47,7 @@ void vtkINRVolumeRepresentation::DeliverOutline(vtkInformation* in, vtkInformati
   vtkDataObject* outline = this->OutlineSource->GetOutputDataObject(0);
   vtkPVRenderView::SetPiece(in, this, outline, 0, 0);
   vtkPVRenderView::SetPiece(in, this, outline, 0, 1);
-  vtkPVRenderView::SetGeometryBounds(in, this, this->DataBounds);
+  vtkPVRenderView::SetGeometryBounds(in, this, this->DataBounds, this->Actor->GetMatrix());
   vtkPVRenderView::SetRequiresDistributedRendering(in, this, true);
   vtkPVRenderView::SetOrderedCompositingConfiguration(
       in, this, vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION);

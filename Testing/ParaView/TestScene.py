@@ -48,6 +48,20 @@ check(np.abs(glass - alone).max() > 0.02, "the translucent sphere is not there")
 check_baseline(glass, "scene-translucent")
 simple.Delete(sphere)
 
+# Moved, stretched and turned: the camera finds it, and it still fills its outline.
+outline = simple.Outline(Input=reader)
+box = simple.Show(outline, view)
+box.AmbientColor = box.DiffuseColor = [0, 0, 0]
+for item in (display, box):
+    item.Position, item.Scale, item.Orientation = [500, 0, 0], [1, 2, 1], [0, 0, 30]
+simple.Render(view)
+view.ResetCamera()
+check_baseline(picture(view, "scene-transformed"), "scene-transformed")
+display.Position, display.Scale, display.Orientation = [0, 0, 0], [1, 1, 1], [0, 0, 0]
+simple.Delete(outline)
+simple.Render(view)
+look_at(view)
+
 # Ordinary voxels: one message, and nothing is drawn.
 simple.Hide(reader, view)
 wavelet = simple.Wavelet()
