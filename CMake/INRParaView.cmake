@@ -1,7 +1,5 @@
 # The plugin for ParaView. Its VTK modules (readers, mapper, representation) are shared libraries
 # beside it, so that C++ and Python programs without ParaView's client can use them too.
-set(inr_paraview_packages
-  "paraview-dev python3-paraview libdouble-conversion-dev liblz4-dev libopenmpi-dev libglew-dev libfreetype-dev libx11-dev libgl-dev libexpat1-dev zlib1g-dev libpng-dev python3-dev")
 
 # RemotingCore and RemotingViews are all the plugin needs; without COMPONENTS the package asks for
 # Qt, HDF5, GDAL and more.
@@ -10,7 +8,7 @@ if (NOT ParaView_FOUND)
   message(FATAL_ERROR
     "ParaView 5.11 or newer with its development files was not found"
     " (${ParaView_NOT_FOUND_MESSAGE}).\n"
-    "On Debian 12 install: ${inr_paraview_packages}\n"
+    "On Debian 12 run CMake/install-debian-packages.sh, which lists the packages.\n"
     "Elsewhere set ParaView_DIR to the folder with paraview-config.cmake,"
     " or build without ParaView (presets vtk and core).")
 endif ()

@@ -51,16 +51,15 @@ else:
 
 
 def cannot_save(what, source, path, *words, **properties):
-    before = set(os.listdir(os.path.dirname(path))) if os.path.isdir(os.path.dirname(path)) else None
     with Messages() as messages:
         writer = servermanager.writers.INRWriter(Input=source, FileName=path)
         for key, value in properties.items():
             writer.SetPropertyWithName(key, value)
         writer.UpdatePipeline()
     refused(what, messages, *words)
-    if before is not None:
-        left = set(os.listdir(os.path.dirname(path))) - before
-        check(not left, what, "left", left)
+    folder, name = os.path.split(path)  # the file itself or a temporary one
+    left = [other for other in os.listdir(folder) if name in other] if os.path.isdir(folder) else []
+    check(not left, what, "left", left)
 
 
 wavelet = simple.Wavelet(WholeExtent=[-4, 4, -4, 4, -4, 4])
