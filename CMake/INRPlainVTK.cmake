@@ -23,6 +23,8 @@ set(INR_MODULE_DIRECTORY "${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
 # The modules share the host's process: nothing of our static libraries may be visible in it.
 add_link_options(LINKER:--exclude-libs,ALL)
+# RPATH instead of RUNPATH: an unpacked VTK's libraries find each other through ours only.
+add_link_options(LINKER:--disable-new-dtags)
 
 vtk_module_scan(
   MODULE_FILES

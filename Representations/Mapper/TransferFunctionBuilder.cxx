@@ -77,7 +77,8 @@ struct Range
 
 bool IsLogarithmic(const Functions& functions)
 {
-  return functions.Rgb && functions.Rgb->UsingLogScale() && functions.Rgb->GetRange()[0] > 0 &&
+  return functions.Rgb && functions.Rgb->GetScale() == VTK_CTF_LOG10 &&
+         functions.Rgb->GetRange()[0] > 0 &&
          functions.Rgb->GetRange()[0] < functions.Rgb->GetRange()[1];
 }
 
@@ -95,18 +96,18 @@ Range TableRange(const Functions& functions, bool logarithmic)
   return range;
 }
 
-/// The value of entry k of n, kept inside [low, high]: rounding must not fall off an end whose
-/// clamping is off.
+/// The value of entry k of n, kept just inside (low, high): with clamping off VTK's functions end
+/// at their outer nodes, and it takes logarithms of its own, rounded once more.
 double EntryValue(const TransferFunction& table, int k, int n)
 {
   const double t = static_cast<double>(k) / (n - 1);
   const double value = table.logarithmic ? table.low * std::pow(table.high / table.low, t)
                                          : table.low + (table.high - table.low) * t;
-  if (!table.logarithmic) {
-    return std::clamp(value, table.low, table.high);
-  }
-  constexpr double inset = 1e-12; // VTK takes logarithms of its own, rounded once more
-  return std::clamp(value, table.low * (1 + inset), table.high * (1 - inset));
+  const auto inset = [&](double end) {
+    return std::max(1e-12 * (table.high - table.low), 1e-14 * std::abs(end));
+  };
+  const double first = table.logarithmic ? table.low * (1 + 1e-12) : table.low + inset(table.low);
+  return std::clamp(value, first, std::max(first, table.high - inset(table.high)));
 }
 
 } // namespace

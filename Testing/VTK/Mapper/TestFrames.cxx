@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What happens around a frame: how it is scheduled, what it reads, what it leaves behind.
+#include "Core/Image/Exr.h"
+#include "Core/Image/Metrics.h"
+#include "ImageReduction.h"
+#include "TestModel.h"
+#include "TestScene.h"
+#include "vtkINRVolumeMapper.h"
+
+#include <vtkActor.h>
+#include <vtkActor2D.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCubeSource.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace {
+
+std::string ModelFile() { return test::Write(*test::MakeModel(), "Frames.inr"); }
+
+/// One volume seen in perspective; what most tests here start from.
+struct OneVolume
+{
+  OneVolume() : OneVolume(test::InrMapper(ModelFile())) {}
+  explicit OneVolume(vtkSmartPointer<vtkINRVolumeMapper> inr) : mapper(inr)
+  {
+    this->renderer = this->scene.addRenderer();
+    this->volume = this->scene.addVolume(this->renderer, this->mapper);
+    test::Scene::look(this->renderer);
+  }
+
+  vtkSmartPointer<vtkActor> addCube()
+  {
+    vtkNew<vtkCubeSource> cube;
+    cube->SetCenter(this->volume->GetCenter());
+    cube->SetXLength(20);
+    cube->SetYLength(20);
+    cube->SetZLength(20);
+    vtkNew<vtkPolyDataMapper> polygons;
+    polygons->SetInputConnection(cube->GetOutputPort());
+    auto actor = vtkSmartPointer<vtkActor>::New();
+    actor->SetMapper(polygons);
+    this->renderer->AddActor(actor);
+    return actor;
+  }
+
+  test::Scene scene;
+  vtkSmartPointer<vtkINRVolumeMapper> mapper;
+  vtkRenderer* renderer = nullptr;
+  vtkVolume* volume = nullptr;
+};
+
+float LargestDifference(const inr::Image& a, const inr::Image& b)
+{
+  EXPECT_EQ(a.pixels.size(), b.pixels.size());
+  float largest = 0;
+  for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i) {
+    largest = std::max(largest, std::abs(a.pixels[i] - b.pixels[i]));
+  }
+  return largest;
+}
+
+TEST(Frames, SayWhatTheyTook)
+{
+  OneVolume one;
+  EXPECT_STREQ(one.mapper->GetBackendInUse(), "");
+  one.scene.capture();
+  EXPECT_GT(one.mapper->GetFrameTime(), 0);
+  EXPECT_GT(one.mapper->GetNumberOfSamples(), 10000);
+  EXPECT_EQ(one.mapper->GetImageReduction(), 1);
+  EXPECT_EQ(std::string(one.mapper->GetBackendInUse()).substr(0, 4), "CPU ");
+}
+
+TEST(Frames, ReadDepthOnlyWhenSomethingOpaqueIsVisible)
+{
+  OneVolume one;
+  vtkNew<vtkActor2D> overlay;
+  one.renderer->AddActor(overlay);
+  one.scene.capture();
+  EXPECT_FALSE(one.mapper->GetOpaqueDepthRead());
+
+  const auto cube = one.addCube();
+  one.scene.capture();
+  EXPECT_TRUE(one.mapper->GetOpaqueDepthRead());
+
+  cube->GetProperty()->SetOpacity(0.5);
+  one.scene.capture();
+  EXPECT_FALSE(one.mapper->GetOpaqueDepthRead());
+
+  cube->GetProperty()->SetOpacity(1);
+  cube->VisibilityOff();
+  one.scene.capture();
+  EXPECT_FALSE(one.mapper->GetOpaqueDepthRead());
+}
+
+TEST(Frames, SeeMultisampledDepth)
+{
+  OneVolume plain, smooth;
+  plain.addCube();
+  smooth.addCube();
+  smooth.scene.window->SetMultiSamples(4);
+  EXPECT_GT(inr::ImageSsim(plain.scene.capture(), smooth.scene.capture()), 0.97);
+}
+
+TEST(Frames, DoNotDependOnThePresentedGrid)
+{
+  const std::string file = ModelFile();
+  OneVolume native(test::InrMapper(file, 0));
+  OneVolume coarse(test::InrMapper(file, 1000));
+  EXPECT_LT(LargestDifference(native.scene.capture(), coarse.scene.capture()), 2.5f / 255);
+}
+
+TEST(Frames, DoNotDependOnThreads)
+{
+  OneVolume one;
+  one.mapper->SetNumberOfThreads(1);
+  const inr::Image first = one.scene.capture();
+  one.mapper->SetNumberOfThreads(3);
+  EXPECT_EQ(LargestDifference(first, one.scene.capture()), 0);
+}
+
+TEST(Frames, AreWrittenExactly)
+{
+  OneVolume one;
+  const inr::Image window = one.scene.capture();
+  const std::string file = std::string(INR_TEST_OUTPUT) + "/Frames.exr";
+  ASSERT_TRUE(one.mapper->WriteEXR(file.c_str()));
+  inr::Image depth;
+  const inr::Image exact = inr::ReadExr(file, &depth);
+  EXPECT_LT(LargestDifference(window, exact), 1.0f / 255); // 8 bits against float
+  ASSERT_EQ(depth.width, exact.width);
+  const float nearest = *std::min_element(depth.pixels.begin(), depth.pixels.end());
+  EXPECT_GT(nearest, 0);
+  EXPECT_LT(nearest, 1);
+}
+
+TEST(Frames, CannotBeWrittenBeforeTheFirstOrToNowhere)
+{
+  OneVolume one;
+  test::Messages messages(one.mapper);
+  EXPECT_FALSE(one.mapper->WriteEXR("early.exr"));
+  EXPECT_EQ(messages.errors, 1);
+  one.scene.capture();
+  EXPECT_FALSE(one.mapper->WriteEXR("/nonexistent-folder/late.exr"));
+  EXPECT_EQ(messages.errors, 2);
+  EXPECT_NE(messages.last.find("/nonexistent-folder/late.exr"), std::string::npos);
+}
+
+TEST(Frames, AreCoarserWhileInteracting)
+{
+  OneVolume one;
+  const inr::Image still = one.scene.capture();
+  one.scene.window->SetDesiredUpdateRate(1e6);
+  const inr::Image moving = one.scene.capture();
+  EXPECT_EQ(one.mapper->GetImageReduction(), inr::ImageReduction::Largest);
+  EXPECT_GT(LargestDifference(still, moving), 0);
+  EXPECT_GT(inr::ImagePsnr(still, moving), 20);
+  one.scene.window->SetDesiredUpdateRate(0.002);
+  EXPECT_EQ(LargestDifference(still, one.scene.capture()), 0);
+  EXPECT_EQ(one.mapper->GetImageReduction(), 1);
+}
+
+TEST(Frames, RespectOpaqueDepthWhileInteracting)
+{
+  OneVolume one;
+  one.addCube();
+  const inr::Image still = one.scene.capture();
+  one.scene.window->SetDesiredUpdateRate(1e6);
+  EXPECT_GT(inr::ImagePsnr(still, one.scene.capture()), 20);
+  EXPECT_EQ(one.mapper->GetImageReduction(), inr::ImageReduction::Largest);
+}
+
+TEST(Frames, CanBeAborted)
+{
+  OneVolume one;
+  test::Messages messages(one.mapper);
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* window, unsigned long, void*, void*) {
+    static_cast<vtkRenderWindow*>(window)->SetAbortRender(1);
+  });
+  const unsigned long tag = one.scene.window->AddObserver(vtkCommand::AbortCheckEvent, abort);
+  const inr::Image aborted = one.scene.capture();
+  EXPECT_EQ(*std::max_element(aborted.pixels.begin(), aborted.pixels.end()), 0);
+  EXPECT_EQ(one.mapper->GetNumberOfSamples(), 0);
+  EXPECT_EQ(messages.errors, 0);
+
+  one.scene.window->RemoveObserver(tag);
+  const inr::Image whole = one.scene.capture();
+  EXPECT_GT(*std::max_element(whole.pixels.begin(), whole.pixels.end()), 0);
+}
+
+TEST(Frames, MoveToAnotherWindow)
+{
+  const auto mapper = test::InrMapper(ModelFile());
+  inr::Image first;
+  {
+    OneVolume one(mapper);
+    first = one.scene.capture();
+  }
+  OneVolume two(mapper);
+  EXPECT_EQ(LargestDifference(first, two.scene.capture()), 0);
+}
+
+TEST(Frames, ShareAWindowWithTwoOfTheSameMapper)
+{
+  OneVolume one;
+  vtkNew<vtkVolume> again;
+  again->SetMapper(one.mapper);
+  again->SetProperty(one.volume->GetProperty());
+  again->SetPosition(30, 0, 0);
+  one.renderer->AddVolume(again);
+  const inr::Image both = one.scene.capture();
+  again->VisibilityOff();
+  EXPECT_GT(LargestDifference(both, one.scene.capture()), 0.1f);
+}
+
+TEST(ImageReduction, KeepsStillFramesWhole)
+{
+  inr::ImageReduction reduction;
+  reduction.record(100, 1);
+  EXPECT_EQ(reduction.factor(0.002, 1000000), 1);
+}
+
+TEST(ImageReduction, IsAsSmallAsTheRateAllows)
+{
+  inr::ImageReduction reduction;
+  EXPECT_EQ(reduction.factor(5, 1000), inr::ImageReduction::Unmeasured);
+  reduction.record(1.0, 1000); // 1 ms per pixel, so 0.2 s are 200 pixels
+  EXPECT_EQ(reduction.factor(5, 200), 1);
+  EXPECT_EQ(reduction.factor(5, 201), 2);
+  EXPECT_EQ(reduction.factor(5, 801), 4);
+  EXPECT_EQ(reduction.factor(5, 1000000), 8);
+}
+
+} // namespace

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the mapper cannot draw gives one message and no picture, and drawing goes on afterwards.
+#include "TestModel.h"
+#include "TestScene.h"
+#include "vtkINRVolumeMapper.h"
+
+#include <vtkColorTransferFunction.h>
+#include <vtkImageData.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkVolumeProperty.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace {
+
+class Refusals : public testing::Test
+{
+protected:
+  Refusals()
+      : mapper(test::InrMapper(test::Write(*test::MakeModel(), "Refusals.inr"))), messages(mapper)
+  {
+    this->renderer = this->scene.addRenderer();
+    this->volume = this->scene.addVolume(this->renderer, this->mapper);
+    this->property = this->volume->GetProperty();
+    test::Scene::look(this->renderer);
+  }
+
+  bool draws()
+  {
+    const inr::Image image = this->scene.capture();
+    return *std::max_element(image.pixels.begin(), image.pixels.end()) > 0;
+  }
+
+  /// Two frames of a scene that is refused: one message that contains `word`, nothing drawn.
+  void expectRefused(const std::string& word)
+  {
+    EXPECT_FALSE(this->draws());
+    EXPECT_FALSE(this->draws());
+    EXPECT_EQ(this->messages.errors, 1);
+    EXPECT_NE(this->messages.last.find(word), std::string::npos) << this->messages.last;
+  }
+
+  void expectDrawn()
+  {
+    EXPECT_TRUE(this->draws());
+    EXPECT_EQ(this->messages.errors, 0) << this->messages.last;
+  }
+
+  test::Scene scene;
+  vtkSmartPointer<vtkINRVolumeMapper> mapper;
+  test::Messages messages;
+  vtkRenderer* renderer = nullptr;
+  vtkVolume* volume = nullptr;
+  vtkVolumeProperty* property = nullptr;
+};
+
+vtkSmartPointer<vtkPiecewiseFunction> Ramp(double first, double last)
+{
+  auto ramp = vtkSmartPointer<vtkPiecewiseFunction>::New();
+  ramp->AddPoint(0, first);
+  ramp->AddPoint(100, last);
+  return ramp;
+}
+
+TEST_F(Refusals, NothingIsWrongWithAnOrdinaryScene) { this->expectDrawn(); }
+
+TEST_F(Refusals, GradientOpacity)
+{
+  this->property->SetGradientOpacity(Ramp(0, 1));
+  this->expectRefused("gradient opacity");
+  this->property->SetDisableGradientOpacity(1);
+  EXPECT_TRUE(this->draws());
+}
+
+TEST_F(Refusals, NotOfAGradientOpacityThatIsOneEverywhere)
+{
+  this->property->SetGradientOpacity(Ramp(1, 1));
+  this->expectDrawn();
+}
+
+TEST_F(Refusals, TransferFunctionsOfTwoDimensions)
+{
+  vtkNew<vtkImageData> table;
+  table->SetDimensions(4, 4, 1);
+  table->AllocateScalars(VTK_FLOAT, 4);
+  std::fill_n(static_cast<float*>(table->GetScalarPointer()), 64, 0.5f);
+  this->property->SetTransferFunctionMode(vtkVolumeProperty::TF_2D);
+  this->property->SetTransferFunction2D(table);
+  this->expectRefused("2D transfer function");
+}
+
+TEST_F(Refusals, LabelMasks)
+{
+  this->property->SetLabelScalarOpacity(1, Ramp(0, 1));
+  this->expectRefused("mask");
+}
+
+TEST_F(Refusals, OtherBlendModes)
+{
+  for (const int mode :
+       {vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::ISOSURFACE_BLEND}) {
+    this->messages.errors = 0;
+    this->mapper->SetBlendMode(mode);
+    this->expectRefused("blend");
+    this->mapper->SetBlendModeToComposite();
+    EXPECT_TRUE(this->draws());
+  }
+}
+
+TEST_F(Refusals, Cropping)
+{
+  this->mapper->CroppingOn();
+  this->expectRefused("cropped");
+}
+
+TEST_F(Refusals, OrdinaryVoxels)
+{
+  this->mapper->SetInputData(test::Decode(test::MakeModel()));
+  this->expectRefused("'blobs' is not an INR");
+}
+
+TEST_F(Refusals, ImageDataWithoutScalars)
+{
+  vtkNew<vtkImageData> empty;
+  empty->SetDimensions(5, 5, 5);
+  this->mapper->SetInputData(empty);
+  this->expectRefused("no point scalars");
+}
+
+TEST_F(Refusals, AnArrayThatIsNotThere)
+{
+  this->mapper->SetScalarModeToUsePointFieldData();
+  this->mapper->SelectScalarArray("nothing");
+  this->expectRefused("no point scalars");
+}
+
+TEST_F(Refusals, OtherDataSets)
+{
+  vtkNew<vtkRectilinearGrid> grid;
+  grid->SetDimensions(2, 2, 2);
+  this->mapper->SetInputData(grid);
+  this->expectRefused("not image data");
+}
+
+TEST_F(Refusals, ATransformThatFlattens)
+{
+  this->volume->SetScale(1, 1, 0);
+  this->expectRefused("");
+  this->volume->SetScale(1, 1, 1);
+  EXPECT_TRUE(this->draws());
+}
+
+TEST_F(Refusals, ShadingIsOnlyAWarning)
+{
+  this->property->ShadeOn();
+  EXPECT_TRUE(this->draws());
+  EXPECT_TRUE(this->draws());
+  EXPECT_EQ(this->messages.warnings, 1);
+  EXPECT_EQ(this->messages.errors, 0);
+}
+
+TEST_F(Refusals, ComeAgainAfterTheSceneWasFine)
+{
+  this->mapper->CroppingOn();
+  this->expectRefused("cropped");
+  this->mapper->CroppingOff();
+  EXPECT_TRUE(this->draws());
+  this->messages.errors = 0;
+  this->mapper->CroppingOn();
+  this->expectRefused("cropped");
+}
+
+} // namespace

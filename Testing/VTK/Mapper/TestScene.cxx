@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TestScene.h"
+
+#include "vtkINRReader.h"
+#include "vtkINRVolumeMapper.h"
+
+#include <vtkActor.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkImageData.h>
+#include <vtkPNGReader.h>
+#include <vtkPNGWriter.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkPlane.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkSphereSource.h>
+#include <vtkVolumeProperty.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace test {
+namespace {
+
+inr::Image ToImage(vtkImageData* source)
+{
+  const int* dims = source->GetDimensions();
+  const int channels = source->GetNumberOfScalarComponents();
+  if (channels != 4 || source->GetScalarType() != VTK_UNSIGNED_CHAR) {
+    throw std::runtime_error("not an 8-bit RGBA picture");
+  }
+  inr::Image image(dims[0], dims[1], 4);
+  const auto* bytes = static_cast<const unsigned char*>(source->GetScalarPointer());
+  std::transform(bytes, bytes + image.pixels.size(), image.pixels.begin(),
+                 [](unsigned char byte) { return static_cast<float>(byte) / 255.0f; });
+  return image;
+}
+
+void Perspective(Scene& scene, const MapperFactory& mapper)
+{
+  vtkRenderer* renderer = scene.addRenderer();
+  scene.addVolume(renderer, mapper());
+  Scene::look(renderer);
+}
+
+void Parallel(Scene& scene, const MapperFactory& mapper)
+{
+  vtkRenderer* renderer = scene.addRenderer();
+  scene.addVolume(renderer, mapper());
+  renderer->GetActiveCamera()->ParallelProjectionOn();
+  Scene::look(renderer);
+}
+
+void Transformed(Scene& scene, const MapperFactory& mapper)
+{
+  vtkRenderer* renderer = scene.addRenderer();
+  vtkVolume* volume = scene.addVolume(renderer, mapper());
+  volume->SetScale(-1.0, 1.4, 0.6); // mirrored and stretched
+  volume->RotateX(25);
+  volume->RotateZ(40);
+  volume->SetPosition(7, -3, 11);
+  Scene::look(renderer);
+}
+
+void OpaqueInside(Scene& scene, const MapperFactory& mapper)
+{
+  vtkRenderer* renderer = scene.addRenderer();
+  vtkVolume* volume = scene.addVolume(renderer, mapper());
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetCenter(volume->GetCenter());
+  sphere->SetRadius(11);
+  sphere->SetThetaResolution(48);
+  sphere->SetPhiResolution(48);
+  vtkNew<vtkPolyDataMapper> polygons;
+  polygons->SetInputConnection(sphere->GetOutputPort());
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(polygons);
+  actor->GetProperty()->SetColor(0.2, 0.9, 0.3);
+  renderer->AddActor(actor);
+  Scene::look(renderer);
+}
+
+void TwoViewports(Scene& scene, const MapperFactory& mapper)
+{
+  vtkRenderer* left = scene.addRenderer(0, 0.4);
+  scene.addVolume(left, mapper());
+  Scene::look(left);
+  vtkRenderer* right = scene.addRenderer(0.4, 1);
+  scene.addVolume(right, mapper());
+  Scene::look(right);
+  right->GetActiveCamera()->Azimuth(70);
+  right->ResetCameraClippingRange();
+}
+
+void ClippingPlane(Scene& scene, const MapperFactory& mapper)
+{
+  vtkRenderer* renderer = scene.addRenderer();
+  vtkVolume* volume = scene.addVolume(renderer, mapper());
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(volume->GetCenter());
+  plane->SetNormal(-0.6, 0.5, 0.6);
+  volume->GetMapper()->AddClippingPlane(plane);
+  Scene::look(renderer);
+}
+
+void Stereo(Scene& scene, const MapperFactory& mapper)
+{
+  vtkRenderer* renderer = scene.addRenderer();
+  scene.addVolume(renderer, mapper());
+  Scene::look(renderer);
+  renderer->GetActiveCamera()->SetEyeAngle(20); // far more than comfortable: must be visible
+  scene.window->StereoRenderOn();
+  scene.window->SetStereoTypeToRight();
+}
+
+} // namespace
+
+std::vector<SceneCase> SceneCases()
+{
+  return {{"Perspective", Perspective},     {"Parallel", Parallel},
+          {"Transformed", Transformed},     {"OpaqueInside", OpaqueInside},
+          {"TwoViewports", TwoViewports},   {"ClippingPlane", ClippingPlane},
+          {"Stereo", Stereo, false, false}, {"Oblique", Perspective, true}};
+}
+
+Scene::Scene()
+{
+  this->window->SetOffScreenRendering(1);
+  this->window->SetSize(Width, Height);
+  this->window->SetMultiSamples(0);
+  this->window->SetAlphaBitPlanes(1);
+}
+
+vtkRenderer* Scene::addRenderer(double xmin, double xmax)
+{
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetViewport(xmin, 0, xmax, 1);
+  renderer->SetBackground(0, 0, 0);
+  renderer->SetBackgroundAlpha(0);
+  this->window->AddRenderer(renderer);
+  return renderer;
+}
+
+vtkVolume* Scene::addVolume(vtkRenderer* renderer, vtkVolumeMapper* mapper)
+{
+  vtkNew<vtkColorTransferFunction> colour;
+  colour->AddRGBPoint(-20, 0.1, 0.2, 0.9);
+  colour->AddRGBPoint(60, 0.9, 0.9, 0.6);
+  colour->AddRGBPoint(180, 0.9, 0.1, 0.1);
+  vtkNew<vtkPiecewiseFunction> opacity;
+  opacity->AddPoint(-10, 0);
+  opacity->AddPoint(30, 0.15);
+  opacity->AddPoint(170, 0.8);
+  vtkNew<vtkVolume> volume;
+  volume->SetMapper(mapper);
+  volume->GetProperty()->SetColor(colour);
+  volume->GetProperty()->SetScalarOpacity(opacity);
+  volume->GetProperty()->SetScalarOpacityUnitDistance(4);
+  volume->GetProperty()->SetInterpolationTypeToLinear();
+  renderer->AddVolume(volume);
+  return volume;
+}
+
+void Scene::look(vtkRenderer* renderer)
+{
+  renderer->ResetCamera();
+  vtkCamera* camera = renderer->GetActiveCamera();
+  camera->Azimuth(35);
+  camera->Elevation(25);
+  camera->Roll(10);
+  camera->Zoom(1.4);
+  renderer->ResetCameraClippingRange();
+}
+
+inr::Image Scene::capture()
+{
+  this->window->Render();
+  vtkNew<vtkWindowToImageFilter> reader;
+  reader->SetInput(this->window);
+  reader->SetInputBufferTypeToRGBA();
+  reader->ReadFrontBufferOff();
+  reader->ShouldRerenderOff();
+  reader->Update();
+  return ToImage(reader->GetOutput());
+}
+
+vtkSmartPointer<vtkINRVolumeMapper> InrMapper(const std::string& file, vtkIdType maximumGridPoints)
+{
+  vtkNew<vtkINRReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->SetMaximumGridPoints(maximumGridPoints);
+  auto mapper = vtkSmartPointer<vtkINRVolumeMapper>::New();
+  mapper->SetInputConnection(reader->GetOutputPort());
+  return mapper;
+}
+
+vtkSmartPointer<vtkVolumeMapper> VoxelMapper(vtkImageData* voxels)
+{
+  // Not the fixed-point mapper: it knows no direction matrix, and on the first frame no aspect
+  // ratio.
+  auto mapper = vtkSmartPointer<vtkGPUVolumeRayCastMapper>::New();
+  mapper->SetInputData(voxels);
+  mapper->AutoAdjustSampleDistancesOff();
+  mapper->SetImageSampleDistance(1);
+  mapper->SetSampleDistance(0.25f);
+  return mapper;
+}
+
+Messages::Messages(vtkObject* object)
+{
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(this);
+  command->SetCallback([](vtkObject*, unsigned long event, void* self, void* text) {
+    auto* messages = static_cast<Messages*>(self);
+    ++(event == vtkCommand::ErrorEvent ? messages->errors : messages->warnings);
+    messages->last = static_cast<const char*>(text);
+  });
+  object->AddObserver(vtkCommand::ErrorEvent, command);
+  object->AddObserver(vtkCommand::WarningEvent, command);
+}
+
+inr::Image ReadPng(const std::string& path)
+{
+  vtkNew<vtkPNGReader> reader;
+  if (!reader->CanReadFile(path.c_str())) {
+    throw std::runtime_error("cannot read " + path);
+  }
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  return ToImage(reader->GetOutput());
+}
+
+void WritePng(const std::string& path, const inr::Image& image)
+{
+  vtkNew<vtkImageData> picture;
+  picture->SetDimensions(image.width, image.height, 1);
+  picture->AllocateScalars(VTK_UNSIGNED_CHAR, 4);
+  auto* bytes = static_cast<unsigned char*>(picture->GetScalarPointer());
+  std::transform(image.pixels.begin(), image.pixels.end(), bytes, [](float value) {
+    return static_cast<unsigned char>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+  });
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetFileName(path.c_str());
+  writer->SetInputData(picture);
+  writer->Write();
+}
+
+} // namespace test

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table must say, at any value, what VTK's two functions say.
+#include "TransferFunctionBuilder.h"
+
+#include <vtkColorTransferFunction.h>
+#include <vtkNew.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkVolumeProperty.h>
+
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+class TransferFunctions : public testing::Test
+{
+protected:
+  TransferFunctions()
+  {
+    this->property->SetColor(this->colour);
+    this->property->SetScalarOpacity(this->opacity);
+  }
+
+  vtkNew<vtkColorTransferFunction> colour;
+  vtkNew<vtkPiecewiseFunction> opacity;
+  vtkNew<vtkVolumeProperty> property;
+};
+
+/// The lookup that TransferFunction documents.
+glm::vec4 LookUp(const inr::TransferFunction& table, double value)
+{
+  if (value < table.low || value > table.high) {
+    return value < table.low ? table.below : table.above;
+  }
+  const double t = table.logarithmic
+                       ? std::log(value / table.low) / std::log(table.high / table.low)
+                       : (value - table.low) / (table.high - table.low);
+  const double position = t * static_cast<double>(table.table.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(position), table.table.size() - 2);
+  return glm::mix(table.table[k], table.table[k + 1], static_cast<float>(position - k));
+}
+
+void ExpectColour(const glm::vec4& actual, double r, double g, double b, double tolerance)
+{
+  EXPECT_NEAR(actual.r, r, tolerance);
+  EXPECT_NEAR(actual.g, g, tolerance);
+  EXPECT_NEAR(actual.b, b, tolerance);
+}
+
+TEST_F(TransferFunctions, AgreeWithVtkBetweenTheNodes)
+{
+  this->colour->AddRGBPoint(-3, 1, 0, 0);
+  this->colour->AddRGBPoint(2, 0, 1, 0);
+  this->colour->AddRGBPoint(10, 0, 0.2, 1);
+  this->opacity->AddPoint(0, 0);
+  this->opacity->AddPoint(4, 0.7);
+  this->opacity->AddPoint(20, 0.1);
+  const auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_EQ(table.low, -3);
+  EXPECT_EQ(table.high, 20);
+  EXPECT_FALSE(table.logarithmic);
+  for (double value = -5; value < 22; value += 0.37) {
+    double rgb[3];
+    this->colour->GetColor(value, rgb);
+    const glm::vec4 actual = LookUp(table, value);
+    ExpectColour(actual, rgb[0], rgb[1], rgb[2], 0.005);
+    EXPECT_NEAR(actual.a, this->opacity->GetValue(value), 0.005) << value;
+  }
+}
+
+TEST_F(TransferFunctions, EndWhereClampingIsOff)
+{
+  this->colour->AddRGBPoint(0, 1, 1, 0);
+  this->colour->AddRGBPoint(1, 1, 0, 1);
+  this->opacity->AddPoint(0, 0.5);
+  this->opacity->AddPoint(1, 0.25);
+  auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_EQ(table.below, glm::vec4(1, 1, 0, 0.5));
+  EXPECT_EQ(table.above, glm::vec4(1, 0, 1, 0.25));
+
+  this->opacity->ClampingOff();
+  this->colour->ClampingOff();
+  table = inr::BuildTransferFunction(this->property);
+  EXPECT_EQ(table.below, glm::vec4(0));
+  EXPECT_EQ(table.above, glm::vec4(0));
+  ExpectColour(table.table.front(), 1, 1, 0, 1e-6);
+  ExpectColour(table.table.back(), 1, 0, 1, 1e-6);
+  EXPECT_NEAR(table.table.front().a, 0.5, 1e-6);
+  EXPECT_NEAR(table.table.back().a, 0.25, 1e-6);
+}
+
+TEST_F(TransferFunctions, ShowColoursBelowAndAboveTheRange)
+{
+  this->colour->AddRGBPoint(0, 1, 1, 0);
+  this->colour->AddRGBPoint(1, 1, 0, 1);
+  this->colour->SetBelowRangeColor(0.1, 0.2, 0.3);
+  this->colour->SetAboveRangeColor(0.4, 0.5, 0.6);
+  this->colour->UseBelowRangeColorOn();
+  this->colour->UseAboveRangeColorOn();
+  this->opacity->AddPoint(0, 1);
+  this->opacity->AddPoint(1, 1);
+  const auto table = inr::BuildTransferFunction(this->property);
+  ExpectColour(table.below, 0.1, 0.2, 0.3, 1e-6);
+  ExpectColour(table.above, 0.4, 0.5, 0.6, 1e-6);
+  ExpectColour(table.table.front(), 1, 1, 0, 1e-6);
+  ExpectColour(table.table.back(), 1, 0, 1, 1e-6);
+}
+
+TEST_F(TransferFunctions, AreSampledInLogSpaceForALogScale)
+{
+  this->colour->AddRGBPoint(1e-3, 0, 0, 0);
+  this->colour->AddRGBPoint(1e3, 1, 1, 1);
+  this->colour->SetScaleToLog10();
+  this->opacity->AddPoint(1e-3, 0);
+  this->opacity->AddPoint(1e3, 1);
+  this->colour->ClampingOff();
+  const auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_TRUE(table.logarithmic);
+  // In log space 1 is half way, 0.01 one sixth; the opacity stays linear in the value.
+  ExpectColour(LookUp(table, 1.0), 0.5, 0.5, 0.5, 0.005);
+  ExpectColour(LookUp(table, 1e-2), 1 / 6.0, 1 / 6.0, 1 / 6.0, 0.005);
+  EXPECT_NEAR(LookUp(table, 500.0).a, 0.5, 0.005);
+  ExpectColour(table.table.back(), 1, 1, 1, 1e-6);
+}
+
+TEST_F(TransferFunctions, KeepALogScalePositiveWhenTheOpacityIsNot)
+{
+  this->colour->AddRGBPoint(0.1, 0, 0, 0);
+  this->colour->AddRGBPoint(10, 1, 1, 1);
+  this->colour->SetScaleToLog10();
+  this->opacity->AddPoint(-5, 0);
+  this->opacity->AddPoint(10, 1);
+  const auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_TRUE(table.logarithmic);
+  EXPECT_EQ(table.low, 0.1);
+}
+
+TEST_F(TransferFunctions, ResolveNodesThatAreCloseTogether)
+{
+  this->colour->AddRGBPoint(0, 1, 1, 1);
+  this->opacity->AddPoint(0, 0);
+  this->opacity->AddPoint(5000, 0);
+  this->opacity->AddPoint(5001, 1);
+  this->opacity->AddPoint(5002, 0);
+  this->opacity->AddPoint(10000, 0);
+  const auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_GT(LookUp(table, 5001.0).a, 0.7);
+  EXPECT_LE(table.table.size(), 16385u);
+}
+
+TEST_F(TransferFunctions, ExistForFunctionsWithoutOrWithOneNode)
+{
+  auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_LT(table.low, table.high);
+  EXPECT_GE(table.table.size(), 2u);
+
+  this->colour->AddRGBPoint(7, 0.5, 0.25, 0.75);
+  this->opacity->AddPoint(7, 0.5);
+  table = inr::BuildTransferFunction(this->property);
+  EXPECT_EQ(table.low, 7);
+  EXPECT_LT(table.low, table.high);
+  EXPECT_EQ(LookUp(table, 7), glm::vec4(0.5, 0.25, 0.75, 0.5));
+}
+
+TEST_F(TransferFunctions, TakeAGrayFunctionToo)
+{
+  this->opacity->AddPoint(0, 0);
+  this->opacity->AddPoint(1, 1);
+  vtkNew<vtkPiecewiseFunction> gray;
+  gray->AddPoint(0, 0.2);
+  gray->AddPoint(1, 0.6);
+  this->property->SetColor(gray);
+  ExpectColour(LookUp(inr::BuildTransferFunction(this->property), 0.5), 0.4, 0.4, 0.4, 0.005);
+}
+
+TEST_F(TransferFunctions, AreRebuiltOnlyWhenTheyChange)
+{
+  this->colour->AddRGBPoint(0, 1, 1, 1);
+  this->opacity->AddPoint(0, 0);
+  this->opacity->AddPoint(1, 1);
+  inr::TransferFunctionCache cache;
+  const glm::vec4* entries = cache.get(this->property).table.data();
+  this->property->SetScalarOpacityUnitDistance(3);
+  EXPECT_EQ(cache.get(this->property).table.data(), entries);
+  this->opacity->AddPoint(1, 0.5);
+  EXPECT_EQ(LookUp(cache.get(this->property), 1.0).a, 0.5f);
+}
+
+} // namespace
