@@ -12,6 +12,7 @@
 
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkObjectFactory.h>
@@ -20,6 +21,12 @@
 #include <string>
 
 vtkStandardNewMacro(vtkINRWriter);
+
+vtkINRWriter::vtkINRWriter()
+{
+  this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                               vtkDataSetAttributes::SCALARS);
+}
 
 vtkINRWriter::~vtkINRWriter()
 {

@@ -93,7 +93,7 @@ public:
   ///@}
 
 protected:
-  vtkINRWriter() = default;
+  vtkINRWriter();
   ~vtkINRWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Result files: results/<machine>/<topic>.json, with the context they were measured in."""
+import datetime
+import json
+import os
+import platform
+import re
+import subprocess
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().parent / "results"
+
+
+def cpu_name():
+    """The processor's model, with what tells apart machines that hide it behind a family name."""
+    text = Path("/proc/cpuinfo").read_text()
+    fields = {key: re.search(rf"^{key}\s*: (.*)$", text, re.M)[1]
+              for key in ("model name", "cpu family", "model")}
+    sets = [name for name in ("avx2", "avx512f", "amx_bf16") if re.search(rf"\b{name}\b", text)]
+    return (f"{fields['model name']} (family {fields['cpu family']}, model {fields['model']}; "
+            f"{' '.join(sets)})")
+
+
+def context():
+    def first_line(*command):
+        return subprocess.run(command, capture_output=True, text=True, check=True,
+                              cwd=FOLDER.parent).stdout.splitlines()[0]
+    return {
+        "cpu": cpu_name(),
+        "cores": len(os.sched_getaffinity(0)),
+        "compiler": first_line("c++", "--version"),
+        "commit": first_line("git", "describe", "--always", "--dirty", "--exclude=*"),
+        "date": datetime.date.today().isoformat(),
+    }
+
+
+def result(name, value, unit, better, note="", **more):
+    return {"name": name, "value": value, "unit": unit, "better": better, "note": note, **more}
+
+
+def write(topic, results):
+    """Writes and returns the path; the machine's folder is its CPU and number of cores."""
+    about = context()
+    machine = re.sub(r"[^a-z0-9]+", "-", f"{about['cpu']} {about['cores']} cores".lower()).strip("-")
+    path = FOLDER / machine / f"{topic}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({"context": about, "results": results}, indent=1) + "\n")
+    print(f"{path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path}")
+    return path

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Every broken file gives one inr::Error that names it.
+#include "Core/Error.h"
+#include "Testing/Core/Model/TemporaryFolder.h"
+
+#include <cstring>
+
+namespace {
+
+struct BadFiles : testing::Test
+{
+  BadFiles()
+  {
+    inr::WriteModel(*FullModel(), Folder.file("good.inr"));
+    this->Good = ReadBytes(Folder.file("good.inr"));
+  }
+
+  void expectRefused(const std::string& bytes, const std::string& what)
+  {
+    const std::string path = Folder.file("bad.inr");
+    WriteBytes(path, bytes);
+    this->expectRefusedPath(path, what);
+  }
+
+  void expectRefusedPath(const std::string& path, const std::string& what)
+  {
+    try {
+      inr::ReadModel(path);
+      ADD_FAILURE() << what << " was accepted";
+    } catch (const inr::Error& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << what;
+    }
+  }
+
+  /// `Good` with the bytes after the `skip`-th byte behind `key` replaced.
+  std::string with(const std::string& key, std::size_t skip, const void* value, std::size_t size)
+  {
+    std::string bytes = this->Good;
+    const std::size_t at = bytes.find(key + '\0');
+    EXPECT_NE(at, std::string::npos) << key;
+    std::memcpy(bytes.data() + at + key.size() + 1 + skip, value, size);
+    return bytes;
+  }
+
+  TemporaryFolder Folder;
+  std::string Good;
+};
+
+TEST_F(BadFiles, TheGoodOneIsGood) { EXPECT_NO_THROW(inr::ReadModel(Folder.file("good.inr"))); }
+
+TEST_F(BadFiles, MissingEmptyAndFolders)
+{
+  this->expectRefusedPath(Folder.file("missing.inr"), "a missing file");
+  this->expectRefusedPath(Folder.Path.string(), "a folder");
+  this->expectRefused("", "an empty file");
+}
+
+TEST_F(BadFiles, OtherFormats)
+{
+  this->expectRefused("#INRIMAGE-4#{\nXDIM=3\nYDIM=3\n##}\n", "an INRIA image");
+  this->expectRefused("{\"some\": \"json\"}", "other JSON");
+  this->expectRefused("{\"model\": ", "half a JSON");
+  this->expectRefused(std::string(5000, '\xff'), "noise");
+}
+
+TEST_F(BadFiles, TruncatedAnywhere)
+{
+  for (std::size_t length = 1; length < this->Good.size(); length += 97) {
+    this->expectRefused(this->Good.substr(0, length), "cut to " + std::to_string(length));
+  }
+}
+
+TEST_F(BadFiles, SomethingBehindTheEnd) { this->expectRefused(this->Good + "x", "a tail"); }
+
+TEST_F(BadFiles, HugeClaims)
+{
+  const std::int32_t huge = 0x7fffffff;
+  const std::int32_t negative = -5;
+  for (const std::int32_t& length : {huge, negative}) {
+    this->expectRefused(this->with("params_binary", 0, &length, 4), "a length of a blob");
+    this->expectRefused(this->with("n_params", 0, &length, 4), "a number of parameters");
+    this->expectRefused(this->with("n_levels", 0, &length, 4), "a number of levels");
+    this->expectRefused(this->with("macrocell", 0, &length, 4), "a length of a document");
+    this->expectRefused(this->with("n_neurons", 0, &length, 4), "a width");
+  }
+  // The first "x" belongs to our own dimensions: its neighbours' product must not overflow.
+  std::string bytes = this->Good;
+  for (const char* axis : {"x", "y", "z"}) {
+    const std::size_t at = bytes.find(std::string("\x10") + axis + '\0', bytes.find("dims"));
+    std::memcpy(bytes.data() + at + 3, &huge, 4);
+  }
+  this->expectRefused(bytes, "2^93 voxels");
+}
+
+TEST_F(BadFiles, DamagedParameters)
+{
+  const float nan = NAN;
+  const float infinity = HUGE_VALF;
+  const float other = 0.125f;
+  for (const float& value : {nan, infinity, other}) { // the last is caught by the checksum
+    this->expectRefused(this->with("params_binary", 5 + 40, &value, 4), "a parameter");
+  }
+  this->expectRefused(this->with("data", 5 + 8, &nan, 4), "a range");
+}
+
+TEST_F(BadFiles, WrongWordsAndTypes)
+{
+  this->expectRefused(this->with("hash_rule", 4, "wrapperg", 8), "an unknown rule");
+  this->expectRefused(this->with("array_type", 4, "uint61", 6), "an unknown type");
+  const std::int32_t version = 99;
+  this->expectRefused(this->with("format_version", 0, &version, 4), "a later version");
+  std::string bytes = this->Good;
+  bytes[bytes.find("n_params") - 1] = '\x08'; // a bool where a number belongs
+  this->expectRefused(bytes, "a wrong type");
+  bytes = this->Good;
+  bytes[bytes.find("n_params") - 1] = '\x7f';
+  this->expectRefused(bytes, "an unknown type tag");
+}
+
+/// `depth` documents inside each other.
+std::string Nested(int depth)
+{
+  std::string inner("\x05\0\0\0\0", 5);
+  for (int k = 0; k < depth; ++k) {
+    const auto length = static_cast<std::int32_t>(inner.size() + 8);
+    std::string outer(8, '\0');
+    std::memcpy(outer.data(), &length, 4);
+    outer[4] = '\x03';
+    outer.replace(5, 2, std::string("a\0", 2));
+    inner = outer.substr(0, 7) + inner + std::string(1, '\0');
+  }
+  return inner;
+}
+
+TEST_F(BadFiles, DeepNesting) { this->expectRefused(Nested(100000), "100,000 levels"); }
+
+TEST_F(BadFiles, DuplicateKeys)
+{
+  std::string bytes = this->Good;
+  bytes.replace(bytes.find("n_levels"), 8, "base_res"); // two short names of one length
+  this->expectRefused(bytes, "a lost key");
+  bytes = this->Good;
+  bytes.replace(bytes.find(std::string("spacing\0", 8)), 7, "origin\0"); // as `origin`, twice
+  this->expectRefused(bytes, "a duplicate");
+}
+
+} // namespace

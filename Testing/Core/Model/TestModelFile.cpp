@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Error.h"
+#include "Testing/Core/Model/TemporaryFolder.h"
+
+#include <cmath>
+#include <limits>
+
+namespace {
+
+struct ModelFile : testing::Test
+{
+  inr::ModelPointer roundTrip(const inr::Model& model)
+  {
+    inr::WriteModel(model, Folder.file("model.inr"));
+    return inr::ReadModel(Folder.file("model.inr"));
+  }
+  TemporaryFolder Folder;
+};
+
+TEST_F(ModelFile, KeepsEveryField)
+{
+  const auto written = FullModel();
+  const inr::ModelPointer read = this->roundTrip(*written);
+  EXPECT_EQ(read->parameters, written->parameters);
+  EXPECT_EQ(read->storedAs, written->storedAs);
+  EXPECT_EQ(read->volume.dims, written->volume.dims);
+  EXPECT_EQ(read->volume.spacing, written->volume.spacing);
+  EXPECT_EQ(read->volume.origin, written->volume.origin);
+  EXPECT_EQ(read->volume.direction, written->volume.direction);
+  EXPECT_EQ(read->volume.arrayName, written->volume.arrayName);
+  EXPECT_EQ(read->volume.type, written->volume.type);
+  EXPECT_EQ(read->volume.low, written->volume.low);
+  EXPECT_EQ(read->volume.high, written->volume.high);
+  EXPECT_EQ(read->quality->psnr, written->quality->psnr);
+  EXPECT_EQ(read->quality->maxError, written->quality->maxError);
+  EXPECT_EQ(read->training->steps, written->training->steps);
+  EXPECT_EQ(read->training->seed, written->training->seed);
+  EXPECT_EQ(read->training->kernel, written->training->kernel);
+  EXPECT_EQ(read->training->nonFinite, written->training->nonFinite);
+  EXPECT_EQ(read->macroCells.dims, written->macroCells.dims);
+  EXPECT_EQ(read->macroCells.provenance, written->macroCells.provenance);
+}
+
+TEST_F(ModelFile, RangesNeverBecomeNarrower)
+{
+  const auto written = FullModel();
+  const inr::ModelPointer read = this->roundTrip(*written);
+  ASSERT_TRUE(read->macroCells.ranges[0].empty());
+  for (std::size_t k = 1; k < written->macroCells.ranges.size(); ++k) {
+    EXPECT_LE(read->macroCells.ranges[k].low, written->macroCells.ranges[k].low);
+    EXPECT_GE(read->macroCells.ranges[k].high, written->macroCells.ranges[k].high);
+    EXPECT_NEAR(read->macroCells.ranges[k].low, written->macroCells.ranges[k].low, 1e-6);
+  }
+}
+
+TEST_F(ModelFile, HalfIsTheNearestHalf)
+{
+  auto model = FullModel();
+  model->storedAs = inr::ParameterType::Half;
+  model->parameters[0] = 1.0f + 0.75f / 1024; // between 1 + 0/1024 and 1 + 1/1024
+  EXPECT_EQ(this->roundTrip(*model)->parameters[0], 1.0f + 1.0f / 1024);
+}
+
+TEST_F(ModelFile, KeepsInfiniteAndUndefinedQuality)
+{
+  auto model = FullModel();
+  model->quality = inr::Quality{HUGE_VAL, NAN, 0.0};
+  const inr::ModelPointer read = this->roundTrip(*model);
+  EXPECT_EQ(read->quality->psnr, HUGE_VAL);
+  EXPECT_TRUE(std::isnan(read->quality->ssim));
+}
+
+TEST_F(ModelFile, SizeIsKnownBeforehand)
+{
+  const auto model = FullModel();
+  this->roundTrip(*model);
+  EXPECT_EQ(static_cast<std::uintmax_t>(inr::ModelFileSize(*model)),
+            std::filesystem::file_size(Folder.file("model.inr")));
+}
+
+TEST_F(ModelFile, HeaderLeavesOutTheBulk)
+{
+  const auto model = FullModel();
+  this->roundTrip(*model);
+  const inr::Model header = inr::ReadModelHeader(Folder.file("model.inr"));
+  EXPECT_TRUE(header.parameters.empty());
+  EXPECT_EQ(header.volume.dims, model->volume.dims);
+  EXPECT_EQ(header.quality->psnr, model->quality->psnr);
+}
+
+TEST_F(ModelFile, OverridesWin)
+{
+  this->roundTrip(*FullModel());
+  inr::ModelOverrides overrides;
+  overrides.dims = glm::i64vec3(8, 9, 10);
+  overrides.dataRange = glm::dvec2(-2, 3);
+  const inr::ModelPointer read = inr::ReadModel(Folder.file("model.inr"), overrides);
+  EXPECT_EQ(read->volume.dims, glm::i64vec3(8, 9, 10));
+  EXPECT_EQ(read->volume.low, -2.0);
+}
+
+TEST_F(ModelFile, IsRecognisedByContent)
+{
+  this->roundTrip(*FullModel());
+  EXPECT_TRUE(inr::IsModelFile(Folder.file("model.inr")));
+  WriteBytes(Folder.file("inria.inr"), "#INRIMAGE-4#{\nXDIM=3\n");
+  EXPECT_FALSE(inr::IsModelFile(Folder.file("inria.inr")));
+  EXPECT_FALSE(inr::IsModelFile(Folder.file("missing.inr")));
+  EXPECT_FALSE(inr::IsModelFile(Folder.Path.string()));
+}
+
+TEST_F(ModelFile, FailedWritesLeaveWhatWasThere)
+{
+  this->roundTrip(*FullModel());
+  const std::string before = ReadBytes(Folder.file("model.inr"));
+  auto broken = FullModel();
+  broken->storedAs = inr::ParameterType::Half;
+  broken->parameters[5] = 1e6f; // half precision ends at 65504
+  EXPECT_THROW(inr::WriteModel(*broken, Folder.file("model.inr")), inr::Error);
+  broken->parameters[5] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(inr::WriteModel(*broken, Folder.file("model.inr")), inr::Error);
+  EXPECT_EQ(ReadBytes(Folder.file("model.inr")), before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(Folder.Path), {}), 1);
+}
+
+TEST_F(ModelFile, UnwritableTargetsAreNamed)
+{
+  try {
+    inr::WriteModel(*FullModel(), Folder.file("none/model.inr"));
+    FAIL();
+  } catch (const inr::Error& error) {
+    EXPECT_EQ(error.code(), inr::ErrorCode::CannotWrite);
+    EXPECT_NE(std::string(error.what()).find("none/model.inr"), std::string::npos);
+  }
+}
+
+TEST_F(ModelFile, UpstreamsPartHasItsKnownSize)
+{
+  // The default model of a 1024^3 volume: 526 bytes of framing, 64^3 cells, 23,380,992 halves.
+  inr::Model model;
+  model.description.grid.levels = 8;
+  model.description.grid.features = 8;
+  model.volume.dims = {1024, 1024, 1024};
+  model.macroCells = inr::MakeMacroCells(model.volume.dims, 16);
+  EXPECT_EQ(model.macroCells.ranges.size() * 8, 2'097'152u);
+  EXPECT_EQ(inr::Layout(model.description).parameterCount * 2, 46'761'984u);
+  const std::int64_t own = inr::ModelFileSize(model) - 48'859'662;
+  EXPECT_GT(own, 0);
+  EXPECT_LT(own, 2000); // our section, and settings that upstream leaves at their defaults
+}
+
+} // namespace

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Thousands of damaged files, the same on every run: each must load or give an inr::Error.
+#include "Core/Error.h"
+#include "Testing/Core/Model/TemporaryFolder.h"
+
+namespace {
+
+struct Mutations : testing::Test
+{
+  Mutations()
+  {
+    inr::WriteModel(*FullModel(), Folder.file("good.inr"));
+    this->Good = ReadBytes(Folder.file("good.inr"));
+  }
+
+  /// Anything but inr::Error ends the test.
+  bool loads(const std::string& bytes)
+  {
+    const std::string path = Folder.file("mutant.inr");
+    WriteBytes(path, bytes);
+    static_cast<void>(inr::IsModelFile(path));
+    try {
+      inr::ReadModel(path);
+      return true;
+    } catch (const inr::Error&) {
+      return false;
+    }
+  }
+
+  TemporaryFolder Folder;
+  std::string Good;
+};
+
+TEST_F(Mutations, OfRandomBytes)
+{
+  int loaded = 0;
+  for (std::uint64_t mutant = 0; mutant < 3000; ++mutant) {
+    std::string bytes = this->Good;
+    const int changes = 1 + static_cast<int>(inr::RandomBits(1, mutant) % 6);
+    for (int k = 0; k < changes; ++k) {
+      const std::uint64_t random = inr::RandomBits(mutant, static_cast<std::uint64_t>(k));
+      // Most changes go where the structure is: the blobs are the bulk of the file.
+      const std::size_t range =
+          k % 3 == 0 ? bytes.size() : std::min<std::size_t>(bytes.size(), 2048);
+      bytes[random % range] = static_cast<char>(random >> 40);
+    }
+    loaded += this->loads(bytes) ? 1 : 0;
+  }
+  EXPECT_LT(loaded, 1500); // most damage is noticed
+}
+
+TEST_F(Mutations, OfAWindowThatSlidesOverTheHeader)
+{
+  for (const char fill : {'\0', '\x7f', '\xff'}) {
+    for (std::size_t at = 0; at + 4 <= std::min<std::size_t>(this->Good.size(), 2048); at += 2) {
+      std::string bytes = this->Good;
+      bytes.replace(at, 4, std::string(4, fill));
+      static_cast<void>(this->loads(bytes));
+    }
+  }
+}
+
+TEST_F(Mutations, OfLengths)
+{
+  for (std::uint64_t mutant = 0; mutant < 500; ++mutant) {
+    std::string bytes = this->Good;
+    const std::uint64_t random = inr::RandomBits(2, mutant);
+    const std::size_t at = random % bytes.size();
+    bytes.erase(at, 1 + (random >> 32) % 64);
+    EXPECT_FALSE(this->loads(bytes)) << "without bytes from " << at;
+  }
+}
+
+} // namespace

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Files as instantvnr and cINR write them, made by make_upstream_files.py.
+#include "Core/Error.h"
+#include "Testing/Core/Model/TemporaryFolder.h"
+
+#include <nlohmann/json.hpp>
+
+namespace {
+
+std::vector<std::string> CaseNames()
+{
+  std::ifstream file(INR_UPSTREAM_DIR "/cases.txt");
+  return {std::istream_iterator<std::string>(file), {}};
+}
+
+struct UpstreamFiles : testing::TestWithParam<std::string>
+{
+  std::string path() const { return INR_UPSTREAM_DIR "/" + this->GetParam() + ".upstream"; }
+  nlohmann::json expected() const
+  {
+    return nlohmann::json::parse(ReadBytes(INR_UPSTREAM_DIR "/" + this->GetParam() + ".expected"));
+  }
+};
+
+TEST_P(UpstreamFiles, Open)
+{
+  const inr::ModelPointer model = inr::ReadModel(this->path());
+  const nlohmann::json expected = this->expected();
+  EXPECT_TRUE(inr::IsModelFile(this->path()));
+  EXPECT_EQ(model->parameters, expected["parameters"].get<std::vector<float>>());
+  EXPECT_EQ(model->storedAs == inr::ParameterType::Half, expected["half"].get<bool>());
+  EXPECT_EQ(model->description.network.alignment, expected["alignment"].get<int>());
+  EXPECT_EQ(model->description.grid.levels, 3);
+  EXPECT_EQ(model->description.grid.rule, inr::HashRule::Wrapping);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(model->volume.dims[axis], expected["dims"][static_cast<std::size_t>(axis)]);
+  }
+  EXPECT_FALSE(model->quality.has_value());
+}
+
+TEST_P(UpstreamFiles, TellTheirRanges)
+{
+  const inr::ModelPointer model = inr::ReadModel(this->path());
+  const nlohmann::json expected = this->expected()["ranges"];
+  ASSERT_EQ(model->macroCells.ranges.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    const inr::ValueRange& range = model->macroCells.ranges[k];
+    if (expected[k][0] > expected[k][1]) {
+      EXPECT_TRUE(range.empty()) << k;
+    } else {
+      EXPECT_NEAR(range.low, expected[k][0].get<float>(), 1e-6) << k;
+      EXPECT_NEAR(range.high, expected[k][1].get<float>(), 1e-6) << k;
+    }
+  }
+  EXPECT_EQ(model->macroCells.provenance, inr::MacroCellProvenance::File);
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, UpstreamFiles, testing::ValuesIn(CaseNames()),
+                         [](const auto& info) { return info.param; });
+// The list is read when the program starts: an empty one must not pass silently.
+TEST(UpstreamFileList, IsThere) { EXPECT_GE(CaseNames().size(), 14u); }
+
+TEST(UpstreamFile, WithoutDimensionsAsksForThem)
+{
+  const std::string path = INR_UPSTREAM_DIR "/no_volume.broken";
+  try {
+    inr::ReadModel(path);
+    FAIL();
+  } catch (const inr::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("Dimensions"), std::string::npos) << error.what();
+  }
+  inr::ModelOverrides overrides;
+  overrides.dims = glm::i64vec3(40, 30, 20);
+  EXPECT_EQ(inr::ReadModel(path, overrides)->volume.dims.x, 40);
+}
+
+} // namespace
