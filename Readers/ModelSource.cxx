@@ -3,43 +3,40 @@
 
 #include "Core/Error.h"
 
-#include <filesystem>
+#include <cerrno>
+#include <sys/stat.h>
 #include <system_error>
 
-namespace fs = std::filesystem;
+ModelSource::FileStamp ModelSource::StampOf(const std::string& path)
+{
+  struct stat status = {};
+  if (stat(path.c_str(), &status) != 0) {
+    throw inr::Error(inr::ErrorCode::CannotRead,
+                     "cannot read '" + path + "': " + std::generic_category().message(errno));
+  }
+  return {status.st_ino, status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_size};
+}
 
 void ModelSource::Select(const std::string& path, const inr::ModelOverrides& overrides)
 {
-  std::error_code problem;
-  const auto time = fs::last_write_time(path, problem);
-  // A folder or a device has a time but no size; reading it tells what is wrong.
-  std::error_code noSize;
-  const auto size = fs::file_size(path, noSize);
-  if (problem) {
-    throw inr::Error(inr::ErrorCode::CannotRead, path + ": " + problem.message());
-  }
-
-  const std::int64_t ticks = time.time_since_epoch().count();
-  const std::int64_t bytes = noSize ? 0 : static_cast<std::int64_t>(size);
-  const bool same = path == this->Path && ticks == this->Time && bytes == this->Size &&
+  const FileStamp stamp = StampOf(path);
+  const bool same = path == this->Path && stamp == this->File &&
                     overrides.dims == this->Overrides.dims &&
                     overrides.dataRange == this->Overrides.dataRange;
   if (!same) {
     *this = ModelSource();
     this->Path = path;
     this->Overrides = overrides;
-    this->Time = ticks;
-    this->Size = bytes;
+    this->File = stamp;
   }
 }
 
 const inr::Model& ModelSource::Header()
 {
-  if (!this->HasHeader) {
+  if (!this->LoadedHeader) {
     this->LoadedHeader = inr::ReadModelHeader(this->Path, this->Overrides);
-    this->HasHeader = true;
   }
-  return this->LoadedHeader;
+  return *this->LoadedHeader;
 }
 
 const inr::ModelPointer& ModelSource::Model()

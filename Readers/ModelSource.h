@@ -5,6 +5,7 @@
 #include "Core/Model/ModelFile.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 /// A model file that is read again only when name, overrides or the file itself have changed.
@@ -20,14 +21,29 @@ public:
   /// The whole model. Throws inr::Error.
   const inr::ModelPointer& Model();
 
-  std::int64_t FileSize() const { return this->Size; }
+  std::int64_t FileSize() const { return this->File.size; }
 
 private:
+  /// Tells versions of a file apart. A file that is replaced within one tick of the clock has
+  /// another number.
+  struct FileStamp
+  {
+    std::uint64_t number = 0;
+    std::int64_t seconds = 0;
+    std::int64_t nanoseconds = 0;
+    std::int64_t size = 0;
+
+    bool operator==(const FileStamp& other) const
+    {
+      return this->number == other.number && this->seconds == other.seconds &&
+             this->nanoseconds == other.nanoseconds && this->size == other.size;
+    }
+  };
+  static FileStamp StampOf(const std::string& path);
+
   std::string Path;
   inr::ModelOverrides Overrides;
-  std::int64_t Time = 0;
-  std::int64_t Size = 0;
-  inr::Model LoadedHeader;
-  bool HasHeader = false;
+  FileStamp File;
+  std::optional<inr::Model> LoadedHeader;
   inr::ModelPointer Loaded;
 };

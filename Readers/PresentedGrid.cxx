@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PresentedGrid.h"
 
-#include "Core/Error.h"
-
-#include <vtkType.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <string>
 
 namespace {
 
@@ -40,18 +34,6 @@ glm::i64vec3 FinestDims(const glm::i64vec3& native, double maximumPoints)
   return ScaledDims(native, coarse);
 }
 
-void CheckIndexable(const glm::i64vec3& dims)
-{
-  const auto longest = std::max({dims.x, dims.y, dims.z});
-  if (longest > std::numeric_limits<int>::max() ||
-      CountPoints(dims) > static_cast<double>(VTK_ID_MAX)) {
-    throw inr::Error(inr::ErrorCode::TooLarge,
-                     "a grid of " + std::to_string(dims.x) + " x " + std::to_string(dims.y) +
-                         " x " + std::to_string(dims.z) +
-                         " points is more than VTK can number; set MaximumGridPoints above 0");
-  }
-}
-
 } // namespace
 
 PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoints)
@@ -60,7 +42,6 @@ PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoi
       maximumPoints > 0 && CountPoints(volume.dims) > static_cast<double>(maximumPoints);
   const glm::i64vec3 dims =
       bounded ? FinestDims(volume.dims, static_cast<double>(maximumPoints)) : volume.dims;
-  CheckIndexable(dims);
 
   PresentedGrid grid;
   grid.dims = glm::ivec3(dims);

@@ -17,6 +17,5 @@ struct PresentedGrid
 };
 
 /// The finest such grid with at most `maximumPoints` points (but at least two on every axis that
-/// has two); 0 asks for the native grid. Throws inr::Error(TooLarge) where VTK cannot number the
-/// points.
+/// has two); 0 asks for the native grid. A valid model's grid is never too large for VTK's numbers.
 PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoints);
