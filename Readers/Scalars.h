@@ -3,11 +3,13 @@
 
 #include "Core/Model/Model.h"
 
+#include <vtkSetGet.h>
 #include <vtkType.h>
 #include <vtkTypeTraits.h>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <type_traits>
 
 /// `value` in the type of the source's scalars: integers round to nearest and clamp to the type,
@@ -62,4 +64,31 @@ inline int VtkTypeOf(inr::ScalarType type)
 {
   return DispatchScalar(
       type, [](auto zero) { return static_cast<int>(vtkTypeTraits<decltype(zero)>::VTK_TYPE_ID); });
+}
+
+/// What a C++ type of numbers is.
+template <class T> constexpr inr::ScalarType ScalarTypeOf()
+{
+  constexpr bool isSigned = std::numeric_limits<T>::is_signed;
+  if constexpr (std::is_floating_point_v<T>) {
+    return sizeof(T) == 4 ? inr::ScalarType::Float32 : inr::ScalarType::Float64;
+  } else if constexpr (sizeof(T) == 1) {
+    return isSigned ? inr::ScalarType::Int8 : inr::ScalarType::UInt8;
+  } else if constexpr (sizeof(T) == 2) {
+    return isSigned ? inr::ScalarType::Int16 : inr::ScalarType::UInt16;
+  } else if constexpr (sizeof(T) == 4) {
+    return isSigned ? inr::ScalarType::Int32 : inr::ScalarType::UInt32;
+  } else {
+    return isSigned ? inr::ScalarType::Int64 : inr::ScalarType::UInt64;
+  }
+}
+
+/// The type with VTK's number `vtkType`; nothing for strings, bits and the like.
+inline std::optional<inr::ScalarType> ScalarTypeOf(int vtkType)
+{
+  switch (vtkType) {
+    vtkTemplateMacro(return ScalarTypeOf<VTK_TT>());
+  default:
+    return std::nullopt;
+  }
 }

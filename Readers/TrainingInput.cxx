@@ -2,50 +2,16 @@
 #include "TrainingInput.h"
 
 #include "Core/Error.h"
+#include "Scalars.h"
 
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
 
-#include <limits>
 #include <optional>
 #include <string>
-#include <type_traits>
 
 namespace {
-
-template <class T> inr::ScalarType IntegerType()
-{
-  constexpr bool isSigned = std::numeric_limits<T>::is_signed;
-  switch (sizeof(T)) {
-  case 1:
-    return isSigned ? inr::ScalarType::Int8 : inr::ScalarType::UInt8;
-  case 2:
-    return isSigned ? inr::ScalarType::Int16 : inr::ScalarType::UInt16;
-  case 4:
-    return isSigned ? inr::ScalarType::Int32 : inr::ScalarType::UInt32;
-  default:
-    return isSigned ? inr::ScalarType::Int64 : inr::ScalarType::UInt64;
-  }
-}
-
-template <class T> inr::ScalarType TypeOf(const T*)
-{
-  if constexpr (std::is_floating_point_v<T>) {
-    return sizeof(T) == 4 ? inr::ScalarType::Float32 : inr::ScalarType::Float64;
-  } else {
-    return IntegerType<T>();
-  }
-}
-
-std::optional<inr::ScalarType> ScalarTypeOf(int vtkType)
-{
-  switch (vtkType) {
-    vtkTemplateMacro(return TypeOf(static_cast<const VTK_TT*>(nullptr)));
-  default:
-    return std::nullopt;
-  }
-}
 
 void Require(bool condition, const std::string& message)
 {

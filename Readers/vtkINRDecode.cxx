@@ -204,22 +204,38 @@ void vtkINRDecode::Decode(vtkImageData* output)
 {
   auto* input = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
   const int type = TypeNumber(this->ScalarType, FindModel(input)->GetModel()->volume.type);
+  if (!ScalarTypeOf(type)) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument,
+                     "ScalarType " + std::to_string(type) + " is not a type of numbers");
+  }
   int extent[6];
   output->GetExtent(extent);
   CheckMemory(extent, type);
   auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
   values->SetName(input->GetPointData()->GetScalars()->GetName());
   values->SetNumberOfTuples(output->GetNumberOfPoints());
+  bool finished = false;
   switch (type) {
-    vtkTemplateMacro(this->Fill(static_cast<VTK_TT*>(values->GetVoidPointer(0)), extent));
-  default:
-    throw inr::Error(inr::ErrorCode::InvalidArgument,
-                     "ScalarType " + std::to_string(type) + " is not a type of numbers");
+    vtkTemplateMacro(finished =
+                         this->Fill(static_cast<VTK_TT*>(values->GetVoidPointer(0)), extent));
   }
-  output->GetPointData()->SetScalars(values);
+  if (finished) {
+    output->GetPointData()->SetScalars(values);
+  } else {
+    output->Initialize();
+  }
 }
 
-template <class T> void vtkINRDecode::Fill(T* values, const int extent[6])
+bool vtkINRDecode::ShouldStop()
+{
+#ifdef INR_VTK_CHECK_ABORT
+  return this->CheckAbort() || this->GetAbortExecute() != 0;
+#else
+  return this->GetAbortExecute() != 0;
+#endif
+}
+
+template <class T> bool vtkINRDecode::Fill(T* values, const int extent[6])
 {
   const inr::ModelPointer& model = FindModel(this->GetInputDataObject(0, 0))->GetModel();
   const auto evaluator = inr::MakeEvaluator(model);
@@ -228,7 +244,7 @@ template <class T> void vtkINRDecode::Fill(T* values, const int extent[6])
   const std::int64_t width = extent[1] - extent[0] + 1;
   const std::int64_t height = extent[3] - extent[2] + 1;
   const std::int64_t depth = extent[5] - extent[4] + 1;
-  for (std::int64_t z = 0; z < depth; ++z) {
+  for (std::int64_t z = 0; z < depth && !this->ShouldStop(); ++z) {
     arena.forEachBlock(height, 1, [&](std::int64_t y, std::int64_t) {
       const inr::Lattice row = sampler.Row({extent[0], extent[2] + y, extent[4] + z}, width);
       std::vector<float> samples(
@@ -240,15 +256,8 @@ template <class T> void vtkINRDecode::Fill(T* values, const int extent[6])
       }
     });
     this->UpdateProgress(static_cast<double>(z + 1) / static_cast<double>(depth));
-#ifdef INR_VTK_CHECK_ABORT
-    const bool stopped = this->CheckAbort() || this->GetAbortExecute();
-#else
-    const bool stopped = this->GetAbortExecute();
-#endif
-    if (stopped) {
-      throw inr::Error(inr::ErrorCode::Cancelled, "stopped on request");
-    }
   }
+  return !this->ShouldStop();
 }
 
 void vtkINRDecode::PrintSelf(ostream& os, vtkIndent indent)

@@ -56,7 +56,9 @@ private:
 
   bool DescribeOutput(vtkInformation* outInfo);
   void Decode(vtkImageData* output);
-  template <class T> void Fill(T* values, const int extent[6]);
+  bool ShouldStop();
+  /// False when it was stopped.
+  template <class T> bool Fill(T* values, const int extent[6]);
 
   int VolumeOfInterest[6] = {0, -1, 0, -1, 0, -1};
   int Level = 0;

@@ -66,6 +66,11 @@ public:
   void SetTypedTuple(vtkIdType, const ValueType*) { this->RefuseToWrite(); }
   void SetTypedComponent(vtkIdType, int, ValueType) { this->RefuseToWrite(); }
 
+  // The base class ends the process when it cannot get memory.
+  vtkTypeBool Allocate(vtkIdType, vtkIdType) override { return this->RefuseToWrite(); }
+  vtkTypeBool Resize(vtkIdType) override { return this->RefuseToWrite(); }
+  void SetNumberOfTuples(vtkIdType) override { this->RefuseToWrite(); }
+
   /// A decoded copy of all values, kept for the next call; null, with an error, for too many.
   void* GetVoidPointer(vtkIdType index) override
   {
