@@ -13,8 +13,10 @@
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
+#include <vtkErrorCode.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
+#include <vtkLogger.h>
 #include <vtkObjectFactory.h>
 
 #include <exception>
@@ -43,6 +45,7 @@ int vtkINRWriter::FillInputPortInformation(int, vtkInformation* info)
 
 void vtkINRWriter::WriteData()
 {
+  this->ForgetResult();
   try {
     if (!this->FileName || !*this->FileName) {
       throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
@@ -52,7 +55,7 @@ void vtkINRWriter::WriteData()
     inr::AtomicFile(std::string(this->FileName));
     this->Train(input);
   } catch (const std::exception& error) { // inr::Error, or no memory
-    this->SetErrorCode(1);
+    this->SetErrorCode(vtkErrorCode::UserError);
     vtkErrorMacro("Cannot save '" << (this->FileName ? this->FileName : "")
                                   << "' as an implicit neural representation: " << error.what());
   }
@@ -73,15 +76,17 @@ TrainingInput vtkINRWriter::FindInput()
     throw inr::Error(inr::ErrorCode::InvalidArgument,
                      "the image has no such point array, or none is chosen");
   }
+  const std::string name = array->GetName() ? array->GetName() : "";
   if (association != vtkDataObject::FIELD_ASSOCIATION_POINTS) {
     throw inr::Error(inr::ErrorCode::InvalidArgument,
-                     std::string("array '") + array->GetName() +
-                         "' is cell data; make it point data with CellDataToPointData first");
+                     "array '" + name +
+                         "' is not point data; if it is cell data, use "
+                         "CellDataToPointData first");
   }
   auto* numbers = vtkDataArray::SafeDownCast(array);
   if (!numbers) {
-    throw inr::Error(inr::ErrorCode::InvalidArgument, std::string("array '") + array->GetName() +
-                                                          "' is a " + array->GetClassName() +
+    throw inr::Error(inr::ErrorCode::InvalidArgument, "array '" + name + "' is a " +
+                                                          array->GetClassName() +
                                                           ", which does not hold numbers");
   }
   return MakeTrainingInput(image, numbers);
@@ -119,19 +124,34 @@ void vtkINRWriter::Train(const TrainingInput& input)
   const inr::ModelPointer model = inr::TrainModel(input.data, input.info, options, observe);
   inr::WriteModel(*model, this->FileName);
 
-  const auto voxelBytes = static_cast<double>(input.data.voxels()) *
-                          static_cast<double>(inr::ScalarSize(input.data.type));
-  this->PSNR = model->quality->psnr;
-  this->SSIM = model->quality->ssim;
-  this->MaximumError = model->quality->maxError;
-  this->Ratio = voxelBytes / static_cast<double>(inr::ModelFileSize(*model));
-  this->Steps = static_cast<vtkIdType>(model->training->steps);
-  this->TrainingSeconds = model->training->seconds;
+  this->KeepResult(*model);
   this->UpdateProgress(1.0);
   if (model->training->nonFinite > 0) {
     vtkWarningMacro("Array '" << input.info.arrayName << "' has " << model->training->nonFinite
                               << " NaN or infinite values; they were left out of the training.");
   }
+}
+
+void vtkINRWriter::ForgetResult()
+{
+  this->PSNR = this->SSIM = this->MaximumError = this->Ratio = this->TrainingSeconds = 0;
+  this->Steps = 0;
+}
+
+void vtkINRWriter::KeepResult(const inr::Model& model)
+{
+  const glm::dvec3 dims(model.volume.dims);
+  const double bytes =
+      dims.x * dims.y * dims.z * static_cast<double>(inr::ScalarSize(model.volume.type));
+  this->PSNR = model.quality->psnr;
+  this->SSIM = model.quality->ssim;
+  this->MaximumError = model.quality->maxError;
+  this->Ratio = bytes / static_cast<double>(inr::ModelFileSize(model));
+  this->Steps = static_cast<vtkIdType>(model.training->steps);
+  this->TrainingSeconds = model.training->seconds;
+  vtkLog(INFO, << this->FileName << ": PSNR " << this->PSNR << " dB, SSIM " << this->SSIM
+               << ", largest error " << this->MaximumError << ", ratio " << this->Ratio << ", "
+               << this->Steps << " steps in " << this->TrainingSeconds << " s");
 }
 
 void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)

@@ -22,6 +22,9 @@
 #include <vtkWriter.h>
 
 struct TrainingInput;
+namespace inr {
+struct Model;
+}
 
 class VTKINRREADERS_EXPORT vtkINRWriter : public vtkWriter
 {
@@ -106,6 +109,8 @@ private:
   TrainingInput FindInput();
   void Train(const TrainingInput& input);
   bool ShouldStop();
+  void ForgetResult();
+  void KeepResult(const inr::Model& model);
 
   char* FileName = nullptr;
   double TargetPSNR = 0;
