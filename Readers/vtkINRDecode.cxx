@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
+#include "LevelSampler.h"
 #include "Scalars.h"
 #include "VTKCompat.h"
 #include "vtkINRDataArray.h"
@@ -37,12 +38,32 @@ vtkINRDataArray* FindModel(vtkDataObject* data)
   return scalars ? vtkINRDataArray::SafeDownCast(scalars) : nullptr;
 }
 
-glm::i64vec3 LevelDims(glm::i64vec3 dims, int level)
+/// Distance of the native voxels as the input has it now: a filter may have changed the image's.
+glm::dvec3 NativeSpacing(vtkImageData* image, vtkINRDataArray* source)
 {
-  for (; level > 0; --level) {
-    dims = (dims + std::int64_t{1}) / std::int64_t{2};
+  glm::dvec3 spacing;
+  image->GetSpacing(&spacing.x);
+  int presented[3];
+  source->GetPresentedDimensions(presented);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (presented[axis] > 1) {
+      const auto cells = static_cast<double>(source->GetModel()->volume.dims[axis] - 1);
+      spacing[axis] *= (presented[axis] - 1) / cells;
+    }
   }
-  return dims;
+  return spacing;
+}
+
+/// The wanted voxels of a level's grid; an axis whose last voxel is below its first is whole.
+void LevelExtent(const glm::i64vec3& dims, const int wanted[6], int extent[6])
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = static_cast<int>(dims[axis] - 1); // the validator sees to it that it fits
+    const int* range = wanted + 2 * axis;
+    const bool whole = range[1] < range[0];
+    extent[2 * axis] = whole ? 0 : std::clamp(range[0], 0, last);
+    extent[2 * axis + 1] = whole ? last : std::clamp(range[1], 0, last);
+  }
 }
 
 int TypeNumber(int wanted, inr::ScalarType source)
@@ -69,46 +90,6 @@ void CheckMemory(const int extent[6], int type)
   }
 }
 
-/// The samples of a row-major run of voxels: one per voxel on level 0, else two per axis, which
-/// `Average` joins.
-struct LevelSampler
-{
-  LevelSampler(const inr::VolumeInfo& volume, int level)
-      : Dims(LevelDims(volume.dims, level)), PerAxis(1)
-  {
-    for (int axis = 0; axis < 3; ++axis) {
-      this->PerAxis[axis] = level > 0 && volume.dims[axis] > 1 ? 2 : 1;
-    }
-  }
-
-  inr::Lattice Row(const glm::i64vec3& first, std::int64_t count) const
-  {
-    inr::Lattice lattice;
-    lattice.step = 1.0 / (glm::dvec3(this->Dims) * glm::dvec3(this->PerAxis));
-    lattice.first = (glm::dvec3(first * this->PerAxis) + 0.5) * lattice.step;
-    lattice.points = glm::i64vec3(count, 1, 1) * this->PerAxis;
-    return lattice;
-  }
-
-  float Average(const std::vector<float>& samples, const inr::Lattice& row, std::int64_t x) const
-  {
-    double sum = 0;
-    for (std::int64_t k = 0; k < row.points.z; ++k) {
-      for (std::int64_t j = 0; j < row.points.y; ++j) {
-        for (std::int64_t i = 0; i < this->PerAxis.x; ++i) {
-          const std::int64_t at = x * this->PerAxis.x + i + row.points.x * (j + row.points.y * k);
-          sum += inr::NormalisedOutput(samples[static_cast<std::size_t>(at)]);
-        }
-      }
-    }
-    return static_cast<float>(
-        sum / static_cast<double>(this->PerAxis.x * this->PerAxis.y * this->PerAxis.z));
-  }
-
-  glm::i64vec3 Dims;
-  glm::i64vec3 PerAxis;
-};
-
 } // namespace
 
 int vtkINRDecode::RequestInformation(vtkInformation*, vtkInformationVector**,
@@ -118,6 +99,7 @@ int vtkINRDecode::RequestInformation(vtkInformation*, vtkInformationVector**,
   // virtual, so updating it here costs next to nothing.
   this->GetInputAlgorithm(0, 0)->Update();
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   if (!this->DescribeOutput(outInfo)) {
     outInfo->Set(Pipeline::WHOLE_EXTENT(), EmptyExtent, 6);
   }
@@ -126,42 +108,33 @@ int vtkINRDecode::RequestInformation(vtkInformation*, vtkInformationVector**,
 
 bool vtkINRDecode::DescribeOutput(vtkInformation* outInfo)
 {
-  vtkINRDataArray* source = FindModel(this->GetInputDataObject(0, 0));
+  auto* image = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
+  vtkINRDataArray* source = FindModel(image);
   if (!source) {
-    vtkErrorMacro("The input is not an implicit neural representation; connect INRDecode to the "
-                  "output of INRReader.");
+    // Nothing in, nothing out: a reader that failed has said why.
+    if (!image || image->GetNumberOfPoints() > 0) {
+      vtkErrorMacro("The input is not an implicit neural representation; connect INRDecode to the "
+                    "output of INRReader.");
+    }
     return false;
   }
-  auto* image = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
   const inr::VolumeInfo& volume = source->GetModel()->volume;
   const glm::i64vec3 dims = LevelDims(volume.dims, this->Level);
-  int presented[3];
-  source->GetPresentedDimensions(presented);
-  int extent[6];
-  double spacing[3];
-  double shift[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const int last = static_cast<int>(std::min<std::int64_t>(dims[axis], VTK_INT_MAX)) - 1;
-    const int* wanted = this->VolumeOfInterest + 2 * axis;
-    const bool whole = wanted[1] < wanted[0];
-    extent[2 * axis] = whole ? 0 : std::clamp(wanted[0], 0, last);
-    extent[2 * axis + 1] = whole ? last : std::clamp(wanted[1], 0, last);
-    const auto voxels = static_cast<double>(volume.dims[axis]);
-    const double native = presented[axis] > 1
-                              ? image->GetSpacing()[axis] * (presented[axis] - 1) / (voxels - 1)
-                              : image->GetSpacing()[axis];
-    const double growth = voxels / static_cast<double>(dims[axis]);
-    spacing[axis] = native * growth;
-    shift[axis] = native * 0.5 * (growth - 1.0);
-  }
-  double origin[3];
-  image->GetDirectionMatrix()->MultiplyPoint(shift, origin);
+  const glm::dvec3 native = NativeSpacing(image, source);
+  const glm::dvec3 growth = glm::dvec3(volume.dims) / glm::dvec3(dims);
+  const glm::dvec3 spacing = native * growth;
+
+  const glm::dvec3 shift = 0.5 * native * (growth - 1.0);
+  glm::dvec3 origin;
+  image->GetDirectionMatrix()->MultiplyPoint(&shift.x, &origin.x);
   for (int axis = 0; axis < 3; ++axis) {
     origin[axis] += image->GetOrigin()[axis];
   }
+  int extent[6];
+  LevelExtent(dims, this->VolumeOfInterest, extent);
   outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
-  outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
-  outInfo->Set(vtkDataObject::ORIGIN(), origin, 3);
+  outInfo->Set(vtkDataObject::SPACING(), &spacing.x, 3);
+  outInfo->Set(vtkDataObject::ORIGIN(), &origin.x, 3);
   outInfo->Set(vtkDataObject::DIRECTION(), image->GetDirectionMatrix()->GetData(), 9);
   vtkDataObject::SetPointDataActiveScalarInfo(outInfo, TypeNumber(this->ScalarType, volume.type),
                                               1);

@@ -10,6 +10,7 @@
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkUnsignedCharArray.h>
 
 namespace {
 
@@ -115,6 +116,23 @@ TEST_F(Decode, CutsOutAVolumeOfInterest)
   EXPECT_EQ(std::vector<int>(extent, extent + 6), (std::vector<int>{3, 7, 0, 10, 6, 7}));
 }
 
+TEST_F(Decode, ServesEachProcessItsPiece)
+{
+  const auto model = MakeModel({15, 11, 8});
+  this->connect(*model);
+  vtkIdType cells = 0;
+  for (int piece = 0; piece < 4; ++piece) {
+    this->Filter->UpdatePiece(piece, 4, 1);
+    vtkImageData* image = this->Filter->GetOutput();
+    for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell) {
+      const bool ghost = image->GetCellGhostArray() && image->GetCellGhostArray()->GetValue(cell);
+      cells += ghost ? 0 : 1;
+    }
+    EXPECT_LT(image->GetNumberOfPoints(), 15 * 11 * 8);
+  }
+  EXPECT_EQ(cells, 14 * 10 * 7);
+}
+
 TEST_F(Decode, KeepsTheThicknessOfASlab)
 {
   const auto model = MakeModel({12, 1, 9});
@@ -174,6 +192,15 @@ TEST_F(Decode, RefusesOrdinaryData)
   }
   this->connect(*MakeModel({6, 5, 4}));
   EXPECT_EQ(this->update()->GetNumberOfPoints(), 120);
+}
+
+TEST_F(Decode, LeavesItToTheReaderToSayWhatIsWrongWithAFile)
+{
+  this->Reader->SetFileName((this->Folder / "missing.inr").c_str());
+  this->Filter->SetInputConnection(this->Reader->GetOutputPort());
+  const MessageCapture messages;
+  EXPECT_EQ(this->update()->GetNumberOfPoints(), 0);
+  EXPECT_TRUE(messages.onlyError("missing.inr")) << messages.text();
 }
 
 TEST_F(Decode, ReportsProgressAndStopsWhenAsked)
