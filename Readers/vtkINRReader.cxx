@@ -110,8 +110,8 @@ vtkINRReader::vtkINRReader() : Internal(std::make_unique<Internals>())
 
 vtkINRReader::~vtkINRReader()
 {
-  this->SetFileName(nullptr);
-  this->SetArrayName(nullptr);
+  delete[] this->FileName;
+  delete[] this->ArrayName;
 }
 
 int vtkINRReader::CanReadFile(const char* fileName)

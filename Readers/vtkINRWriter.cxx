@@ -32,8 +32,8 @@ vtkINRWriter::vtkINRWriter()
 
 vtkINRWriter::~vtkINRWriter()
 {
-  this->SetFileName(nullptr);
-  this->SetModelConfig(nullptr);
+  delete[] this->FileName;
+  delete[] this->ModelConfig;
 }
 
 int vtkINRWriter::FillInputPortInformation(int, vtkInformation* info)
@@ -51,8 +51,10 @@ void vtkINRWriter::WriteData()
       throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
     }
     const TrainingInput input = this->FindInput();
-    // Learn that the target is not writable now, not after minutes of training.
-    inr::AtomicFile(std::string(this->FileName));
+    {
+      // Learn that the target is not writable now, not after minutes of training.
+      const inr::AtomicFile attempt{std::string(this->FileName)};
+    }
     this->Train(input);
   } catch (const std::exception& error) { // inr::Error, or no memory
     this->SetErrorCode(vtkErrorCode::UserError);
