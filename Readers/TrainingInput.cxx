@@ -56,6 +56,11 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkDataArray* array)
   image->GetExtent(extent);
   image->TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], &input.info.origin.x);
   image->GetSpacing(&input.info.spacing.x);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double spacing = input.info.spacing[axis];
+    Require(std::isfinite(spacing) && spacing != 0.0,
+            "the image's spacing is " + std::to_string(spacing) + " along an axis");
+  }
   const double* direction = image->GetDirectionMatrix()->GetData(); // rows; glm keeps columns
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
