@@ -7,6 +7,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <unistd.h>
 
 namespace {
 
@@ -14,7 +16,11 @@ namespace fs = std::filesystem;
 
 struct Exr : testing::Test
 {
-  Exr() : Folder(fs::path(testing::TempDir()) / "inr-exr") { fs::create_directories(Folder); }
+  // With the process' number: every case runs as a process of its own, several at a time.
+  Exr() : Folder(fs::path(testing::TempDir()) / ("inr-exr-" + std::to_string(getpid())))
+  {
+    fs::create_directories(Folder);
+  }
   ~Exr() override { fs::remove_all(Folder); }
   fs::path Folder;
 };
