@@ -80,8 +80,8 @@ float ColorTable::maximumOverNodes(int first, int last) const
     ++level;
   }
   const std::vector<float>& row = this->Maxima[static_cast<std::size_t>(level)];
-  return std::max(row[static_cast<std::size_t>(first)],
-                  row[static_cast<std::size_t>(last - (1 << level) + 1)]);
+  const int lastSpan = last - (1 << level) + 1;
+  return std::max(row[static_cast<std::size_t>(first)], row[static_cast<std::size_t>(lastSpan)]);
 }
 
 float ColorTable::maximumOpacity(const ValueRange& range) const

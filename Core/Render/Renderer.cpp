@@ -65,7 +65,7 @@ struct Renderer::Implementation
   std::int64_t MajorantBuilds = 0;
 };
 
-Renderer::Renderer(ModelPointer model, const RendererOptions& options)
+Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
     : Renderer(MakeEvaluator(model, options.kernel), model->volume, model->macroCells, options)
 {}
 

@@ -26,7 +26,7 @@ struct RendererOptions
 class Renderer
 {
 public:
-  explicit Renderer(ModelPointer model, const RendererOptions& options = {});
+  explicit Renderer(const ModelPointer& model, const RendererOptions& options = {});
   /// Any field: normalised values over the unit cube, with a volume's dimensions and value range.
   Renderer(std::shared_ptr<const Evaluator> field, const VolumeInfo& volume,
            const MacroCells& cells, const RendererOptions& options = {});
