@@ -67,7 +67,8 @@ double ImagePsnr(const Image& a, const Image& b)
     }
     values += 4;
   }
-  return squared > 0 ? -10.0 * std::log10(squared / static_cast<double>(values)) : HUGE_VAL;
+  // Not "squared > 0 ? ... : infinity": that would call a picture of NaNs a perfect one.
+  return squared == 0 ? HUGE_VAL : -10.0 * std::log10(squared / static_cast<double>(values));
 }
 
 double ImageSsim(const Image& a, const Image& b)

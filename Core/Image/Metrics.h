@@ -6,7 +6,8 @@
 namespace inr {
 
 /// PSNR in dB of linear premultiplied RGBA, peak 1, over the pixels where either alpha is above 0;
-/// infinity for equal images. Throws Error(InvalidArgument) unless both are RGBA of one size.
+/// infinity for equal images, NaN where such a pixel holds one. Throws Error(InvalidArgument)
+/// unless both are RGBA of one size.
 double ImagePsnr(const Image& a, const Image& b);
 
 /// Mean structural similarity over channels and pixels (Wang et al., IEEE TIP 2004): uniform 7x7

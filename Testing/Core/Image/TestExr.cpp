@@ -5,14 +5,41 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Lets no file grow beyond `bytes` while it lives: what a full disk does to a write.
+class FileSizeLimit
+{
+public:
+  explicit FileSizeLimit(rlim_t bytes) : Handler(std::signal(SIGXFSZ, SIG_IGN))
+  {
+    getrlimit(RLIMIT_FSIZE, &this->Before);
+    rlimit limit = this->Before;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit()
+  {
+    setrlimit(RLIMIT_FSIZE, &this->Before);
+    std::signal(SIGXFSZ, this->Handler);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+private:
+  void (*Handler)(int);
+  rlimit Before{};
+};
 
 struct Exr : testing::Test
 {
@@ -54,6 +81,19 @@ TEST_F(Exr, LeavesNothingBehindWhenItFails)
   EXPECT_THROW(inr::WriteExr(Folder / "c.exr", RandomImage(4, 4, 4, 3), RandomImage(4, 5, 1, 3)),
                inr::Error);
   EXPECT_TRUE(fs::is_empty(Folder));
+}
+
+TEST_F(Exr, AFullDiskLeavesThePictureThatWasThere)
+{
+  const inr::Image before = RandomImage(8, 8, 4, 5);
+  inr::WriteExr(Folder / "e.exr", before);
+  const std::uintmax_t size = fs::file_size(Folder / "e.exr");
+  for (std::uintmax_t bytes = 0; bytes < size; bytes += 50) {
+    const FileSizeLimit limit(bytes);
+    EXPECT_THROW(inr::WriteExr(Folder / "e.exr", RandomImage(8, 8, 4, 6)), inr::Error) << bytes;
+  }
+  EXPECT_EQ(inr::ReadExr(Folder / "e.exr").pixels, before.pixels);
+  EXPECT_EQ(std::distance(fs::directory_iterator(Folder), fs::directory_iterator()), 1);
 }
 
 TEST_F(Exr, RefusesWhatIsNotOne)
