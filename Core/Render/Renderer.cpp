@@ -88,7 +88,8 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
   if (self.Function == transferFunction) {
     return;
   }
-  self.Colors.emplace(transferFunction, self.Volume);
+  ColorTable colors(transferFunction, self.Volume); // before anything changes: it may throw
+  self.Colors.emplace(std::move(colors));
   self.Function = transferFunction;
   self.Cells.update(*self.Colors, self.Threads);
   ++self.MajorantBuilds;

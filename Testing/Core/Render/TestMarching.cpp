@@ -168,6 +168,19 @@ TEST(Marching, CanBeStopped)
   EXPECT_LT(tiles, 10);
 }
 
+TEST(Marching, ARefusedTransferFunctionLeavesTheOneBefore)
+{
+  inr::Renderer renderer = FieldRenderer({9, 9, 9}, Ball);
+  renderer.setTransferFunction(OpacityRamp(0.5f));
+  const inr::Image before = Render(renderer, Diagonal(8));
+  inr::TransferFunction flat = OpacityRamp(0.5f);
+  flat.high = flat.low;
+  EXPECT_THROW(renderer.setTransferFunction(flat), inr::Error);
+  EXPECT_EQ(Render(renderer, Diagonal(8)).pixels, before.pixels);
+  renderer.setTransferFunction(OpacityRamp(0.5f));
+  EXPECT_EQ(Render(renderer, Diagonal(8)).pixels, before.pixels);
+}
+
 TEST(Marching, NeedsATransferFunction)
 {
   inr::Renderer renderer = FieldRenderer({9, 9, 9}, Ball);
