@@ -121,10 +121,16 @@ void Stereo(Scene& scene, const MapperFactory& mapper)
 
 std::vector<SceneCase> SceneCases()
 {
-  return {{"Perspective", Perspective},     {"Parallel", Parallel},
-          {"Transformed", Transformed},     {"OpaqueInside", OpaqueInside},
-          {"TwoViewports", TwoViewports},   {"ClippingPlane", ClippingPlane},
-          {"Stereo", Stereo, false, false}, {"Oblique", Perspective, true}};
+  // Not comparable: in stereo VTK's GPU mapper does not follow the polygons, and in a second
+  // viewport it draws, one run in five, with the shape of the whole window.
+  return {{"Perspective", Perspective},
+          {"Parallel", Parallel},
+          {"Transformed", Transformed},
+          {"OpaqueInside", OpaqueInside},
+          {"TwoViewports", TwoViewports, false, false},
+          {"ClippingPlane", ClippingPlane},
+          {"Stereo", Stereo, false, false},
+          {"Oblique", Perspective, true}};
 }
 
 Scene::Scene()
