@@ -33,6 +33,15 @@ struct Frame
   /// Distance between samples in voxels, along the axis in which the voxels are densest; above 0.
   double sampleDistance = 0.5;
 
+  /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel as large as a
+  /// pixel, 0 reads the full resolution everywhere; not negative.
+  double levelOfDetailScale = 1;
+
+  /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones
+  /// are not there yet; what is missing is loaded in the time that is left. 0: as long as it takes
+  /// to be complete. Ignored without a cache.
+  double timeLimit = 0;
+
   /// Offsets of the samples along their rays are random in (seed, frameIndex, pixel).
   std::uint64_t seed = 0;
   std::uint64_t frameIndex = 0;
@@ -42,8 +51,10 @@ struct Frame
 struct FrameStatistics
 {
   std::int64_t rays = 0;    ///< that met the volume
-  std::int64_t samples = 0; ///< inferred
+  std::int64_t samples = 0; ///< values of the field that were looked up or inferred
+  std::int64_t missed = 0;  ///< of these, read from a coarser level than wanted
   std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
+  bool complete = true;     ///< every sample came from the level it asked for
   double seconds = 0;       ///< wall time
 };
 

@@ -121,6 +121,12 @@ Ray RayGeometry::ray(int x, int y) const
     ray.entry = origin + world.begin * direction;
     ray.direction = direction * this->WorldPerUnit;
     ray.length = (world.end - world.begin) / this->WorldPerUnit;
+    // A pixel's edge grows linearly from the near to the far plane.
+    const double clipEdge = 2.0 / this->Picture.width;
+    const double atNear = glm::length(this->unproject(clipX + clipEdge, clipY, -1.0) - near);
+    const double atFar = glm::length(this->unproject(clipX + clipEdge, clipY, 1.0) - near - toFar);
+    ray.footprintGrowth = (atFar - atNear) / range;
+    ray.footprint = (atNear + ray.footprintGrowth * world.begin) / this->WorldPerUnit;
   }
   return ray;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "Core/HostDevice.h"
+#include "Core/Random.h"
 #include "Core/Render/Majorants.h"
 #include "Core/Render/Ray.h"
 
@@ -33,6 +34,20 @@ struct MarchState
   glm::vec4 color{0};       ///< premultiplied, so far
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
 };
+
+/// The random stream of a pixel's ray.
+INR_HOST_DEVICE inline std::uint64_t PixelStream(const Frame& frame, int x, int y)
+{
+  const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(frame.width) +
+                     static_cast<std::uint64_t>(x);
+  return RandomBits(RandomBits(frame.seed, frame.frameIndex), pixel);
+}
+
+/// MarchState::jitter; its counter is one that no sample has.
+INR_HOST_DEVICE inline double JitterOf(std::uint64_t stream)
+{
+  return RandomUnit(stream, ~std::uint64_t{0});
+}
 
 /// A sample to infer and what its answer is good for.
 struct MarchSample

@@ -3,10 +3,9 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Core/Render/TileLoop.h"
 #include "Core/Render/TileMarcher.h"
 
-#include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -14,27 +13,6 @@
 namespace inr {
 
 namespace {
-
-/// Row-major tiles of a picture; those at the right and upper rim may be smaller.
-struct Tiling
-{
-  explicit Tiling(const Frame& frame) : Width(frame.width), Height(frame.height) {}
-
-  int columns() const { return (this->Width + TileMarcher::Edge - 1) / TileMarcher::Edge; }
-  int rows() const { return (this->Height + TileMarcher::Edge - 1) / TileMarcher::Edge; }
-  std::int64_t count() const { return static_cast<std::int64_t>(this->columns()) * this->rows(); }
-  Tile tile(std::int64_t k) const
-  {
-    const int x = static_cast<int>(k % this->columns()) * TileMarcher::Edge;
-    const int y = static_cast<int>(k / this->columns()) * TileMarcher::Edge;
-    return {x, y, std::min(TileMarcher::Edge, this->Width - x),
-            std::min(TileMarcher::Edge, this->Height - y)};
-  }
-
-private:
-  int Width;
-  int Height;
-};
 
 FrameStatistics Sum(const std::vector<FrameStatistics>& tiles)
 {
@@ -52,18 +30,36 @@ FrameStatistics Sum(const std::vector<FrameStatistics>& tiles)
 struct Renderer::Implementation
 {
   Implementation(std::shared_ptr<const Evaluator> field, VolumeInfo volume, const MacroCells& cells,
-                 int threads)
-      : Field(std::move(field)), Volume(std::move(volume)), Cells(cells), Threads(threads)
+                 RendererOptions options)
+      : Field(std::move(field)), Volume(std::move(volume)), Cells(cells),
+        Options(std::move(options)), Threads(this->Options.threads)
   {}
+
+  CachedRenderer& cached();
+  FrameStatistics renderUncached(const Frame& frame, const RayGeometry& geometry,
+                                 const MarchSettings& settings, const PassOutput& output,
+                                 const std::function<bool()>& keepGoing) const;
 
   std::shared_ptr<const Evaluator> Field;
   VolumeInfo Volume;
   Majorants Cells;
+  RendererOptions Options;
   Arena Threads;
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
+  std::optional<CachedRenderer> Cached; ///< made by the first frame that needs it
   std::int64_t MajorantBuilds = 0;
 };
+
+CachedRenderer& Renderer::Implementation::cached()
+{
+  if (!this->Cached) {
+    const BrickKernel& kernel = BrickKernelFor(ChooseInstructionSet(this->Options.kernel));
+    this->Cached.emplace(this->Field, this->Volume.dims, this->Options.cache, kernel,
+                         this->Threads);
+  }
+  return *this->Cached;
+}
 
 Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
     : Renderer(MakeEvaluator(model, options.kernel), model->volume, model->macroCells, options)
@@ -71,7 +67,7 @@ Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
 
 Renderer::Renderer(std::shared_ptr<const Evaluator> field, const VolumeInfo& volume,
                    const MacroCells& cells, const RendererOptions& options)
-    : Self(std::make_unique<Implementation>(std::move(field), volume, cells, options.threads))
+    : Self(std::make_unique<Implementation>(std::move(field), volume, cells, options))
 {}
 
 Renderer::~Renderer() = default;
@@ -79,6 +75,16 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 std::int64_t Renderer::majorantBuilds() const { return this->Self->MajorantBuilds; }
+
+std::int64_t Renderer::cacheBytes() const
+{
+  return this->Self->Cached ? this->Self->Cached->cache().bytes() : 0;
+}
+
+std::int64_t Renderer::cachedBricks() const
+{
+  return this->Self->Cached ? this->Self->Cached->cache().mapped() : 0;
+}
 
 std::string Renderer::kernel() const { return this->Self->Field->kernel(); }
 
@@ -91,8 +97,27 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
   ColorTable colors(transferFunction, self.Volume); // before anything changes: it may throw
   self.Colors.emplace(std::move(colors));
   self.Function = transferFunction;
+  if (self.Cached) {
+    self.Cached->forgetColors();
+  }
   self.Cells.update(*self.Colors, self.Threads);
   ++self.MajorantBuilds;
+}
+
+FrameStatistics
+Renderer::Implementation::renderUncached(const Frame& frame, const RayGeometry& geometry,
+                                         const MarchSettings& settings, const PassOutput& output,
+                                         const std::function<bool()>& keepGoing) const
+{
+  const MarchScene scene{frame,        geometry, this->Cells, this->Colors->lookup(),
+                         *this->Field, settings};
+  const Tiling tiling(frame.width, frame.height);
+  std::vector<FrameStatistics> tiles(static_cast<std::size_t>(tiling.count()));
+  ForEachTile(this->Threads, tiling.count(), keepGoing, [&](std::int64_t k) {
+    TileMarcher marcher(scene);
+    tiles[static_cast<std::size_t>(k)] = marcher.march(tiling.tile(k), output.rgba, output.depth);
+  });
+  return Sum(tiles);
 }
 
 FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
@@ -108,27 +133,15 @@ FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
   settings.dims = glm::dvec3(self.Volume.dims);
   settings.step = frame.sampleDistance;
   settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
-  const MarchScene scene{frame, geometry, self.Cells, self.Colors->lookup(), *self.Field, settings};
-
   rgba = Image(frame.width, frame.height, 4);
   if (depth != nullptr) {
     *depth = Image(frame.width, frame.height, 1);
   }
-  const Tiling tiling(frame);
-  std::vector<FrameStatistics> tiles(static_cast<std::size_t>(tiling.count()));
-  std::atomic<bool> stopped{false};
-  self.Threads.forEachBlock(tiling.count(), 1, [&](std::int64_t k, std::int64_t) {
-    if (stopped || (keepGoing && !keepGoing())) {
-      stopped = true;
-      return;
-    }
-    TileMarcher marcher(scene);
-    tiles[static_cast<std::size_t>(k)] = marcher.march(tiling.tile(k), rgba, depth);
-  });
-  if (stopped) {
-    throw Error(ErrorCode::Cancelled, "rendering stopped on request");
-  }
-  FrameStatistics statistics = Sum(tiles);
+  const PassOutput output{rgba, depth};
+  FrameStatistics statistics =
+      self.Options.cached ? self.cached().render(frame, geometry, self.Cells, self.Colors->lookup(),
+                                                 settings, output, keepGoing)
+                          : self.renderUncached(frame, geometry, settings, output, keepGoing);
   statistics.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return statistics;

@@ -4,6 +4,7 @@
 #include "Core/Image/Image.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Model/Model.h"
+#include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Frame.h"
 #include "Core/Render/TransferFunction.h"
 
@@ -16,13 +17,15 @@ namespace inr {
 struct RendererOptions
 {
   int threads = 0;    ///< 0 = all available cores
-  std::string kernel; ///< inference kernel, for tests; empty = the fastest
+  std::string kernel; ///< instruction set, for tests; empty = the fastest
+  bool cached = true; ///< through a cache of bricks, else straight from the network
+  CacheOptions cache;
 };
 
-/// Ray-marches an INR straight from its network.
+/// Ray-marches an INR, through a cache of decoded bricks or straight from its network.
 ///
-/// A frame is a pure function of model, transfer function and Frame: threads and tiles do not
-/// change a pixel. Not for use from two threads at once.
+/// A complete frame is a pure function of model, transfer function and Frame: threads, tiles and
+/// the size of the cache do not change a pixel. Not for use from two threads at once.
 class Renderer
 {
 public:
@@ -41,6 +44,10 @@ public:
 
   /// How often the majorants have been rebuilt (for tests and statistics).
   std::int64_t majorantBuilds() const;
+
+  /// Of the cache, 0 without one or before the first frame: bytes in use and bricks mapped.
+  std::int64_t cacheBytes() const;
+  std::int64_t cachedBricks() const;
 
   /// The instruction set that infers: Evaluator::kernel().
   std::string kernel() const;

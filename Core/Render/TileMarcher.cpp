@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/TileMarcher.h"
 
-#include "Core/Random.h"
-
 #include <algorithm>
 
 namespace inr {
@@ -23,7 +21,6 @@ FrameStatistics TileMarcher::march(const Tile& tile, Image& rgba, Image* depth)
 void TileMarcher::generateRays(const Tile& tile)
 {
   const Frame& frame = this->Scene.frame;
-  const std::uint64_t stream = RandomBits(frame.seed, frame.frameIndex);
   this->Rays.assign(static_cast<std::size_t>(tile.width) * tile.height, MarchState{});
   this->Live.clear();
   for (int k = 0; k < tile.width * tile.height; ++k) {
@@ -31,9 +28,7 @@ void TileMarcher::generateRays(const Tile& tile)
     const int y = tile.y + k / tile.width;
     MarchState& state = this->Rays[static_cast<std::size_t>(k)];
     state.ray = this->Scene.geometry.ray(x, y);
-    const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(frame.width) +
-                       static_cast<std::uint64_t>(x);
-    state.jitter = RandomUnit(stream, pixel);
+    state.jitter = JitterOf(PixelStream(frame, x, y));
     if (state.ray.length > 0) {
       this->Live.push_back(k);
     }

@@ -4,16 +4,11 @@
 #include "Core/Image/Image.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Render/RayMarching.h"
+#include "Core/Render/Tiling.h"
 
 #include <vector>
 
 namespace inr {
-
-/// A screen tile: pixels [x, x + width) x [y, y + height).
-struct Tile
-{
-  int x, y, width, height;
-};
 
 /// What a frame's tiles share. All read-only.
 struct MarchScene
@@ -31,8 +26,6 @@ struct MarchScene
 class TileMarcher
 {
 public:
-  static constexpr int Edge = 16;
-
   explicit TileMarcher(const MarchScene& scene) : Scene(scene) {}
 
   /// Writes the tile's pixels; `depth` may be null.

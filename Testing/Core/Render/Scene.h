@@ -36,10 +36,14 @@ inline inr::VolumeInfo VolumeOf(const glm::i64vec3& dims)
 }
 
 inline inr::Renderer FieldRenderer(const glm::i64vec3& dims, FieldEvaluator::Function function,
-                                   const inr::MacroCells& cells = {}, int threads = 2)
+                                   const inr::MacroCells& cells = {}, int threads = 2,
+                                   bool cached = false)
 {
   inr::RendererOptions options;
   options.threads = threads;
+  options.cached = cached;
+  options.cache.precision = inr::CachePrecision::Float32;
+  options.cache.bytes = 64 << 20;
   return {std::make_shared<FieldEvaluator>(std::move(function)), VolumeOf(dims), cells, options};
 }
 

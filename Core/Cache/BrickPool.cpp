@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Cache/BrickPool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace inr {
+
+namespace {
+
+constexpr std::int64_t RoomBehind = 64;
+
+template <typename Stored>
+void Quantise(const float* values, std::int64_t count, float low, float step, unsigned char* to)
+{
+  constexpr auto most = static_cast<float>(std::numeric_limits<Stored>::max());
+  const float inverse = step > 0 ? 1.0f / step : 0.0f;
+  auto* stored = reinterpret_cast<Stored*>(to);
+  for (std::int64_t k = 0; k < count; ++k) {
+    const float scaled = std::min((values[k] - low) * inverse + 0.5f, most);
+    stored[k] = static_cast<Stored>(scaled);
+  }
+}
+
+} // namespace
+
+BrickPool::BrickPool(CachePrecision precision, std::int64_t voxelsPerBrick, std::int64_t slots)
+    : Precision(precision), VoxelsPerBrick(voxelsPerBrick),
+      BytesPerBrick(voxelsPerBrick * BytesPerVoxel(precision)),
+      // Not value-initialised: that would touch every page.
+      Voxels(new unsigned char[static_cast<std::size_t>(slots * this->BytesPerBrick + RoomBehind)]),
+      Scales(static_cast<std::size_t>(slots))
+{}
+
+std::int64_t BrickPool::bytesFor(CachePrecision precision, std::int64_t voxelsPerBrick,
+                                 std::int64_t slots)
+{
+  const auto scale = static_cast<std::int64_t>(sizeof(Scale));
+  return slots * (voxelsPerBrick * BytesPerVoxel(precision) + scale) + RoomBehind;
+}
+
+void BrickPool::store(std::int32_t slot, const float* values)
+{
+  Scale& scale = this->Scales[static_cast<std::size_t>(slot)];
+  if (this->Precision == CachePrecision::Float32) {
+    scale = {0.0f, 1.0f};
+    std::memcpy(this->brick(slot), values, static_cast<std::size_t>(this->BytesPerBrick));
+    return;
+  }
+  const auto range = std::minmax_element(values, values + this->VoxelsPerBrick);
+  const bool wide = this->Precision == CachePrecision::Bits16;
+  scale.low = *range.first;
+  scale.step = (*range.second - *range.first) / (wide ? 65535.0f : 255.0f);
+  const auto quantise = wide ? Quantise<std::uint16_t> : Quantise<std::uint8_t>;
+  quantise(values, this->VoxelsPerBrick, scale.low, scale.step, this->brick(slot));
+}
+
+BrickView BrickPool::view(std::int32_t slot) const
+{
+  const Scale& scale = this->Scales[static_cast<std::size_t>(slot)];
+  return {this->brick(slot), scale.low, scale.step};
+}
+
+} // namespace inr

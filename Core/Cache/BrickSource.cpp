@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Cache/BrickSource.h"
+
+#include "Core/Model/Model.h"
+
+#include <glm/common.hpp>
+
+#include <utility>
+
+namespace inr {
+
+namespace {
+
+/// The part of a brick that lies inside its level.
+struct BrickBox
+{
+  glm::i64vec3 first;
+  glm::i64vec3 count;
+};
+
+BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
+{
+  const glm::i64vec3 first = hierarchy.firstVoxel(id);
+  return {first, glm::min(glm::i64vec3(hierarchy.brickDims()), hierarchy.size(id.level) - first)};
+}
+
+class FieldBricks : public BrickSource
+{
+public:
+  FieldBricks(std::shared_ptr<const Evaluator> field, const Hierarchy& hierarchy)
+      : Field(std::move(field)), Levels(hierarchy)
+  {}
+
+  void infer(const BrickKey* keys, std::int64_t count, float* values,
+             const Arena& arena) const override
+  {
+    const std::int64_t layers = this->Levels.brickDims().z;
+    const std::int64_t layer = this->Levels.voxelsPerBrick() / layers;
+    arena.forEachBlock(count * layers, 1, [&](std::int64_t k, std::int64_t) {
+      this->inferLayer(IdOf(keys[k / layers]), k % layers, values + k * layer);
+    });
+  }
+
+private:
+  /// One layer of voxels, z of them into the brick.
+  void inferLayer(const BrickId& id, std::int64_t z, float* values) const
+  {
+    const BrickBox box = BoxOf(this->Levels, id);
+    const std::vector<float> inside = this->layerInside(id, box, glm::min(z, box.count.z - 1));
+    const glm::i64vec3 dims(this->Levels.brickDims());
+    for (std::int64_t y = 0; y < dims.y; ++y) {
+      const std::int64_t row = glm::min(y, box.count.y - 1) * box.count.x;
+      for (std::int64_t x = 0; x < dims.x; ++x) {
+        const std::int64_t from = row + glm::min(x, box.count.x - 1);
+        values[y * dims.x + x] = inside[static_cast<std::size_t>(from)];
+      }
+    }
+  }
+
+  std::vector<float> layerInside(const BrickId& id, const BrickBox& box, std::int64_t z) const
+  {
+    const std::int64_t points = id.level == 0 ? 1 : 2; // of each voxel, along an axis
+    const glm::dvec3 size(this->Levels.size(id.level));
+    const glm::i64vec3 count = box.count * points;
+    std::vector<glm::vec3> positions;
+    positions.reserve(static_cast<std::size_t>(count.x * count.y * points));
+    for (std::int64_t k = z * points; k < (z + 1) * points; ++k) {
+      for (std::int64_t j = 0; j < count.y; ++j) {
+        for (std::int64_t i = 0; i < count.x; ++i) {
+          const glm::dvec3 within = (glm::dvec3(i, j, k) + 0.5) / static_cast<double>(points);
+          positions.emplace_back((glm::dvec3(box.first) + within) / size);
+        }
+      }
+    }
+    std::vector<float> sampled(positions.size());
+    this->Field->evaluate(positions.data(), static_cast<std::int64_t>(positions.size()),
+                          sampled.data());
+    return points == 1 ? Clamped(sampled) : Filtered(sampled, box.count.x, box.count.y);
+  }
+
+  static std::vector<float> Clamped(std::vector<float> values)
+  {
+    for (float& value : values) {
+      value = NormalisedOutput(value);
+    }
+    return values;
+  }
+
+  /// Means over 2 x 2 x 2 points; two layers of 2 width x 2 height come in.
+  static std::vector<float> Filtered(const std::vector<float>& points, std::int64_t width,
+                                     std::int64_t height)
+  {
+    std::vector<float> means(static_cast<std::size_t>(width * height));
+    const auto at = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+      const std::int64_t index = x + 2 * width * (y + 2 * height * z);
+      return NormalisedOutput(points[static_cast<std::size_t>(index)]);
+    };
+    for (std::int64_t y = 0; y < height; ++y) {
+      for (std::int64_t x = 0; x < width; ++x) {
+        float sum = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+          sum += at(2 * x + (corner & 1), 2 * y + (corner >> 1 & 1), corner >> 2);
+        }
+        means[static_cast<std::size_t>(y * width + x)] = sum / 8;
+      }
+    }
+    return means;
+  }
+
+  std::shared_ptr<const Evaluator> Field;
+  Hierarchy Levels;
+};
+
+} // namespace
+
+std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const Evaluator> field,
+                                                   const Hierarchy& hierarchy)
+{
+  return std::make_shared<FieldBricks>(std::move(field), hierarchy);
+}
+
+} // namespace inr

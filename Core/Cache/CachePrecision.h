@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace inr {
+
+/// How a cached voxel is kept. The integers divide the range of their brick's values evenly, so
+/// that a value is off by at most half a quantum, (max - min)/(2^bits - 1)/2.
+enum class CachePrecision { Float32, Bits16, Bits8 };
+
+constexpr std::int64_t BytesPerVoxel(CachePrecision precision)
+{
+  return precision == CachePrecision::Float32 ? 4 : (precision == CachePrecision::Bits16 ? 2 : 1);
+}
+
+} // namespace inr

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glm/gtc/type_precision.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// A brick: its level (0 = full resolution) and its place among that level's bricks.
+struct BrickId
+{
+  int level;
+  glm::i64vec3 at;
+};
+
+/// A brick in 62 bits: level, z, y, x. Keys of a level sort by z, then y, then x.
+using BrickKey = std::uint64_t;
+BrickKey KeyOf(const BrickId& id);
+BrickId IdOf(BrickKey key);
+
+/// The levels of a volume and their bricks.
+///
+/// Level 0 has the volume's voxels, level l + 1 half as many along every axis, rounded up; voxel v
+/// of a level with n stands at u = (v + 0.5)/n. Neighbouring bricks share a layer of voxels, so
+/// that any point lies between voxels of a single brick. The last level is one brick.
+class Hierarchy
+{
+public:
+  /// `brickSize`: voxels per side, 4 to 1024. Throws Error(InvalidArgument) for sizes out of range
+  /// and Error(TooLarge) for more than 2^19 bricks along an axis.
+  Hierarchy(const glm::i64vec3& dims, int brickSize);
+
+  int levels() const { return static_cast<int>(this->Levels.size()); }
+  const glm::i64vec3& dims() const { return this->size(0); }
+  const glm::i64vec3& size(int level) const { return this->at(level).size; }     ///< in voxels
+  const glm::i64vec3& bricks(int level) const { return this->at(level).bricks; } ///< per axis
+
+  /// Voxels stored per brick and axis: the brick size, or less where the volume is thinner.
+  const glm::ivec3& brickDims() const { return this->BrickDims; }
+  std::int64_t voxelsPerBrick() const
+  {
+    return std::int64_t{1} * this->BrickDims.x * this->BrickDims.y * this->BrickDims.z;
+  }
+  glm::i64vec3 firstVoxel(const BrickId& id) const
+  {
+    return id.at * glm::i64vec3(this->BrickDims - 1);
+  }
+  BrickKey coarsest() const { return KeyOf({this->levels() - 1, glm::i64vec3(0)}); }
+
+  /// Position p in voxels of level 0 (voxel i at i) is p * scale + bias in voxels of `level`.
+  const glm::dvec3& scale(int level) const { return this->at(level).scale; }
+  const glm::dvec3& bias(int level) const { return this->at(level).bias; }
+
+  struct Location
+  {
+    BrickId brick;
+    glm::dvec3 local; ///< in the brick's voxels, in [0, brickDims - 1]
+  };
+  /// Where `level` keeps the field at a position in voxels of level 0, clamped to the voxels.
+  Location locate(int level, const glm::dvec3& index) const;
+
+private:
+  struct Level
+  {
+    glm::i64vec3 size;
+    glm::i64vec3 bricks;
+    glm::dvec3 scale;
+    glm::dvec3 bias;
+  };
+  const Level& at(int level) const { return this->Levels[static_cast<std::size_t>(level)]; }
+
+  glm::ivec3 BrickDims{2};
+  std::vector<Level> Levels;
+};
+
+} // namespace inr

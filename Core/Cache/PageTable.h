@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/Hierarchy.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// Where the mapped bricks are: brick -> slot. Virtual: a page covers 4 x 4 x 4 bricks of a level
+/// and exists only while one of them is mapped; a hash table finds the pages. So its memory follows
+/// what is mapped, not the volume. Reading is for any number of threads, changing for one while
+/// nobody reads.
+class PageTable
+{
+public:
+  static constexpr std::int32_t Unmapped = -1;
+
+  /// Room for `bricks` mapped bricks, wherever in the volume they are.
+  explicit PageTable(std::int64_t bricks);
+  /// Bytes that such a table takes, all of them from the start.
+  static std::int64_t bytesFor(std::int64_t bricks);
+
+  std::int32_t find(BrickKey key) const
+  {
+    const std::int32_t page = this->pageOf(PageKey(key));
+    return page < 0 ? Unmapped : this->Entries[EntryOf(page, key)];
+  }
+  /// `key` must not be mapped yet, and no more bricks than there is room for.
+  void map(BrickKey key, std::int32_t slot);
+  /// `key` must be mapped.
+  void unmap(BrickKey key);
+  std::int64_t pages() const ///< in use
+  {
+    return static_cast<std::int64_t>(this->Mapped.size() - this->Free.size());
+  }
+
+private:
+  static constexpr int PageBits = 2;
+  static constexpr std::int64_t EntriesPerPage = std::int64_t{1} << (3 * PageBits);
+  static constexpr BrickKey NoPage = ~BrickKey{0};
+
+  static BrickKey PageKey(BrickKey key);
+  static std::size_t EntryOf(std::int32_t page, BrickKey key);
+  std::size_t home(BrickKey page) const;
+  std::int32_t pageOf(BrickKey page) const;
+  void insertPage(BrickKey page, std::int32_t at);
+  void erasePage(BrickKey page);
+
+  struct Bucket
+  {
+    BrickKey page = NoPage;
+    std::int32_t at = -1;
+  };
+
+  std::vector<Bucket> Directory; ///< open addressing, linear probing, at most half full
+  std::vector<std::int32_t> Entries;
+  std::vector<std::int32_t> Mapped; ///< entries in use, of each page
+  std::vector<std::int32_t> Free;   ///< pages not in use
+};
+
+} // namespace inr

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Cache/Requests.h"
+
+#include <algorithm>
+
+namespace inr {
+
+void RequestList::add(BrickKey key, std::uint32_t samples, float contribution)
+{
+  // Neighbouring rays miss the same bricks: the last few entries catch most repetitions.
+  constexpr std::size_t window = 8;
+  const std::size_t size = this->Entries.size();
+  for (std::size_t k = size; k > 0 && k + window > size; --k) {
+    Request& entry = this->Entries[k - 1];
+    if (entry.key == key) {
+      entry.samples += samples;
+      entry.contribution += contribution;
+      return;
+    }
+  }
+  this->Entries.push_back({key, samples, contribution});
+}
+
+void RequestRanking::add(const RequestList& list)
+{
+  for (const Request& request : list.entries()) {
+    const auto place = this->Places.try_emplace(request.key, this->Sums.size());
+    if (place.second) {
+      this->Sums.push_back({request.key, 0, 0.0});
+    }
+    Sum& sum = this->Sums[place.first->second];
+    sum.samples += request.samples;
+    sum.contribution += static_cast<double>(request.contribution);
+  }
+}
+
+std::vector<BrickKey> RequestRanking::ranked(std::int64_t most, bool byContribution) const
+{
+  std::vector<Sum> sums = this->Sums;
+  const auto count = static_cast<std::ptrdiff_t>(std::min(most, this->count()));
+  if (byContribution) {
+    const auto before = [](const Sum& a, const Sum& b) {
+      if (a.contribution != b.contribution) {
+        return a.contribution > b.contribution;
+      }
+      const int levelA = IdOf(a.key).level;
+      const int levelB = IdOf(b.key).level;
+      return levelA != levelB ? levelA > levelB : a.key < b.key;
+    };
+    std::partial_sort(sums.begin(), sums.begin() + count, sums.end(), before);
+  }
+  std::vector<BrickKey> keys;
+  for (auto sum = sums.begin(); sum != sums.begin() + count; ++sum) {
+    keys.push_back(sum->key);
+  }
+  return keys;
+}
+
+} // namespace inr

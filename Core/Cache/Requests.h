@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/Hierarchy.h"
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+namespace inr {
+
+/// One wish for a brick.
+struct Request
+{
+  BrickKey key;
+  std::uint32_t samples; ///< that wanted it
+  float contribution;    ///< at most so much opacity was at stake, summed over the samples
+};
+
+/// What one tile's rays missed, in the order in which they did.
+class RequestList
+{
+public:
+  void add(BrickKey key, std::uint32_t samples, float contribution);
+  const std::vector<Request>& entries() const { return this->Entries; }
+
+private:
+  std::vector<Request> Entries;
+};
+
+/// The wishes of a whole picture. Lists are added in the order of their tiles, so that sums do not
+/// depend on threads.
+class RequestRanking
+{
+public:
+  void add(const RequestList& list);
+  bool empty() const { return this->Sums.empty(); }
+  std::int64_t count() const { return static_cast<std::int64_t>(this->Sums.size()); } ///< bricks
+
+  /// At most `most` bricks: by falling contribution (coarser levels, then smaller keys first among
+  /// equals), or in the order in which they were first wanted.
+  std::vector<BrickKey> ranked(std::int64_t most, bool byContribution) const;
+
+private:
+  struct Sum
+  {
+    BrickKey key;
+    std::uint64_t samples;
+    double contribution;
+  };
+
+  std::vector<Sum> Sums;
+  std::unordered_map<BrickKey, std::size_t> Places; ///< in Sums
+};
+
+} // namespace inr

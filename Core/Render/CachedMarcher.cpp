@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/CachedMarcher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace inr {
+
+namespace {
+
+constexpr float OpaqueTransmittance = 1.0f - OpaqueEnough;
+
+/// How often 2 divides k; more than enough for 0.
+int PowerOfTwoIn(std::int64_t k)
+{
+  return k == 0 ? 62 : __builtin_ctzll(static_cast<std::uint64_t>(k));
+}
+
+/// value * 2^power.
+double Doubled(double value, int power)
+{
+  return value * static_cast<double>(std::int64_t{1} << power);
+}
+
+} // namespace
+
+CachedRay::CachedRay(const CachedScene& scene, int x, int y)
+    : ray(scene.geometry.ray(x, y)),
+      detail(this->ray, scene.frame.levelOfDetailScale, scene.cache.hierarchy().levels()),
+      walker(scene.majorants, scene.settings.dims, this->ray),
+      stream(PixelStream(scene.frame, x, y)), jitter(JitterOf(this->stream))
+{}
+
+CachedRay CachedMarcher::begin(int x, int y)
+{
+  CachedRay ray(this->Scene, x, y);
+  this->Statistics.rays += ray.ray.length > 0 ? 1 : 0;
+  return ray;
+}
+
+bool CachedMarcher::march(CachedRay& state)
+{
+  this->Runs[0].close();
+  this->Runs[1].close();
+  this->Ended = false;
+  this->Waiting = false;
+  while (!this->Ended && !this->Waiting) {
+    this->place(state);
+    this->resolve(this->Runs[0], state.color.transmittance);
+    this->resolve(this->Runs[1], state.color.transmittance);
+    this->composite(state);
+    this->Ended = this->Ended || state.color.transmittance <= OpaqueTransmittance;
+  }
+  return this->Ended;
+}
+
+void CachedMarcher::place(CachedRay& state)
+{
+  const double step = this->Scene.settings.step;
+  this->Count = 0;
+  this->LastLength = 0;
+  while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
+    const double begin = static_cast<double>(state.next) * step;
+    if (begin >= state.ray.length) {
+      this->Ended = true;
+      return;
+    }
+    state.walker.moveTo(std::min(begin + state.jitter * step, state.ray.length));
+    if (state.walker.cell().extinction > 0.0f) {
+      this->fill(state, this->segmentAt(state));
+    } else {
+      const double exit = std::min(state.walker.exit(), state.ray.length);
+      const double past = std::ceil(exit / step - state.jitter);
+      state.next = std::max(state.next + 1, static_cast<std::int64_t>(past));
+    }
+  }
+}
+
+CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
+{
+  constexpr int adaptive = 2;    // at most 4 times as long where little can be seen
+  constexpr double faint = 0.02; // optical depth that needs no finer sampling
+  const MarchSettings& settings = this->Scene.settings;
+  const MajorantCell& cell = state.walker.cell();
+  const double depth = cell.extinction * settings.unitsPerT * settings.step;
+  state.detail.moveTo(state.walker.enter());
+  int longest = state.detail.level();
+  for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= faint; ++k) {
+    ++longest;
+  }
+  return {state.walker.exit(), cell.range.low, cell.range.high,
+          static_cast<float>(std::min(depth, 1.0)), longest};
+}
+
+void CachedMarcher::fill(CachedRay& state, const Segment& segment)
+{
+  const double step = this->Scene.settings.step;
+  const double end = state.ray.length;
+  const double limit = std::min(segment.exit, end);
+  const std::int64_t first = state.next;
+  std::int64_t next = first;
+  while (this->Count < SampleBatch::Capacity) {
+    const double begin = static_cast<double>(next) * step;
+    // Longer samples start at multiples of their length and end inside the cell.
+    int multiple = std::min(segment.longest, PowerOfTwoIn(next));
+    double length = Doubled(step, multiple);
+    while (multiple > 0 && begin + length > limit) {
+      --multiple;
+      length *= 0.5;
+    }
+    const double t = std::min(begin + state.jitter * length, end);
+    // The first one is this cell's whatever rounding says, so that a ray always moves on.
+    if (begin >= end || (t >= segment.exit && next != first)) {
+      break;
+    }
+    if (!this->add(state, segment, next, t, multiple)) {
+      this->Waiting = true;
+      break;
+    }
+    next += std::int64_t{1} << multiple;
+    if (begin + length > end) {
+      this->LastLength = static_cast<float>((end - begin) * this->Scene.settings.unitsPerT);
+      this->Ended = true;
+      break;
+    }
+  }
+  state.next = next;
+}
+
+bool CachedMarcher::add(const CachedRay& state, const Segment& segment, std::int64_t k, double t,
+                        int multiple)
+{
+  const int level = state.detail.dithered(state.stream, k);
+  BrickRun* run = this->runFor(state, level, t);
+  if (run == nullptr) {
+    return false;
+  }
+  const int sample = this->Count++;
+  run->add(t, sample, segment.depth);
+  this->T[sample] = t;
+  this->Batch.low[sample] = segment.low;
+  this->Batch.high[sample] = segment.high;
+  this->Batch.multiple[sample] = multiple;
+  return true;
+}
+
+BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double t)
+{
+  BrickRun& run = this->Runs[level & 1];
+  if (run.covers(level, t)) {
+    return &run;
+  }
+  this->resolve(run, state.color.transmittance);
+  return this->open(run, state.ray, level, t) ? &run : nullptr;
+}
+
+bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double t)
+{
+  const BrickCache& cache = this->Scene.cache;
+  const Hierarchy& hierarchy = cache.hierarchy();
+  const BrickSpan wanted = SpanAt(hierarchy, level, ray, t);
+  BrickSpan served = wanted;
+  std::int32_t slot = cache.find(wanted.key);
+  if (slot < 0 && this->Missing == OnMiss::Stop) {
+    this->Requests.add(wanted.key, 1, 1.0f);
+    return false;
+  }
+  for (int coarser = level + 1; slot < 0 && coarser < hierarchy.levels(); ++coarser) {
+    served = SpanAt(hierarchy, coarser, ray, t);
+    slot = cache.find(served.key);
+  }
+  cache.touch(slot);
+  run.open(level, wanted, served, cache.view(slot), hierarchy, cache.precision());
+  return true;
+}
+
+void CachedMarcher::resolve(BrickRun& run, float transmittance)
+{
+  if (run.count() == 0) {
+    return;
+  }
+  this->Statistics.samples += run.count();
+  if (!run.exact()) {
+    this->Statistics.missed += run.count();
+    this->Requests.add(run.wanted(), static_cast<std::uint32_t>(run.count()),
+                       run.weight() * transmittance);
+  }
+  run.resolve(this->Scene.kernel, this->Batch.value);
+}
+
+void CachedMarcher::takeLogarithms()
+{
+  for (int k = 0; k < this->Count; ++k) {
+    const ValueRange range{this->Batch.low[k], this->Batch.high[k]};
+    this->Statistics.clamped += ClampToRange(range, this->Batch.value[k]) ? 1 : 0;
+    this->Batch.value[k] = this->Scene.colors.coordinate(this->Batch.value[k]);
+    this->Batch.low[k] = -std::numeric_limits<float>::max();
+    this->Batch.high[k] = std::numeric_limits<float>::max();
+  }
+}
+
+void CachedMarcher::composite(CachedRay& state)
+{
+  if (this->LastLength > 0) {
+    --this->Count; // apart, for its own length
+  }
+  const float last = this->Batch.value[this->Count];
+  if (this->Scene.colors.logarithmic) {
+    this->takeLogarithms();
+  }
+  const int used =
+      this->Scene.kernel.composite(this->Scene.steps, this->Batch, this->Count, OpaqueTransmittance,
+                                   state.color, this->Statistics.clamped);
+  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
+    int k = 0; // the last sample whose light was not yet halved
+    while (k + 1 < used && this->Batch.opacity[k + 1] < 0.5f) {
+      ++k;
+    }
+    state.halfOpaqueAt = this->T[k];
+  }
+  if (this->LastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
+    this->Batch.value[this->Count] = last;
+    this->compositeLast(state);
+  }
+}
+
+void CachedMarcher::compositeLast(CachedRay& state)
+{
+  float value = this->Batch.value[this->Count];
+  const ValueRange range{this->Batch.low[this->Count], this->Batch.high[this->Count]};
+  ClampToRange(range, value);
+  const glm::vec4 entry = this->Scene.colors.at(value);
+  const float alpha = 1.0f - std::pow(1.0f - entry.w, this->LastLength);
+  const float weight = state.color.transmittance * alpha;
+  for (int channel = 0; channel < 3; ++channel) {
+    state.color.rgb[channel] += entry[channel] * weight;
+  }
+  state.color.transmittance -= weight;
+  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
+    state.halfOpaqueAt = this->T[this->Count];
+  }
+}
+
+} // namespace inr

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/Requests.h"
+#include "Core/Render/BrickRun.h"
+#include "Core/Render/CellWalker.h"
+#include "Core/Render/LevelOfDetail.h"
+#include "Core/Render/RayMarching.h"
+
+#include <cstdint>
+
+namespace inr {
+
+/// What a frame's rays share when they read from the cache. All read-only.
+struct CachedScene
+{
+  const Frame& frame;
+  const RayGeometry& geometry;
+  const Majorants& majorants;
+  const ColorLookup& colors;
+  const StepLookup& steps;
+  const BrickCache& cache;
+  const BrickKernel& kernel;
+  MarchSettings settings;
+};
+
+/// Where a ray stands. Its samples sit on a lattice of its own, t = (k + jitter) * step.
+struct CachedRay
+{
+  CachedRay(const CachedScene& scene, int x, int y);
+
+  Ray ray;
+  LevelOfDetail detail;
+  CellWalker walker;
+  std::uint64_t stream;  ///< of the ray's random numbers
+  double jitter;         ///< in [0, 1)
+  std::int64_t next = 0; ///< lattice interval to look at next
+  RayColor color{{0, 0, 0}, 1};
+  double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
+};
+
+/// What a ray does where the brick it wants is not there.
+enum class OnMiss {
+  UseCoarser, ///< read the nearest coarser level that is
+  Stop        ///< wait
+};
+
+/// Marches rays through the brick cache, one at a time, and notes which bricks they missed. One for
+/// each thread and tile.
+class CachedMarcher
+{
+public:
+  CachedMarcher(const CachedScene& scene, OnMiss onMiss) : Scene(scene), Missing(onMiss) {}
+
+  /// The ray through the centre of pixel (x, y), at its start.
+  CachedRay begin(int x, int y);
+  /// True when the ray is done, false when it waits for a brick. The same ray gives the same
+  /// picture however often it had to wait. The coarsest level must be mapped.
+  bool march(CachedRay& ray);
+
+  const FrameStatistics& statistics() const { return this->Statistics; }
+  RequestList& requests() { return this->Requests; }
+
+private:
+  /// What the samples in one macro-cell have in common.
+  struct Segment
+  {
+    double exit;
+    float low; ///< value range
+    float high;
+    float depth; ///< most that a step can add to the optical depth, at most 1
+    int longest; ///< log2 of the most steps a sample may stand for
+  };
+
+  void place(CachedRay& state);
+  Segment segmentAt(CachedRay& state) const;
+  void fill(CachedRay& state, const Segment& segment);
+  bool add(const CachedRay& state, const Segment& segment, std::int64_t k, double t, int multiple);
+  BrickRun* runFor(const CachedRay& state, int level, double t);
+  bool open(BrickRun& run, const Ray& ray, int level, double t);
+  void resolve(BrickRun& run, float transmittance);
+  void composite(CachedRay& state);
+  void compositeLast(CachedRay& state);
+  void takeLogarithms();
+
+  const CachedScene& Scene;
+  OnMiss Missing;
+  FrameStatistics Statistics;
+  RequestList Requests;
+
+  BrickRun Runs[2]; ///< of even and of odd levels: dithering alternates between two neighbours
+  SampleBatch Batch{};
+  double T[SampleBatch::Capacity];
+  int Count = 0;
+  float LastLength = 0; ///< of the ray's last sample, if it is shorter than a step; else 0
+  bool Waiting = false;
+  bool Ended = false;
+};
+
+} // namespace inr

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/CachedPasses.h"
+
+#include "Core/Render/TileLoop.h"
+
+#include <algorithm>
+
+namespace inr {
+
+namespace {
+
+/// Tiles at hand at once: some ten megabytes of waiting rays at most.
+constexpr std::size_t WindowTiles = 192;
+
+void Add(const FrameStatistics& part, FrameStatistics& sum)
+{
+  sum.rays += part.rays;
+  sum.samples += part.samples;
+  sum.missed += part.missed;
+  sum.clamped += part.clamped;
+}
+
+void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
+                const PassOutput& output)
+{
+  float* pixel = output.rgba.pixel(x, y);
+  std::copy_n(ray.color.rgb, 3, pixel);
+  pixel[3] = 1.0f - ray.color.transmittance;
+  if (output.depth != nullptr) {
+    const bool reached = ray.halfOpaqueAt >= 0;
+    const double z = reached ? scene.geometry.windowDepth(ray.ray.at(ray.halfOpaqueAt)) : 1.0;
+    *output.depth->pixel(x, y) = static_cast<float>(z);
+  }
+}
+
+} // namespace
+
+FrameStatistics MarchOnce(const CachedScene& scene, const Arena& arena,
+                          const std::function<bool()>& keepGoing, const PassOutput& output,
+                          RequestRanking& requests)
+{
+  const Tiling tiling(scene.frame.width, scene.frame.height);
+  std::vector<FrameStatistics> statistics(static_cast<std::size_t>(tiling.count()));
+  std::vector<RequestList> lists(static_cast<std::size_t>(tiling.count()));
+  ForEachTile(arena, tiling.count(), keepGoing, [&](std::int64_t k) {
+    CachedMarcher marcher(scene, OnMiss::UseCoarser);
+    const Tile tile = tiling.tile(k);
+    for (int y = tile.y; y < tile.y + tile.height; ++y) {
+      for (int x = tile.x; x < tile.x + tile.width; ++x) {
+        CachedRay ray = marcher.begin(x, y);
+        marcher.march(ray);
+        WritePixel(scene, ray, x, y, output);
+      }
+    }
+    statistics[static_cast<std::size_t>(k)] = marcher.statistics();
+    lists[static_cast<std::size_t>(k)] = std::move(marcher.requests());
+  });
+  FrameStatistics sum;
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    Add(statistics[k], sum);
+    requests.add(lists[k]);
+  }
+  return sum;
+}
+
+void CompletePass::start(ActiveTile& at, CachedMarcher& marcher, const PassOutput& output) const
+{
+  const Tile tile = this->Tiles.tile(at.tile);
+  at.started = true;
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    for (int x = tile.x; x < tile.x + tile.width; ++x) {
+      CachedRay ray = marcher.begin(x, y);
+      if (marcher.march(ray)) {
+        WritePixel(this->Scene, ray, x, y, output);
+      } else {
+        at.waiting.push_back({x, y, ray});
+      }
+    }
+  }
+}
+
+void CompletePass::resume(ActiveTile& tile, CachedMarcher& marcher, const PassOutput& output) const
+{
+  const auto done = [&](WaitingRay& waiting) {
+    if (!marcher.march(waiting.ray)) {
+      return false;
+    }
+    WritePixel(this->Scene, waiting.ray, waiting.x, waiting.y, output);
+    return true;
+  };
+  const auto rest = std::remove_if(tile.waiting.begin(), tile.waiting.end(), done);
+  tile.waiting.erase(rest, tile.waiting.end());
+}
+
+void CompletePass::advance(const Arena& arena, const std::function<bool()>& keepGoing,
+                           const PassOutput& output, RequestRanking& requests)
+{
+  while (this->Active.size() < WindowTiles && this->Next < this->Tiles.count()) {
+    this->Active.push_back({this->Next++, false, {}});
+  }
+  std::vector<FrameStatistics> statistics(this->Active.size());
+  std::vector<RequestList> lists(this->Active.size());
+  const auto count = static_cast<std::int64_t>(this->Active.size());
+  ForEachTile(arena, count, keepGoing, [&](std::int64_t k) {
+    const auto index = static_cast<std::size_t>(k);
+    ActiveTile& tile = this->Active[index];
+    CachedMarcher marcher(this->Scene, OnMiss::Stop);
+    if (tile.started) {
+      this->resume(tile, marcher, output);
+    } else {
+      this->start(tile, marcher, output);
+    }
+    statistics[index] = marcher.statistics();
+    lists[index] = std::move(marcher.requests());
+  });
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    Add(statistics[k], this->Statistics);
+    requests.add(lists[k]);
+  }
+  const auto finished = [](const ActiveTile& tile) { return tile.waiting.empty(); };
+  this->Active.erase(std::remove_if(this->Active.begin(), this->Active.end(), finished),
+                     this->Active.end());
+}
+
+} // namespace inr

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Image/Image.h"
+#include "Core/Render/CachedMarcher.h"
+#include "Core/Render/Tiling.h"
+
+#include <functional>
+#include <vector>
+
+namespace inr {
+
+class Arena;
+
+/// Where a pass puts its pixels. `depth` may be null.
+struct PassOutput
+{
+  Image& rgba;
+  Image* depth;
+};
+
+/// Marches the whole picture once with what is in the cache and notes what was missing. Throws
+/// Error(Cancelled) when `keepGoing` says so; see ForEachTile.
+FrameStatistics MarchOnce(const CachedScene& scene, const Arena& arena,
+                          const std::function<bool()>& keepGoing, const PassOutput& output,
+                          RequestRanking& requests);
+
+/// Marches the picture with every sample at the level it asks for, whatever the size of the cache:
+/// tiles in a fixed order, as many at a time as their waiting rays fit memory; a ray that misses a
+/// brick waits until the brick is there and goes on, so that no brick is needed twice by a ray and
+/// none has to stay for another.
+class CompletePass
+{
+public:
+  explicit CompletePass(const CachedScene& scene) : Scene(scene), Tiles(Size(scene)) {}
+
+  /// One round: marches every ray at hand as far as it comes and writes finished pixels. The bricks
+  /// that rays wait for come out of `requests`, in the order of their tiles.
+  void advance(const Arena& arena, const std::function<bool()>& keepGoing, const PassOutput& output,
+               RequestRanking& requests);
+  bool done() const { return this->Active.empty() && this->Next == this->Tiles.count(); }
+  const FrameStatistics& statistics() const { return this->Statistics; }
+
+private:
+  struct WaitingRay
+  {
+    int x, y;
+    CachedRay ray;
+  };
+  struct ActiveTile
+  {
+    std::int64_t tile;
+    bool started = false;
+    std::vector<WaitingRay> waiting;
+  };
+
+  static Tiling Size(const CachedScene& scene) { return {scene.frame.width, scene.frame.height}; }
+  void start(ActiveTile& tile, CachedMarcher& marcher, const PassOutput& output) const;
+  void resume(ActiveTile& tile, CachedMarcher& marcher, const PassOutput& output) const;
+
+  const CachedScene& Scene;
+  Tiling Tiles;
+  std::int64_t Next = 0; ///< first tile that was not yet at hand
+  std::vector<ActiveTile> Active;
+  FrameStatistics Statistics;
+};
+
+} // namespace inr

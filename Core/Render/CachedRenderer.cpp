@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/CachedRenderer.h"
+
+#include "Core/Error.h"
+
+#include <algorithm>
+#include <chrono>
+#include <unistd.h>
+
+namespace inr {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Bricks inferred in one go: they share the threads, and time and abort are looked at in between.
+constexpr std::int64_t BricksAtOnce = 4;
+
+double SecondsSince(Clock::time_point start)
+{
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// log2 of the longest sample in steps: the coarsest level's, four times as long where it is faint.
+int StepMultiples(int levels) { return levels + 2; }
+
+const CacheOptions& Checked(const CacheOptions& options)
+{
+  if (options.bytes < 0 || options.maximumRequests < 1) {
+    throw Error(ErrorCode::InvalidArgument,
+                "a cache needs a size that is not negative and at least one request at a time");
+  }
+  return options;
+}
+
+} // namespace
+
+std::int64_t DefaultCacheBytes()
+{
+  constexpr std::int64_t most = std::int64_t{16} << 30;
+  const std::int64_t memory =
+      std::int64_t{sysconf(_SC_PHYS_PAGES)} * std::int64_t{sysconf(_SC_PAGE_SIZE)};
+  return std::min(memory / 4, most);
+}
+
+CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
+                               const CacheOptions& options, const BrickKernel& kernel,
+                               const Arena& arena)
+    : Options(Checked(options)), Kernel(kernel), Threads(arena),
+      Cache(Hierarchy(dims, options.brickSize), options.precision,
+            options.bytes > 0 ? options.bytes : DefaultCacheBytes()),
+      Source(MakeBrickSource(std::move(field), this->Cache.hierarchy()))
+{
+  // There is always something to fall back on.
+  const BrickKey coarsest = this->Cache.hierarchy().coarsest();
+  this->load({coarsest}, {});
+  this->Cache.pin(coarsest);
+}
+
+const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double stepLength)
+{
+  const int multiples = StepMultiples(this->Cache.hierarchy().levels());
+  if (!this->Steps || !this->Steps->fits(stepLength, multiples)) {
+    this->Steps.emplace(colors, stepLength, multiples);
+  }
+  return this->Steps->lookup();
+}
+
+FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& geometry,
+                                       const Majorants& majorants, const ColorLookup& colors,
+                                       const MarchSettings& settings, const PassOutput& output,
+                                       const std::function<bool()>& keepGoing)
+{
+  const StepLookup& steps = this->stepsFor(colors, settings.step * settings.unitsPerT);
+  const CachedScene scene{frame, geometry,    majorants,    colors,
+                          steps, this->Cache, this->Kernel, settings};
+  return frame.timeLimit > 0 ? this->renderInTime(scene, output, keepGoing)
+                             : this->renderComplete(scene, output, keepGoing);
+}
+
+std::int64_t CachedRenderer::load(const std::vector<BrickKey>& keys,
+                                  const std::function<bool()>& keepGoing)
+{
+  const std::int64_t voxels = this->Cache.hierarchy().voxelsPerBrick();
+  const auto count = static_cast<std::int64_t>(keys.size());
+  std::vector<float> values(static_cast<std::size_t>(BricksAtOnce * voxels));
+  for (std::int64_t first = 0; first < count; first += BricksAtOnce) {
+    if (first > 0 && keepGoing && !keepGoing()) { // never without progress
+      return first;
+    }
+    const std::int64_t batch = std::min(BricksAtOnce, count - first);
+    this->Source->infer(keys.data() + first, batch, values.data(), this->Threads);
+    for (std::int64_t k = 0; k < batch; ++k) {
+      if (!this->Cache.insert(keys[static_cast<std::size_t>(first + k)],
+                              values.data() + k * voxels)) {
+        return first + k;
+      }
+    }
+  }
+  return count;
+}
+
+FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const PassOutput& output,
+                                               const std::function<bool()>& keepGoing)
+{
+  CompletePass pass(scene);
+  while (true) {
+    this->Cache.beginFrame();
+    RequestRanking requests;
+    pass.advance(this->Threads, keepGoing, output, requests);
+    if (pass.done()) {
+      break;
+    }
+    // Room for what waits now must not be taken from what was loaded a moment ago for the same
+    // rays.
+    const std::int64_t most = this->Cache.capacity() - 1;
+    this->load(requests.ranked(most, false), keepGoing);
+    if (keepGoing && !keepGoing()) {
+      throw Error(ErrorCode::Cancelled, "rendering stopped on request");
+    }
+  }
+  FrameStatistics statistics = pass.statistics();
+  statistics.complete = true;
+  return statistics;
+}
+
+FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const PassOutput& output,
+                                             const std::function<bool()>& keepGoing)
+{
+  const auto start = Clock::now();
+  const auto timeIsLeft = [&] { return SecondsSince(start) < scene.frame.timeLimit; };
+  while (true) {
+    const auto begin = Clock::now();
+    this->Cache.beginFrame();
+    RequestRanking requests;
+    FrameStatistics statistics = MarchOnce(scene, this->Threads, keepGoing, output, requests);
+    statistics.complete = requests.empty();
+    const double marching = SecondsSince(begin);
+    const auto goOn = [&] {
+      return SecondsSince(start) + marching < scene.frame.timeLimit && (!keepGoing || keepGoing());
+    };
+    const auto keys = requests.ranked(this->Options.maximumRequests, this->Options.ranking);
+    const std::int64_t loaded = this->load(keys, timeIsLeft);
+    if (statistics.complete || loaded == 0 || !goOn()) {
+      return statistics;
+    }
+  }
+}
+
+} // namespace inr

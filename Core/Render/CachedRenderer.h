@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/BrickSource.h"
+#include "Core/Parallel.h"
+#include "Core/Render/CachedPasses.h"
+#include "Core/Render/StepTable.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace inr {
+
+/// How the cache is made and filled.
+struct CacheOptions
+{
+  std::int64_t bytes = 0; ///< of the whole cache; 0 = DefaultCacheBytes()
+  CachePrecision precision = CachePrecision::Bits16;
+  int brickSize = 40;       ///< voxels per side, 4 to 1024
+  int maximumRequests = 40; ///< bricks inferred between two looks at what is wanted; above 0
+  bool ranking = true;      ///< what contributes most first; else in the order of the tiles
+};
+
+/// A quarter of the machine's memory, at most 16 GiB.
+std::int64_t DefaultCacheBytes();
+
+/// Renders through a cache of bricks, which lives from frame to frame.
+class CachedRenderer
+{
+public:
+  /// Infers and pins the coarsest level. Throws what Hierarchy and BrickCache throw. `arena` must
+  /// outlive the renderer.
+  CachedRenderer(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
+                 const CacheOptions& options, const BrickKernel& kernel, const Arena& arena);
+
+  /// See Renderer::render. The references are for the call only.
+  FrameStatistics render(const Frame& frame, const RayGeometry& geometry,
+                         const Majorants& majorants, const ColorLookup& colors,
+                         const MarchSettings& settings, const PassOutput& output,
+                         const std::function<bool()>& keepGoing);
+  /// Forgets what was made of the colours; for when they change.
+  void forgetColors() { this->Steps.reset(); }
+
+  const BrickCache& cache() const { return this->Cache; }
+
+private:
+  const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
+  FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
+                                 const std::function<bool()>& keepGoing);
+  FrameStatistics renderInTime(const CachedScene& scene, const PassOutput& output,
+                               const std::function<bool()>& keepGoing);
+  std::int64_t load(const std::vector<BrickKey>& keys, const std::function<bool()>& keepGoing);
+
+  CacheOptions Options;
+  const BrickKernel& Kernel;
+  const Arena& Threads;
+  BrickCache Cache;
+  std::shared_ptr<const BrickSource> Source;
+  std::optional<StepTable> Steps;
+};
+
+} // namespace inr

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/HostDevice.h"
+#include "Core/Random.h"
+#include "Core/Render/Ray.h"
+
+#include <cstdint>
+
+namespace inr {
+
+/// The cache level that a place on a ray deserves: a level's voxel should be as large as the
+/// pixel's footprint there. Between two levels the choice is random, in proportion, so that no
+/// rings show where one level ends.
+class LevelOfDetail
+{
+public:
+  /// `scale` multiplies the footprint (0: always level 0); `levels` is the number there is.
+  INR_HOST_DEVICE LevelOfDetail(const Ray& ray, double scale, int levels)
+      : Footprint(ray.footprint * scale), Growth(ray.footprintGrowth * scale), Last(levels - 1)
+  {}
+
+  /// Moves to t; calls with neighbouring t are the cheap ones.
+  INR_HOST_DEVICE void moveTo(double t)
+  {
+    const double footprint = this->Footprint + this->Growth * t;
+    while (this->Level < this->Last && footprint >= 2.0 * this->Voxel) {
+      ++this->Level;
+      this->Voxel *= 2.0;
+    }
+    while (this->Level > 0 && footprint < this->Voxel) {
+      --this->Level;
+      this->Voxel *= 0.5;
+    }
+    const bool between = this->Level < this->Last && footprint > this->Voxel;
+    this->Fraction = between ? static_cast<float>(footprint / this->Voxel - 1.0) : 0.0f;
+  }
+
+  /// The finer of the two levels in question.
+  INR_HOST_DEVICE int level() const { return this->Level; }
+  /// Largest level that `dithered` can answer.
+  INR_HOST_DEVICE int coarsest() const { return this->Level + (this->Fraction > 0.0f ? 1 : 0); }
+  /// The level of sample number `counter` of the ray whose random stream is `stream`.
+  INR_HOST_DEVICE int dithered(std::uint64_t stream, std::int64_t counter) const
+  {
+    if (this->Fraction <= 0.0f) {
+      return this->Level;
+    }
+    const float random = RandomUnit(stream, static_cast<std::uint64_t>(counter));
+    return random < this->Fraction ? this->Level + 1 : this->Level;
+  }
+
+private:
+  double Footprint;
+  double Growth;
+  int Last;
+  int Level = 0;
+  double Voxel = 1.0; ///< edge of Level's voxels, in voxels of level 0
+  float Fraction = 0.0f;
+};
+
+} // namespace inr

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Cache/Hierarchy.h"
+#include "Core/Error.h"
+#include "Core/Random.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using glm::dvec3;
+using glm::i64vec3;
+
+const i64vec3 Sizes[] = {{1, 1, 1},
+                         {2, 3, 5},
+                         {7, 8, 9},
+                         {39, 40, 41},
+                         {1, 79, 80},
+                         {10240, 7680, 1536},
+                         {131072, 131072, 131072}};
+
+dvec3 RandomPoint(const i64vec3& dims, std::uint64_t k)
+{
+  const auto random = [k](std::uint64_t axis) {
+    return static_cast<double>(inr::RandomUnit(7, 3 * k + axis)) +
+           1e-8 * inr::RandomUnit(8, 3 * k + axis);
+  };
+  return dvec3(random(0), random(1), random(2)) * dvec3(dims - std::int64_t{1});
+}
+
+TEST(Hierarchy, HalvesRoundingUpUntilOneBrickIsEnough)
+{
+  const inr::Hierarchy levels({131072, 7680, 1}, 40);
+  for (int level = 0; level + 1 < levels.levels(); ++level) {
+    EXPECT_NE(levels.bricks(level), i64vec3(1));
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto half =
+          static_cast<std::int64_t>(std::ceil(static_cast<double>(levels.size(level)[axis]) / 2));
+      EXPECT_EQ(levels.size(level + 1)[axis], half);
+    }
+  }
+  EXPECT_EQ(levels.bricks(levels.levels() - 1), i64vec3(1));
+  EXPECT_EQ(levels.levels(), 13); // 131072 / 2^12 = 32 voxels
+}
+
+TEST(Hierarchy, KeysAndPlacesAreOneToOne)
+{
+  const inr::BrickId ids[] = {{0, {0, 0, 0}}, {12, {3360, 1, 2}}, {31, {524287, 524287, 524287}}};
+  for (const inr::BrickId& id : ids) {
+    const inr::BrickId again = inr::IdOf(inr::KeyOf(id));
+    EXPECT_EQ(again.level, id.level);
+    EXPECT_EQ(again.at, id.at);
+  }
+}
+
+TEST(Hierarchy, EveryVoxelIsInABrickAndNeighboursShareALayer)
+{
+  for (const int edge : {4, 7, 40}) {
+    for (const std::int64_t voxels : {1, 2, 3, 4, 5, 39, 40, 41, 79, 80, 118, 256}) {
+      const inr::Hierarchy levels(i64vec3(voxels), edge);
+      const std::int64_t bricks = levels.bricks(0).x;
+      const std::int64_t stored = levels.brickDims().x;
+      const std::int64_t last = levels.firstVoxel({0, i64vec3(bricks - 1)}).x;
+      EXPECT_GE(last + stored, voxels);
+      EXPECT_LT(last, std::max<std::int64_t>(voxels - 1, 1)); // none that holds but a shared layer
+      EXPECT_EQ(levels.firstVoxel({0, i64vec3(1)}).x, stored - 1);
+    }
+  }
+}
+
+TEST(Hierarchy, LocatesAPointAtItsPlaceInEveryLevel)
+{
+  for (const i64vec3& dims : Sizes) {
+    const inr::Hierarchy levels(dims, 40);
+    for (int level = 0; level < levels.levels(); ++level) {
+      for (std::uint64_t k = 0; k < 200; ++k) {
+        const dvec3 index = RandomPoint(dims, k);
+        const inr::Hierarchy::Location place = levels.locate(level, index);
+        for (int axis = 0; axis < 3; ++axis) {
+          const auto size = static_cast<double>(levels.size(level)[axis]);
+          const double u = (index[axis] + 0.5) / static_cast<double>(dims[axis]);
+          const double expected = std::min(std::max(u * size - 0.5, 0.0), size - 1);
+          const double voxel =
+              place.local[axis] + static_cast<double>(levels.firstVoxel(place.brick)[axis]);
+          EXPECT_NEAR(voxel, expected, 1e-9 * size);
+          EXPECT_GE(place.local[axis], 0);
+          EXPECT_LE(place.local[axis], levels.brickDims()[axis] - 1);
+          EXPECT_LT(place.brick.at[axis], levels.bricks(level)[axis]);
+        }
+      }
+    }
+  }
+}
+
+TEST(Hierarchy, RefusesNonsense)
+{
+  EXPECT_THROW(inr::Hierarchy({0, 1, 1}, 40), inr::Error);
+  EXPECT_THROW(inr::Hierarchy({9, 9, 9}, 3), inr::Error);
+  EXPECT_THROW(inr::Hierarchy({9, 9, 9}, 1025), inr::Error);
+  EXPECT_THROW(inr::Hierarchy({std::int64_t{1} << 40, 1, 1}, 40), inr::Error);
+}
+
+} // namespace

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/StepTable.h"
+#include "Testing/Core/Render/Scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+/// RGBA of a sample of 2^multiple steps, read as the compositing kernels do.
+glm::vec4 Read(const inr::StepLookup& lookup, float y, int multiple)
+{
+  float position = lookup.scale * y + lookup.bias;
+  int row = 0;
+  float weight = 0;
+  if (position >= 2 && position <= static_cast<float>(lookup.rows - 3)) {
+    row = static_cast<int>(position);
+    weight = position - static_cast<float>(row);
+  } else if (position > 2) {
+    row = lookup.rows - 2;
+  }
+  const float* first = lookup.entries + 4 * (multiple * lookup.rows + row);
+  glm::vec4 entry;
+  for (int k = 0; k < 4; ++k) {
+    entry[k] = first[k] + (first[k + 4] - first[k]) * weight;
+  }
+  return entry;
+}
+
+TEST(StepTable, FollowsThePowerBetweenEntries)
+{
+  inr::TransferFunction function;
+  function.table = {{1, 0, 0, 0}, {0, 1, 0, 0.3f}, {0, 0, 1, 1}, {0, 0, 0, 0.1f}};
+  const inr::ColorTable colors(function, inr::VolumeInfo{});
+  for (const double length : {0.1, 1.0, 7.0}) {
+    const inr::StepTable table(colors.lookup(), length, 4);
+    for (int multiple = 0; multiple < 4; ++multiple) {
+      for (float y = 0; y <= 1; y += 1.0f / 1237) {
+        const glm::vec4 entry = colors.lookup().at(y);
+        const double exact = 1 - std::pow(1.0 - entry.w, std::ldexp(length, multiple));
+        const glm::vec4 read = Read(table.lookup(), y, multiple);
+        // Short samples of nearly opaque values bend without limit next to 1.
+        EXPECT_NEAR(read.w, exact, entry.w < 0.99f ? 2e-3 : 0.1) << y << " " << length;
+        EXPECT_NEAR(read.x, entry.x, 1e-4);
+        EXPECT_NEAR(read.z, entry.z, 1e-4);
+      }
+    }
+  }
+}
+
+TEST(StepTable, StepsAtTheEndsOfTheRange)
+{
+  inr::TransferFunction function = UniformMedium(0.5f);
+  function.low = 0.25;
+  function.high = 0.75;
+  function.below = {0, 0, 0, 0};
+  function.above = {1, 0, 0, 0.75f};
+  const inr::ColorTable colors(function, inr::VolumeInfo{});
+  const inr::StepTable table(colors.lookup(), 1.0, 2);
+  EXPECT_EQ(Read(table.lookup(), 0.2f, 0).w, 0.0f);
+  EXPECT_FLOAT_EQ(Read(table.lookup(), 0.3f, 0).w, 0.5f);
+  EXPECT_FLOAT_EQ(Read(table.lookup(), 0.3f, 1).w, 0.75f);
+  EXPECT_FLOAT_EQ(Read(table.lookup(), 0.8f, 0).w, 0.75f);
+  EXPECT_FLOAT_EQ(Read(table.lookup(), 0.8f, 1).w, 0.9375f);
+}
+
+} // namespace
