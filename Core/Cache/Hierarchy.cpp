@@ -12,8 +12,7 @@ namespace inr {
 
 namespace {
 
-constexpr int BitsPerAxis = 19;
-constexpr std::uint64_t AxisMask = (std::uint64_t{1} << BitsPerAxis) - 1;
+constexpr std::uint64_t AxisMask = (std::uint64_t{1} << BrickAxisBits) - 1;
 constexpr int SmallestBrick = 4;
 constexpr int LargestBrick = 1024;
 
@@ -46,17 +45,17 @@ void RequireSizes(const glm::i64vec3& dims, int brickSize)
 BrickKey KeyOf(const BrickId& id)
 {
   const auto word = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
-  return (((word(id.level) << BitsPerAxis | word(id.at.z)) << BitsPerAxis | word(id.at.y))
-          << BitsPerAxis) |
+  return (((word(id.level) << BrickAxisBits | word(id.at.z)) << BrickAxisBits | word(id.at.y))
+          << BrickAxisBits) |
          word(id.at.x);
 }
 
 BrickId IdOf(BrickKey key)
 {
   const auto axis = [key](int place) {
-    return static_cast<std::int64_t>(key >> (place * BitsPerAxis) & AxisMask);
+    return static_cast<std::int64_t>(key >> (place * BrickAxisBits) & AxisMask);
   };
-  return {static_cast<int>(key >> (3 * BitsPerAxis)), {axis(0), axis(1), axis(2)}};
+  return {static_cast<int>(key >> (3 * BrickAxisBits)), {axis(0), axis(1), axis(2)}};
 }
 
 Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize)
@@ -74,10 +73,20 @@ Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize)
       level.bricks[axis] = BricksAlong(size[axis], this->BrickDims[axis] - 1);
     }
     level.scale = glm::dvec3(size) / glm::dvec3(dims);
+    level.inverseScale = 1.0 / level.scale;
     level.bias = 0.5 * level.scale - 0.5;
     this->Levels.push_back(level);
     size = (size + std::int64_t{1}) / std::int64_t{2};
   } while (this->Levels.back().bricks != glm::i64vec3(1));
+}
+
+BrickId Hierarchy::brickAt(int level, const glm::dvec3& index) const
+{
+  const Level& at = this->at(level);
+  // Truncation is floor for what is not negative; the last voxel belongs to the brick before it.
+  const glm::dvec3 place = glm::max(index * at.scale + at.bias, glm::dvec3(0.0));
+  const glm::i64vec3 brick(place / glm::dvec3(this->BrickDims - 1));
+  return {level, glm::min(brick, at.bricks - std::int64_t{1})};
 }
 
 Hierarchy::Location Hierarchy::locate(int level, const glm::dvec3& index) const
@@ -85,10 +94,8 @@ Hierarchy::Location Hierarchy::locate(int level, const glm::dvec3& index) const
   const Level& at = this->at(level);
   const glm::dvec3 place = glm::clamp(index * at.scale + at.bias, glm::dvec3(0.0),
                                       glm::dvec3(at.size - std::int64_t{1}));
-  const glm::i64vec3 cell = glm::min(glm::i64vec3(glm::floor(place)),
-                                     glm::max(at.size - std::int64_t{2}, glm::i64vec3(0)));
-  const glm::i64vec3 brick = cell / glm::i64vec3(this->BrickDims - 1);
-  return {{level, brick}, place - glm::dvec3(brick * glm::i64vec3(this->BrickDims - 1))};
+  const BrickId brick = this->brickAt(level, index);
+  return {brick, place - glm::dvec3(this->firstVoxel(brick))};
 }
 
 } // namespace inr

@@ -18,6 +18,7 @@ struct BrickId
 
 /// A brick in 62 bits: level, z, y, x. Keys of a level sort by z, then y, then x.
 using BrickKey = std::uint64_t;
+constexpr int BrickAxisBits = 19; ///< x takes the lowest
 BrickKey KeyOf(const BrickId& id);
 BrickId IdOf(BrickKey key);
 
@@ -53,6 +54,7 @@ public:
   /// Position p in voxels of level 0 (voxel i at i) is p * scale + bias in voxels of `level`.
   const glm::dvec3& scale(int level) const { return this->at(level).scale; }
   const glm::dvec3& bias(int level) const { return this->at(level).bias; }
+  const glm::dvec3& inverseScale(int level) const { return this->at(level).inverseScale; }
 
   struct Location
   {
@@ -62,6 +64,9 @@ public:
   /// Where `level` keeps the field at a position in voxels of level 0, clamped to the voxels.
   Location locate(int level, const glm::dvec3& index) const;
 
+  /// The brick alone.
+  BrickId brickAt(int level, const glm::dvec3& index) const;
+
 private:
   struct Level
   {
@@ -69,6 +74,7 @@ private:
     glm::i64vec3 bricks;
     glm::dvec3 scale;
     glm::dvec3 bias;
+    glm::dvec3 inverseScale; ///< 1 / scale
   };
   const Level& at(int level) const { return this->Levels[static_cast<std::size_t>(level)]; }
 

@@ -36,18 +36,22 @@ std::int64_t PageTable::bytesFor(std::int64_t bricks)
          bricks * (EntriesPerPage + 2) * word;
 }
 
+// Both take the key apart where it stands: they are what every brick on a ray's way costs.
 BrickKey PageTable::PageKey(BrickKey key)
 {
-  const BrickId id = IdOf(key);
-  return KeyOf({id.level, id.at >> std::int64_t{PageBits}});
+  constexpr BrickKey within = (BrickKey{1} << PageBits) - 1;
+  constexpr BrickKey all = within | within << BrickAxisBits | within << (2 * BrickAxisBits);
+  return key & ~all;
 }
 
 std::size_t PageTable::EntryOf(std::int32_t page, BrickKey key)
 {
-  constexpr std::int64_t mask = (1 << PageBits) - 1;
-  const glm::i64vec3 at = IdOf(key).at & mask;
-  const std::int64_t within = at.x + ((at.y + (at.z << PageBits)) << PageBits);
-  return static_cast<std::size_t>(page * EntriesPerPage + within);
+  constexpr BrickKey within = (BrickKey{1} << PageBits) - 1;
+  const BrickKey x = key & within;
+  const BrickKey y = key >> BrickAxisBits & within;
+  const BrickKey z = key >> (2 * BrickAxisBits) & within;
+  return static_cast<std::size_t>(page) * EntriesPerPage +
+         (x | y << PageBits | z << (2 * PageBits));
 }
 
 std::size_t PageTable::home(BrickKey page) const

@@ -16,14 +16,56 @@ struct AxisLocation
   Floats weight;
 };
 
-AxisLocation Locate(const BrickPath& path, int axis, Floats t)
+AxisLocation Locate(const float* places, int lastCell)
 {
-  const Floats along = MultiplyAdd(t, Spread(path.direction[axis]), Spread(path.origin[axis]));
-  const Floats inside = Minimum(Maximum(along, Floats{}), Spread(path.last[axis]));
-  Ints cell = __builtin_convertvector(inside, Ints); // not negative, so truncation is floor
-  const Ints last = path.lastCell[axis] - Ints{};
+  const Floats place = Load(places);
+  Ints cell = __builtin_convertvector(place, Ints); // not negative, so truncation is floor
+  const Ints last = lastCell - Ints{};
   cell = cell < last ? cell : last;
-  return {cell, inside - __builtin_convertvector(cell, Floats)};
+  return {cell, place - __builtin_convertvector(cell, Floats)};
+}
+
+/// Where samples are in their bricks.
+struct Located
+{
+  const void* voxels[SampleBatch::Room];
+  float place[3][SampleBatch::Room];
+  float base[SampleBatch::Room];
+  float quantum[SampleBatch::Room];
+};
+
+/// Samples [first, end) of one path; may write up to LaneCount - 1 places past the end.
+void Follow(const BrickPath& path, const float* along, int first, int end, Located& out)
+{
+  for (int k = first; k < end; k += LaneCount) {
+    const Floats t = Load(along + k);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Floats place = MultiplyAdd(t, Spread(path.direction[axis]), Spread(path.origin[axis]));
+      Store(out.place[axis] + k, Minimum(Maximum(place, Floats{}), Spread(path.last[axis])));
+    }
+    Store(out.base + k, Spread(path.base));
+    Store(out.quantum + k, Spread(path.quantum));
+    for (int lane = k; lane < k + LaneCount; ++lane) {
+      out.voxels[lane] = path.voxels;
+    }
+  }
+}
+
+void LocateAll(const SampleBatch& batch, int count, Located& out)
+{
+  int first = 0;
+  while (first < count) {
+    int end = first + 1;
+    while (end < count && batch.path[end] == batch.path[first]) {
+      ++end;
+    }
+    Follow(batch.paths[batch.path[first]], batch.along, first, end, out);
+    first = end;
+  }
+  for (int lane = count; lane % LaneCount != 0; ++lane) { // whatever can be read
+    out.voxels[lane] = out.voxels[count - 1];
+    out.place[0][lane] = out.place[1][lane] = out.place[2][lane] = 0.0f;
+  }
 }
 
 /// The two neighbours along x of LaneCount places.
@@ -33,103 +75,104 @@ struct Pair
   Floats second;
 };
 
-Pair LoadPairs(const float* voxels, const std::int32_t* offset)
+/// Where LaneCount samples find their cells.
+struct Places
 {
-  float lanes[2][LaneCount];
-  for (int k = 0; k < LaneCount; ++k) {
-    lanes[0][k] = voxels[offset[k]];
-    lanes[1][k] = voxels[offset[k] + 1];
-  }
-  return {Load(lanes[0]), Load(lanes[1])};
-}
+  const void* const* voxels;
+  std::int32_t offset[LaneCount];
+};
 
 /// Both voxels come in one load, which is what makes integers faster than floats.
-template <typename Word>
-Pair LoadPairs(const void* voxels, const std::int32_t* offset, std::int32_t mask, int shift)
+template <typename Word, typename Stored> Pair LoadPairs(const Places& places, std::int64_t shift)
 {
-  std::int32_t lanes[LaneCount];
-  const char* bytes = static_cast<const char*>(voxels);
+  constexpr int bits = 8 * sizeof(Stored);
+  std::uint32_t lanes[LaneCount];
   for (int k = 0; k < LaneCount; ++k) {
     Word word;
-    std::memcpy(&word, bytes + static_cast<std::int64_t>(offset[k]) * (shift / 8), sizeof(word));
-    lanes[k] = static_cast<std::int32_t>(word);
+    std::memcpy(&word, static_cast<const Stored*>(places.voxels[k]) + places.offset[k] + shift,
+                sizeof(word));
+    lanes[k] = word;
   }
-  UInts both;
+  Ints both;
   std::memcpy(&both, lanes, sizeof(both));
-  const UInts first = both & SpreadInt(static_cast<std::uint32_t>(mask));
-  return {__builtin_convertvector((Ints)first, Floats),
-          __builtin_convertvector((Ints)(both >> shift), Floats)};
+  const Ints mask = ((1 << bits) - 1) - Ints{};
+  return {__builtin_convertvector(both & mask, Floats),
+          __builtin_convertvector((Ints)((UInts)both >> bits), Floats)};
 }
 
 struct FloatVoxels
 {
-  static Pair load(const void* voxels, const std::int32_t* offset)
+  static Pair load(const Places& places, std::int64_t shift)
   {
-    return LoadPairs(static_cast<const float*>(voxels), offset);
+    float lanes[2][LaneCount];
+    for (int k = 0; k < LaneCount; ++k) {
+      const float* from = static_cast<const float*>(places.voxels[k]) + places.offset[k] + shift;
+      lanes[0][k] = from[0];
+      lanes[1][k] = from[1];
+    }
+    return {Load(lanes[0]), Load(lanes[1])};
   }
-  static constexpr int Bytes = 4;
 };
 
 struct ShortVoxels
 {
-  static Pair load(const void* voxels, const std::int32_t* offset)
+  static Pair load(const Places& places, std::int64_t shift)
   {
-    return LoadPairs<std::uint32_t>(voxels, offset, 0xFFFF, 16);
+    return LoadPairs<std::uint32_t, std::uint16_t>(places, shift);
   }
-  static constexpr int Bytes = 2;
 };
 
 struct ByteVoxels
 {
-  static Pair load(const void* voxels, const std::int32_t* offset)
+  static Pair load(const Places& places, std::int64_t shift)
   {
-    return LoadPairs<std::uint16_t>(voxels, offset, 0xFF, 8);
+    return LoadPairs<std::uint16_t, std::uint8_t>(places, shift);
   }
-  static constexpr int Bytes = 1;
 };
 
 Floats Mix(Floats a, Floats b, Floats weight) { return MultiplyAdd(b - a, weight, a); }
 
-template <typename Voxels>
-Floats MixPair(const void* voxels, std::int64_t shift, const std::int32_t* offset, Floats weight)
+template <typename Voxels> Floats MixPair(const Places& places, std::int64_t shift, Floats weight)
 {
-  const Pair pair = Voxels::load(static_cast<const char*>(voxels) + shift * Voxels::Bytes, offset);
+  const Pair pair = Voxels::load(places, shift);
   return Mix(pair.first, pair.second, weight);
 }
 
 template <typename Voxels>
-void SampleAs(const BrickPath& path, const float* t, int count, float* values)
+void SampleAs(const BrickFormat& format, const Located& located, int count, float* values)
 {
+  const std::int64_t dy = format.strideY;
+  const std::int64_t dz = format.strideZ;
   for (int k = 0; k < count; k += LaneCount) {
-    const Floats at = Load(t + k);
-    const AxisLocation x = Locate(path, 0, at);
-    const AxisLocation y = Locate(path, 1, at);
-    const AxisLocation z = Locate(path, 2, at);
-    const Ints offset = x.cell + y.cell * path.strideY + z.cell * path.strideZ;
-    std::int32_t offsets[LaneCount];
-    std::memcpy(offsets, &offset, sizeof(offset));
-    const std::int64_t dy = path.strideY;
-    const std::int64_t dz = path.strideZ;
-    const Floats front = Mix(MixPair<Voxels>(path.voxels, 0, offsets, x.weight),
-                             MixPair<Voxels>(path.voxels, dy, offsets, x.weight), y.weight);
-    const Floats back = Mix(MixPair<Voxels>(path.voxels, dz, offsets, x.weight),
-                            MixPair<Voxels>(path.voxels, dz + dy, offsets, x.weight), y.weight);
+    const AxisLocation x = Locate(located.place[0] + k, format.lastCell[0]);
+    const AxisLocation y = Locate(located.place[1] + k, format.lastCell[1]);
+    const AxisLocation z = Locate(located.place[2] + k, format.lastCell[2]);
+    const Ints offset = x.cell + y.cell * format.strideY + z.cell * format.strideZ;
+    Places places;
+    places.voxels = located.voxels + k;
+    std::memcpy(places.offset, &offset, sizeof(offset));
+    const Floats front =
+        Mix(MixPair<Voxels>(places, 0, x.weight), MixPair<Voxels>(places, dy, x.weight), y.weight);
+    const Floats back = Mix(MixPair<Voxels>(places, dz, x.weight),
+                            MixPair<Voxels>(places, dz + dy, x.weight), y.weight);
     const Floats stored = Mix(front, back, z.weight);
-    Store(values + k, MultiplyAdd(stored, Spread(path.step), Spread(path.low)));
+    Store(values + k, MultiplyAdd(stored, Load(located.quantum + k), Load(located.base + k)));
   }
 }
 
-void Sample(const BrickPath& path, const float* t, int count, float* values)
+void Sample(const BrickFormat& format, SampleBatch& batch, int count)
 {
-  switch (path.format) {
+  Located located;
+  LocateAll(batch, count, located);
+  switch (format.bytes) {
   case VoxelBytes::Four:
-    SampleAs<FloatVoxels>(path, t, count, values);
+    SampleAs<FloatVoxels>(format, located, count, batch.value);
     break;
   case VoxelBytes::Two:
-    SampleAs<ShortVoxels>(path, t, count, values);
+    SampleAs<ShortVoxels>(format, located, count, batch.value);
     break;
   case VoxelBytes::One:
-    SampleAs<ByteVoxels>(path, t, count, values);
+    SampleAs<ByteVoxels>(format, located, count, batch.value);
     break;
   }
 }

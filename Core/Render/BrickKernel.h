@@ -10,20 +10,13 @@ namespace inr {
 /// Bytes of one stored voxel: float, or an integer of 16 or 8 bits.
 enum class VoxelBytes { One = 1, Two = 2, Four = 4 };
 
-/// A ray's way through one brick. Local coordinate at t: clamp(origin + t * direction, 0, last),
-/// voxel i at i. Plain data.
-struct BrickPath
+/// What all bricks of a cache have in common. Plain data.
+struct BrickFormat
 {
-  const void* voxels; ///< x fastest
-  VoxelBytes format;
-  float low; ///< value = low + step * stored
-  float step;
+  VoxelBytes bytes;
   int strideY; ///< in voxels
   int strideZ;
   int lastCell[3]; ///< largest first corner of an interpolation cell
-  float last[3];
-  float origin[3];
-  float direction[3];
 };
 
 /// Colours and opacities for the sample lengths of one frame: table + multiple * rows holds, for
@@ -37,15 +30,31 @@ struct StepLookup
   float bias;
 };
 
-/// Samples of a ray, front to back.
+/// A ray's way through one brick: local coordinate = clamp(origin + along * direction, 0, last),
+/// voxel i at i.
+struct BrickPath
+{
+  const void* voxels; ///< x fastest
+  float base;         ///< value = base + quantum * stored
+  float quantum;
+  float origin[3];
+  float direction[3];
+  float last[3];
+};
+
+/// Samples of a ray, front to back. The arrays have room for kernels to write past the last sample.
 struct SampleBatch
 {
   static constexpr int Capacity = 32;
-  float value[Capacity];
-  float low[Capacity]; ///< range of the sample's macro-cell, to which its value is clamped
-  float high[Capacity];
-  std::int32_t multiple[Capacity]; ///< log2 of its length in steps
-  float opacity[Capacity];         ///< out: accumulated before the sample
+  static constexpr int Room = Capacity + 16;
+  BrickPath paths[Capacity + 2];
+  std::int32_t path[Room]; ///< of each sample, in `paths`
+  float along[Room];       ///< its path
+  float low[Room];         ///< range of the sample's macro-cell, to which its value is clamped
+  float high[Room];
+  std::int32_t multiple[Room]; ///< log2 of its length in steps
+  float value[Room];           ///< out of `sample`
+  float opacity[Room];         ///< out of `composite`: accumulated before the sample
 };
 
 /// What a ray has gathered.
@@ -58,9 +67,8 @@ struct RayColor
 /// The inner loops of cached ray marching, for one instruction set.
 struct BrickKernel
 {
-  /// Trilinear values at t[0 .. count), count <= SampleBatch::Capacity; reads and writes up to the
-  /// next multiple of 16.
-  void (*sample)(const BrickPath& path, const float* t, int count, float* values);
+  /// Finds the trilinear values of the first `count` samples.
+  void (*sample)(const BrickFormat& format, SampleBatch& batch, int count);
 
   /// Composites `count` samples front to back until transmittance falls to `opaque`; returns how
   /// many were used. Adds to `clamped` those outside their range.

@@ -7,6 +7,9 @@
 
 namespace inr {
 
+/// What kernels need to know about the bricks of a cache.
+BrickFormat FormatOf(const BrickCache& cache);
+
 /// The part [enter, exit) of a ray that one brick covers.
 struct BrickSpan
 {
@@ -21,7 +24,7 @@ struct BrickSpan
 /// the ray does. A function of ray and brick only: where in the brick t lies makes no difference.
 BrickSpan SpanAt(const Hierarchy& hierarchy, int level, const Ray& ray, double t);
 
-/// Samples of one ray that fall into one brick, gathered to be interpolated together.
+/// Samples of one ray that fall into one brick.
 class BrickRun
 {
 public:
@@ -33,36 +36,45 @@ public:
   /// An empty run of samples that want `wanted` of `level` and are read from `served` (the same, or
   /// of a coarser level), a mapped brick in `view`.
   void open(int level, const BrickSpan& wanted, const BrickSpan& served, const BrickView& view,
-            const Hierarchy& hierarchy, CachePrecision precision);
-  void close() { this->Level = -1; }
-
-  /// `weight`: the most that the sample can add to the opacity.
-  void add(double t, int sample, float weight)
+            const Hierarchy& hierarchy);
+  void close()
   {
-    this->Weight += weight;
-    this->T[this->Count] = static_cast<float>(t - this->Reference);
-    this->Sample[this->Count++] = sample;
+    this->Level = -1;
+    this->Count = 0;
   }
-  int count() const { return this->Count; }
-  float weight() const { return this->Weight; } ///< of the samples added so far
-  /// Interpolates the samples added so far into values[sample] and forgets them.
-  void resolve(const BrickKernel& kernel, float* values);
 
+  double exit() const { return this->Exit; }
+  /// Length along `path()` at t.
+  float along(double t) const { return static_cast<float>(t - this->Reference); }
+  /// Notes samples; `weight` is the most that each can add to the opacity.
+  void count(int samples, float weight)
+  {
+    this->Count += samples;
+    this->Weight += static_cast<float>(samples) * weight;
+  }
+
+  const BrickPath& path() const { return this->Path; }
+  /// The path's number in the batch being filled.
+  int place() const { return this->Place; }
+  void setPlace(int place) { this->Place = place; }
+
+  int level() const { return this->Level; }
   bool exact() const { return this->Exact; } ///< served == wanted
   BrickKey wanted() const { return this->Wanted; }
+  int count() const { return this->Count; }     ///< samples added
+  float weight() const { return this->Weight; } ///< of these
 
 private:
   int Level = -1;
   double Enter = 0;
   double Exit = 0;
-  double Reference = 0; ///< t at the path's origin
+  double Reference = 0; ///< t at the origin
+  BrickPath Path{};
+  int Place = 0;
   bool Exact = false;
   BrickKey Wanted = 0;
-  BrickPath Path{};
   int Count = 0;
   float Weight = 0;
-  int Sample[SampleBatch::Capacity];
-  float T[SampleBatch::Capacity] = {};
 };
 
 } // namespace inr

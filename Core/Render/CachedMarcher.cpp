@@ -41,17 +41,16 @@ CachedRay CachedMarcher::begin(int x, int y)
 
 bool CachedMarcher::march(CachedRay& state)
 {
-  this->Runs[0].close();
-  this->Runs[1].close();
   this->Ended = false;
   this->Waiting = false;
   while (!this->Ended && !this->Waiting) {
     this->place(state);
-    this->resolve(this->Runs[0], state.color.transmittance);
-    this->resolve(this->Runs[1], state.color.transmittance);
+    this->Scene.kernel.sample(this->Scene.format, this->Batch, this->Count);
     this->composite(state);
     this->Ended = this->Ended || state.color.transmittance <= OpaqueTransmittance;
   }
+  this->close(this->Runs[0], state.color.transmittance);
+  this->close(this->Runs[1], state.color.transmittance);
   return this->Ended;
 }
 
@@ -59,7 +58,13 @@ void CachedMarcher::place(CachedRay& state)
 {
   const double step = this->Scene.settings.step;
   this->Count = 0;
+  this->Paths = 0;
   this->LastLength = 0;
+  for (BrickRun& run : this->Runs) {
+    if (run.level() >= 0) {
+      this->enlist(run);
+    }
+  }
   while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
     const double begin = static_cast<double>(state.next) * step;
     if (begin >= state.ray.length) {
@@ -67,82 +72,124 @@ void CachedMarcher::place(CachedRay& state)
       return;
     }
     state.walker.moveTo(std::min(begin + state.jitter * step, state.ray.length));
-    if (state.walker.cell().extinction > 0.0f) {
+    if (state.walker.extinction() > 0.0f) {
       this->fill(state, this->segmentAt(state));
+    } else if (state.walker.moveToVisible(state.ray.length)) {
+      const double first = std::ceil(state.walker.enter() / step - state.jitter);
+      state.next = std::max(state.next + 1, static_cast<std::int64_t>(first));
     } else {
-      const double exit = std::min(state.walker.exit(), state.ray.length);
-      const double past = std::ceil(exit / step - state.jitter);
-      state.next = std::max(state.next + 1, static_cast<std::int64_t>(past));
+      this->Ended = true;
     }
   }
 }
 
 CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
 {
-  constexpr int adaptive = 2;    // at most 4 times as long where little can be seen
   constexpr double faint = 0.02; // optical depth that needs no finer sampling
   const MarchSettings& settings = this->Scene.settings;
-  const MajorantCell& cell = state.walker.cell();
-  const double depth = cell.extinction * settings.unitsPerT * settings.step;
+  const int adaptive =
+      settings.adaptive ? 2 : 0; // at most 4 times as long where little can be seen
+  const ValueRange& range = state.walker.range();
+  const double depth = state.walker.extinction() * settings.unitsPerT * settings.step;
   state.detail.moveTo(state.walker.enter());
   int longest = state.detail.level();
   for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= faint; ++k) {
     ++longest;
   }
-  return {state.walker.exit(), cell.range.low, cell.range.high,
-          static_cast<float>(std::min(depth, 1.0)), longest};
+  return {state.walker.exit(), range.low, range.high, static_cast<float>(std::min(depth, 1.0)),
+          longest};
+}
+
+CachedMarcher::Sampling CachedMarcher::samplingAt(const CachedRay& state, const Segment& segment,
+                                                  std::int64_t k) const
+{
+  const double limit = std::min(segment.exit, state.ray.length);
+  // Longer samples start at multiples of their length and end inside the cell.
+  Sampling sampling{std::min(segment.longest, PowerOfTwoIn(k)), 0};
+  sampling.length = Doubled(this->Scene.settings.step, sampling.multiple);
+  const double begin = static_cast<double>(k) * this->Scene.settings.step;
+  while (sampling.multiple > 0 && begin + sampling.length > limit) {
+    --sampling.multiple;
+    sampling.length *= 0.5;
+  }
+  return sampling;
 }
 
 void CachedMarcher::fill(CachedRay& state, const Segment& segment)
 {
   const double step = this->Scene.settings.step;
   const double end = state.ray.length;
-  const double limit = std::min(segment.exit, end);
   const std::int64_t first = state.next;
-  std::int64_t next = first;
+  const int begun = this->Count;
   while (this->Count < SampleBatch::Capacity) {
-    const double begin = static_cast<double>(next) * step;
-    // Longer samples start at multiples of their length and end inside the cell.
-    int multiple = std::min(segment.longest, PowerOfTwoIn(next));
-    double length = Doubled(step, multiple);
-    while (multiple > 0 && begin + length > limit) {
-      --multiple;
-      length *= 0.5;
-    }
-    const double t = std::min(begin + state.jitter * length, end);
+    const Sampling sampling = this->samplingAt(state, segment, state.next);
+    const double begin = static_cast<double>(state.next) * step;
+    const double t = std::min(begin + state.jitter * sampling.length, end);
     // The first one is this cell's whatever rounding says, so that a ray always moves on.
-    if (begin >= end || (t >= segment.exit && next != first)) {
+    if (begin >= end || (t >= segment.exit && state.next != first)) {
       break;
     }
-    if (!this->add(state, segment, next, t, multiple)) {
+    const int level = state.detail.dithered(state.stream, state.next);
+    BrickRun* run = this->runFor(state, level, t);
+    if (run == nullptr) {
       this->Waiting = true;
       break;
     }
-    next += std::int64_t{1} << multiple;
-    if (begin + length > end) {
+    const int count = this->likeSamples(state, segment, sampling, *run);
+    this->add(state, segment, sampling, *run, count);
+    state.next += static_cast<std::int64_t>(count) << sampling.multiple;
+    if (begin + sampling.length > end) {
       this->LastLength = static_cast<float>((end - begin) * this->Scene.settings.unitsPerT);
       this->Ended = true;
       break;
     }
   }
-  state.next = next;
+  std::fill(this->Batch.low + begun, this->Batch.low + this->Count, segment.low);
+  std::fill(this->Batch.high + begun, this->Batch.high + this->Count, segment.high);
 }
 
-bool CachedMarcher::add(const CachedRay& state, const Segment& segment, std::int64_t k, double t,
-                        int multiple)
+int CachedMarcher::likeSamples(const CachedRay& state, const Segment& segment,
+                               const Sampling& sampling, const BrickRun& run) const
 {
-  const int level = state.detail.dithered(state.stream, k);
-  BrickRun* run = this->runFor(state, level, t);
-  if (run == nullptr) {
-    return false;
+  if (sampling.multiple < segment.longest || state.detail.isDithered()) {
+    return 1;
   }
-  const int sample = this->Count++;
-  run->add(t, sample, segment.depth);
-  this->T[sample] = t;
-  this->Batch.low[sample] = segment.low;
-  this->Batch.high[sample] = segment.high;
-  this->Batch.multiple[sample] = multiple;
-  return true;
+  const double step = this->Scene.settings.step;
+  const double limit = std::min(segment.exit, state.ray.length);
+  const auto fits = [&](int k) {
+    const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
+    const double begin = static_cast<double>(at) * step;
+    return begin + sampling.length <= limit && begin + state.jitter * sampling.length < run.exit();
+  };
+  // A guess by division, made good by what decides: where a batch begins must not matter.
+  const double begin = static_cast<double>(state.next) * step;
+  const double room = std::min(limit, run.exit()) - begin;
+  const int most = SampleBatch::Capacity - this->Count;
+  int count = static_cast<int>(std::min(room / sampling.length, static_cast<double>(most)));
+  while (count > 1 && !fits(count - 1)) {
+    --count;
+  }
+  while (count < most && fits(count)) {
+    ++count;
+  }
+  return std::max(count, 1);
+}
+
+void CachedMarcher::add(const CachedRay& state, const Segment& segment, const Sampling& sampling,
+                        BrickRun& run, int count)
+{
+  const double step = this->Scene.settings.step;
+  const double offset = state.jitter * sampling.length;
+  for (int k = 0; k < count; ++k) {
+    const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
+    const double t = std::min(static_cast<double>(at) * step + offset, state.ray.length);
+    this->T[this->Count + k] = t;
+    this->Batch.along[this->Count + k] = run.along(t);
+    this->Batch.path[this->Count + k] = run.place();
+    this->Batch.multiple[this->Count + k] = sampling.multiple;
+  }
+  run.count(count, segment.depth);
+  this->Count += count;
 }
 
 BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double t)
@@ -151,7 +198,7 @@ BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double t)
   if (run.covers(level, t)) {
     return &run;
   }
-  this->resolve(run, state.color.transmittance);
+  this->close(run, state.color.transmittance);
   return this->open(run, state.ray, level, t) ? &run : nullptr;
 }
 
@@ -171,22 +218,26 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double t)
     slot = cache.find(served.key);
   }
   cache.touch(slot);
-  run.open(level, wanted, served, cache.view(slot), hierarchy, cache.precision());
+  run.open(level, wanted, served, cache.view(slot), hierarchy);
+  this->enlist(run);
   return true;
 }
 
-void CachedMarcher::resolve(BrickRun& run, float transmittance)
+void CachedMarcher::enlist(BrickRun& run)
 {
-  if (run.count() == 0) {
-    return;
-  }
+  run.setPlace(this->Paths);
+  this->Batch.paths[this->Paths++] = run.path();
+}
+
+void CachedMarcher::close(BrickRun& run, float transmittance)
+{
   this->Statistics.samples += run.count();
-  if (!run.exact()) {
+  if (run.count() > 0 && !run.exact()) {
     this->Statistics.missed += run.count();
     this->Requests.add(run.wanted(), static_cast<std::uint32_t>(run.count()),
                        run.weight() * transmittance);
   }
-  run.resolve(this->Scene.kernel, this->Batch.value);
+  run.close();
 }
 
 void CachedMarcher::takeLogarithms()

@@ -21,6 +21,7 @@ struct CachedScene
   const StepLookup& steps;
   const BrickCache& cache;
   const BrickKernel& kernel;
+  BrickFormat format; ///< of the cache's bricks
   MarchSettings settings;
 };
 
@@ -72,13 +73,25 @@ private:
     int longest; ///< log2 of the most steps a sample may stand for
   };
 
+  struct Sampling
+  {
+    int multiple; ///< log2 of the steps a sample stands for
+    double length;
+  };
+
   void place(CachedRay& state);
   Segment segmentAt(CachedRay& state) const;
+  Sampling samplingAt(const CachedRay& state, const Segment& segment, std::int64_t k) const;
   void fill(CachedRay& state, const Segment& segment);
-  bool add(const CachedRay& state, const Segment& segment, std::int64_t k, double t, int multiple);
+  /// How many samples from state.next on differ in nothing but their place.
+  int likeSamples(const CachedRay& state, const Segment& segment, const Sampling& sampling,
+                  const BrickRun& run) const;
+  void add(const CachedRay& state, const Segment& segment, const Sampling& sampling, BrickRun& run,
+           int count);
   BrickRun* runFor(const CachedRay& state, int level, double t);
   bool open(BrickRun& run, const Ray& ray, int level, double t);
-  void resolve(BrickRun& run, float transmittance);
+  void close(BrickRun& run, float transmittance);
+  void enlist(BrickRun& run);
   void composite(CachedRay& state);
   void compositeLast(CachedRay& state);
   void takeLogarithms();
@@ -92,6 +105,7 @@ private:
   SampleBatch Batch{};
   double T[SampleBatch::Capacity];
   int Count = 0;
+  int Paths = 0;        ///< in Batch
   float LastLength = 0; ///< of the ray's last sample, if it is shorter than a step; else 0
   bool Waiting = false;
   bool Ended = false;

@@ -14,7 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Bricks inferred in one go: they share the threads, and time and abort are looked at in between.
-constexpr std::int64_t BricksAtOnce = 4;
+constexpr std::int64_t BricksAtOnce = 2;
 
 double SecondsSince(Clock::time_point start)
 {
@@ -72,8 +72,9 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
                                        const std::function<bool()>& keepGoing)
 {
   const StepLookup& steps = this->stepsFor(colors, settings.step * settings.unitsPerT);
-  const CachedScene scene{frame, geometry,    majorants,    colors,
-                          steps, this->Cache, this->Kernel, settings};
+  const CachedScene scene{frame,   geometry,    majorants,    colors,
+                          steps,   this->Cache, this->Kernel, FormatOf(this->Cache),
+                          settings};
   return frame.timeLimit > 0 ? this->renderInTime(scene, output, keepGoing)
                              : this->renderComplete(scene, output, keepGoing);
 }
@@ -104,10 +105,13 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
                                                const std::function<bool()>& keepGoing)
 {
   CompletePass pass(scene);
+  double marching = 0;
   while (true) {
+    const auto begin = Clock::now();
     this->Cache.beginFrame();
     RequestRanking requests;
     pass.advance(this->Threads, keepGoing, output, requests);
+    marching += SecondsSince(begin);
     if (pass.done()) {
       break;
     }
@@ -121,6 +125,7 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
   }
   FrameStatistics statistics = pass.statistics();
   statistics.complete = true;
+  statistics.marchSeconds = marching;
   return statistics;
 }
 
@@ -136,6 +141,7 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Pas
     FrameStatistics statistics = MarchOnce(scene, this->Threads, keepGoing, output, requests);
     statistics.complete = requests.empty();
     const double marching = SecondsSince(begin);
+    statistics.marchSeconds = marching;
     const auto goOn = [&] {
       return SecondsSince(start) + marching < scene.frame.timeLimit && (!keepGoing || keepGoing());
     };

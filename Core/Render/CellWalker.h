@@ -11,67 +11,124 @@
 
 namespace inr {
 
-/// A ray's way through the macro-cells: the cell at t and where the ray leaves it. Both are
-/// functions of ray and cell alone, so that a walk may stop and start again anywhere.
+/// A ray's way through the macro-cells, cell by cell. Where the ray enters and leaves a cell is a
+/// function of ray and cell alone, so that a walk may stop and start again anywhere.
 class CellWalker
 {
 public:
   INR_HOST_DEVICE CellWalker(const Majorants& majorants, const glm::dvec3& volumeDims,
                              const Ray& ray)
       : Cells(&majorants), Start((ray.entry + 0.5) / (volumeDims * majorants.spacing())),
-        Slope(ray.direction / (volumeDims * majorants.spacing())), Inverse(1.0 / this->Slope)
+        Slope(ray.direction / (volumeDims * majorants.spacing())),
+        Inverse(ray.inverse * (volumeDims * majorants.spacing()))
   {}
 
   /// Moves to t, which does not fall from call to call.
   INR_HOST_DEVICE void moveTo(double t)
   {
-    if (t >= this->Exit) {
-      this->enterCellAt(t);
+    if (this->Exit < 0) {
+      this->enterAt(t);
+    }
+    while (t >= this->Exit) {
+      this->advance();
     }
   }
-  INR_HOST_DEVICE const MajorantCell& cell() const { return *this->Current; }
-  /// Where the ray enters the cell, at least 0, and where it leaves it; the outermost cells reach
-  /// as far as any ray.
+
+  /// Moves to the first cell from here on that can be seen; false when none begins before `end`.
+  INR_HOST_DEVICE bool moveToVisible(double end)
+  {
+    while (this->extinction() <= 0.0f) {
+      if (this->Exit >= end) {
+        return false;
+      }
+      this->advance();
+    }
+    return true;
+  }
+
+  INR_HOST_DEVICE float extinction() const { return this->Cells->extinction(this->Index); }
+  INR_HOST_DEVICE const ValueRange& range() const { return this->Cells->range(this->Index); }
+  /// Where the ray enters the cell and where it leaves it; the outermost cells reach as far as any
+  /// ray.
   INR_HOST_DEVICE double enter() const { return this->Enter; }
   INR_HOST_DEVICE double exit() const { return this->Exit; }
 
 private:
-  INR_HOST_DEVICE void enterCellAt(double t)
-  {
-    const glm::i64vec3 last = this->Cells->dims() - std::int64_t{1};
-    // Not negative, so truncation is floor, which old instruction sets leave to a library.
-    const glm::dvec3 place = glm::max(this->Start + this->Slope * t, glm::dvec3(0.0));
-    const glm::i64vec3 cell = glm::min(glm::i64vec3(place), last);
-    this->Enter = 0;
-    this->Exit = std::numeric_limits<double>::infinity();
-    for (int axis = 0; axis < 3; ++axis) {
-      if (this->Slope[axis] == 0) {
-        continue;
-      }
-      const int ahead = this->Slope[axis] > 0 ? 1 : 0;
-      const double lower = this->faceAt(axis, cell[axis] + 1 - ahead);
-      const double upper = this->faceAt(axis, cell[axis] + ahead);
-      this->Enter = glm::max(this->Enter, lower);
-      if (ahead != 0 ? cell[axis] < last[axis] : cell[axis] > 0) {
-        this->Exit = glm::min(this->Exit, upper);
-      }
-    }
-    this->Current = &this->Cells->cell(cell);
-  }
+  static constexpr double Never = std::numeric_limits<double>::infinity();
 
-  /// t at which the ray crosses a plane between cells.
+  /// t at which the ray crosses the plane below cell `plane`.
   INR_HOST_DEVICE double faceAt(int axis, std::int64_t plane) const
   {
     return (static_cast<double>(plane) - this->Start[axis]) * this->Inverse[axis];
   }
 
+  INR_HOST_DEVICE void findAxisExit(int axis)
+  {
+    const bool forward = this->Slope[axis] > 0;
+    const std::int64_t cell = this->Cell[axis];
+    const bool open =
+        this->Slope[axis] == 0 || (forward ? cell + 1 >= this->Cells->dims()[axis] : cell <= 0);
+    this->AxisExit[axis] = open ? Never : this->faceAt(axis, cell + (forward ? 1 : 0));
+  }
+
+  INR_HOST_DEVICE void findExit()
+  {
+    this->Exit = glm::min(glm::min(this->AxisExit[0], this->AxisExit[1]), this->AxisExit[2]);
+  }
+
+  /// The cell that holds t, by the planes that `advance` goes by.
+  INR_HOST_DEVICE void enterAt(double t)
+  {
+    this->Enter = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t last = this->Cells->dims()[axis] - 1;
+      const double place = this->Start[axis] + this->Slope[axis] * t;
+      std::int64_t cell = place > 0 ? glm::min(static_cast<std::int64_t>(place), last) : 0;
+      if (this->Slope[axis] != 0) {
+        const int ahead = this->Slope[axis] > 0 ? 1 : 0;
+        const int back = 1 - ahead;
+        const std::int64_t against = ahead - back;
+        const std::int64_t first = ahead != 0 ? 0 : last;
+        while (cell != first && t < this->faceAt(axis, cell + back)) {
+          cell -= against;
+        }
+        if (cell != first) {
+          this->Enter = glm::max(this->Enter, this->faceAt(axis, cell + back));
+        }
+      }
+      this->Cell[axis] = cell;
+      this->findAxisExit(axis);
+    }
+    const glm::i64vec3& dims = this->Cells->dims();
+    this->Index = this->Cell.x + dims.x * (this->Cell.y + dims.y * this->Cell.z);
+    this->findExit();
+  }
+
+  /// Into the next cell; there is one while Exit is not Never.
+  INR_HOST_DEVICE void advance()
+  {
+    const glm::dvec3& exits = this->AxisExit;
+    const int axis =
+        exits[0] <= exits[1] ? (exits[0] <= exits[2] ? 0 : 2) : (exits[1] <= exits[2] ? 1 : 2);
+    const glm::i64vec3& dims = this->Cells->dims();
+    const std::int64_t stride = axis == 0 ? 1 : (axis == 1 ? dims.x : dims.x * dims.y);
+    const std::int64_t direction = this->Slope[axis] > 0 ? 1 : -1;
+    this->Cell[axis] += direction;
+    this->Index += direction * stride;
+    this->Enter = this->Exit;
+    this->findAxisExit(axis);
+    this->findExit();
+  }
+
   const Majorants* Cells;
-  const MajorantCell* Current = nullptr;
   glm::dvec3 Start; ///< in cells, at t = 0
   glm::dvec3 Slope; ///< cells per unit of t
   glm::dvec3 Inverse;
+  glm::dvec3 AxisExit{0}; ///< where the ray leaves the cell along each axis
+  glm::i64vec3 Cell{0};
+  std::int64_t Index = 0;
   double Enter = 0;
-  double Exit = -1;
+  double Exit = -1; ///< below 0: nowhere yet
 };
 
 } // namespace inr

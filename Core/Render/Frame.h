@@ -33,6 +33,9 @@ struct Frame
   /// Distance between samples in voxels, along the axis in which the voxels are densest; above 0.
   double sampleDistance = 0.5;
 
+  /// Samples where little can be seen stand for up to four times the sample distance.
+  bool adaptiveSampling = true;
+
   /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel as large as a
   /// pixel, 0 reads the full resolution everywhere; not negative.
   double levelOfDetailScale = 1;
@@ -56,6 +59,7 @@ struct FrameStatistics
   std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
   bool complete = true;     ///< every sample came from the level it asked for
   double seconds = 0;       ///< wall time
+  double marchSeconds = 0;  ///< of these, without what was loaded into the cache in between
 };
 
 } // namespace inr

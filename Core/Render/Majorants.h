@@ -11,15 +11,6 @@ namespace inr {
 
 class Arena;
 
-/// One macro-cell as the ray marcher sees it.
-struct MajorantCell
-{
-  ValueRange range;
-  /// -ln(1 - a) for the largest opacity a (per unit distance) of any value in `range`; 0 =
-  /// invisible.
-  float extinction = 0;
-};
-
 /// Value ranges joined with a transfer function. Space without a range table (files that lack one)
 /// is one cell that may hold anything.
 class Majorants
@@ -32,16 +23,27 @@ public:
 
   const glm::i64vec3& dims() const { return this->Dims; }
   const glm::dvec3& spacing() const { return this->Spacing; }
-  const MajorantCell& cell(const glm::i64vec3& at) const
+  /// Cells are numbered x fastest.
+  std::int64_t index(const glm::i64vec3& at) const
   {
-    return this
-        ->Cells[static_cast<std::size_t>(at.x + this->Dims.x * (at.y + this->Dims.y * at.z))];
+    return at.x + this->Dims.x * (at.y + this->Dims.y * at.z);
+  }
+  const ValueRange& range(std::int64_t cell) const
+  {
+    return this->Ranges[static_cast<std::size_t>(cell)];
+  }
+  /// -ln(1 - a) for the largest opacity a (per unit distance) of any value in the cell's range; 0 =
+  /// invisible.
+  float extinction(std::int64_t cell) const
+  {
+    return this->Extinctions[static_cast<std::size_t>(cell)];
   }
 
 private:
   glm::i64vec3 Dims;
   glm::dvec3 Spacing;
-  std::vector<MajorantCell> Cells;
+  std::vector<ValueRange> Ranges;
+  std::vector<float> Extinctions; ///< apart: empty space is left by looking at nothing else
 };
 
 } // namespace inr

@@ -120,6 +120,7 @@ Ray RayGeometry::ray(int x, int y) const
   if (world.begin < world.end) { // false, too, where something was not a number
     ray.entry = origin + world.begin * direction;
     ray.direction = direction * this->WorldPerUnit;
+    ray.inverse = 1.0 / ray.direction;
     ray.length = (world.end - world.begin) / this->WorldPerUnit;
     // A pixel's edge grows linearly from the near to the far plane.
     const double clipEdge = 2.0 / this->Picture.width;

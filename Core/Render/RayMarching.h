@@ -22,6 +22,7 @@ struct MarchSettings
   glm::dvec3 dims{1.0};   ///< voxels per axis
   double step = 0.5;      ///< t between samples
   double unitsPerT = 1.0; ///< opacity unit distances per unit of t
+  bool adaptive = true;   ///< Frame::adaptiveSampling
 };
 
 /// Where a ray stands. Its samples sit on a lattice of its own, t = (k + jitter) * step, so that
@@ -64,7 +65,8 @@ constexpr float OpaqueEnough = 0.999f;
 /// The macro-cell of a point in the unit cube, and where the ray leaves it.
 struct CellVisit
 {
-  const MajorantCell* cell;
+  float extinction; ///< see Majorants
+  ValueRange range;
   double exit; ///< t, above the t of the visit
 };
 
@@ -87,7 +89,8 @@ INR_HOST_DEVICE inline CellVisit VisitCell(const Majorants& majorants,
       exit = glm::min(exit, t + (cell * edge - u[axis]) / slope);
     }
   }
-  return {&majorants.cell(at), exit};
+  const std::int64_t cell = majorants.index(at);
+  return {majorants.extinction(cell), majorants.range(cell), exit};
 }
 
 /// Where a field is asked for at a point of a ray: inside a slab of a single voxel, always at it.
@@ -103,7 +106,7 @@ INR_HOST_DEVICE inline glm::vec3 FieldPosition(const MarchSettings& settings,
 INR_HOST_DEVICE inline int StepsAtOnce(const MarchSettings& settings, std::int64_t k,
                                        float extinction, double exit)
 {
-  constexpr int most = 4;
+  const int most = settings.adaptive ? 4 : 1;
   constexpr double faint = 0.02; // optical depth that needs no finer sampling
   int steps = 1;
   while (steps < most) {
@@ -131,16 +134,16 @@ INR_HOST_DEVICE inline int PlaceSamples(const Majorants& majorants, const MarchS
     }
     const double t = glm::min(begin + state.jitter * settings.step, ray.length);
     const CellVisit visit = VisitCell(majorants, settings, ray, t);
-    if (visit.cell->extinction <= 0.0f) {
+    if (visit.extinction <= 0.0f) {
       const double past = std::ceil(visit.exit / settings.step - state.jitter);
       state.next = glm::max(state.next + 1, static_cast<std::int64_t>(past));
       continue;
     }
-    const int steps = StepsAtOnce(settings, state.next, visit.cell->extinction, visit.exit);
+    const int steps = StepsAtOnce(settings, state.next, visit.extinction, visit.exit);
     const double end =
         glm::min(static_cast<double>(state.next + steps) * settings.step, ray.length);
     const double at = glm::min(begin + state.jitter * steps * settings.step, ray.length);
-    samples[count++] = {FieldPosition(settings, ray.at(at)), visit.cell->range,
+    samples[count++] = {FieldPosition(settings, ray.at(at)), visit.range,
                         static_cast<float>((end - begin) * settings.unitsPerT),
                         static_cast<float>(at)};
     state.next += steps;

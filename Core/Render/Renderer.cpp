@@ -109,6 +109,7 @@ Renderer::Implementation::renderUncached(const Frame& frame, const RayGeometry& 
                                          const MarchSettings& settings, const PassOutput& output,
                                          const std::function<bool()>& keepGoing) const
 {
+  const auto start = std::chrono::steady_clock::now();
   const MarchScene scene{frame,        geometry, this->Cells, this->Colors->lookup(),
                          *this->Field, settings};
   const Tiling tiling(frame.width, frame.height);
@@ -117,7 +118,10 @@ Renderer::Implementation::renderUncached(const Frame& frame, const RayGeometry& 
     TileMarcher marcher(scene);
     tiles[static_cast<std::size_t>(k)] = marcher.march(tiling.tile(k), output.rgba, output.depth);
   });
-  return Sum(tiles);
+  FrameStatistics statistics = Sum(tiles);
+  statistics.marchSeconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return statistics;
 }
 
 FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
@@ -132,6 +136,7 @@ FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
   MarchSettings settings;
   settings.dims = glm::dvec3(self.Volume.dims);
   settings.step = frame.sampleDistance;
+  settings.adaptive = frame.adaptiveSampling;
   settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
   rgba = Image(frame.width, frame.height, 4);
   if (depth != nullptr) {

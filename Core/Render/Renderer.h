@@ -20,6 +20,12 @@ struct RendererOptions
   std::string kernel; ///< instruction set, for tests; empty = the fastest
   bool cached = true; ///< through a cache of bricks, else straight from the network
   CacheOptions cache;
+
+  bool operator==(const RendererOptions& other) const
+  {
+    return this->threads == other.threads && this->kernel == other.kernel &&
+           this->cached == other.cached && this->cache == other.cache;
+  }
 };
 
 /// Ray-marches an INR, through a cache of decoded bricks or straight from its network.

@@ -66,6 +66,8 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.clippingPlanes.insert(frame.clippingPlanes.end(), piece.begin(), piece.end());
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
   frame.sampleDistance = settings.sampleDistance;
+  frame.adaptiveSampling = settings.adaptiveSampling;
+  frame.levelOfDetailScale = settings.levelOfDetailScale;
   frame.seed = settings.seed;
   return frame;
 }
@@ -108,7 +110,7 @@ PaintMessages FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer
   if (!messages.error.empty()) {
     return messages;
   }
-  this->makeRenderer(input.array->GetModel(), settings.threads);
+  this->makeRenderer(input.array->GetModel(), settings.renderer);
   this->Caster->setTransferFunction(this->TransferFunctions.get(property));
   const Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
   if (!this->draw(frame, renderer)) {
@@ -119,16 +121,14 @@ PaintMessages FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer
   return messages;
 }
 
-void FramePainter::makeRenderer(const ModelPointer& model, int threads)
+void FramePainter::makeRenderer(const ModelPointer& model, const RendererOptions& options)
 {
-  if (this->Caster && this->CasterModel == model && this->CasterThreads == threads) {
+  if (this->Caster && this->CasterModel == model && this->CasterOptions == options) {
     return;
   }
-  RendererOptions options;
-  options.threads = threads;
   this->Caster = std::make_unique<Renderer>(model, options);
   this->CasterModel = model;
-  this->CasterThreads = threads;
+  this->CasterOptions = options;
 }
 
 bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
@@ -139,8 +139,10 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
     return true;
   }
   vtkRenderWindow* window = renderer->GetRenderWindow();
-  const int reduction = this->Reduction.factor(window->GetDesiredUpdateRate(), pixels);
+  const double rate = window->GetDesiredUpdateRate();
+  const int reduction = this->Reduction.factor(rate, pixels);
   Frame frame = scene;
+  frame.timeLimit = rate < ImageReduction::StillRate ? 0.0 : 0.5 / rate;
   frame.width = (viewport.width + reduction - 1) / reduction;
   frame.height = (viewport.height + reduction - 1) / reduction;
 
@@ -165,7 +167,8 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   }
   last.backend = "CPU " + this->Caster->kernel();
   last.reduction = reduction;
-  this->Reduction.record(last.statistics.seconds, std::int64_t{frame.width} * frame.height);
+  last.cacheBytes = this->Caster->cacheBytes();
+  this->Reduction.record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
   return this->Blender.blend(renderer, viewport, last.rgba);
 }
 

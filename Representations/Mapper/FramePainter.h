@@ -34,8 +34,10 @@ MapperInput FindInput(vtkVolumeMapper* mapper);
 struct PaintSettings
 {
   double sampleDistance = 1; ///< voxels
-  int threads = 0;           ///< 0 = all
+  bool adaptiveSampling = true;
+  double levelOfDetailScale = 1;
   std::uint64_t seed = 0;
+  RendererOptions renderer;
 };
 
 /// What the user has to be told; empty strings mean nothing.
@@ -51,6 +53,7 @@ struct PaintedFrame
   Image rgba;
   Image depth;
   FrameStatistics statistics;
+  std::int64_t cacheBytes = 0;
   std::string backend; ///< "CPU avx512", ...
   double seconds = 0;  ///< from the mapper's call to the blended picture
   int reduction = 0;   ///< viewport size / image size
@@ -69,12 +72,12 @@ public:
   void release(vtkWindow* window) { this->Blender.release(window); }
 
 private:
-  void makeRenderer(const ModelPointer& model, int threads);
+  void makeRenderer(const ModelPointer& model, const RendererOptions& options);
   bool draw(const Frame& frame, vtkRenderer* renderer);
 
   std::unique_ptr<Renderer> Caster;
   ModelPointer CasterModel;
-  int CasterThreads = 0;
+  RendererOptions CasterOptions;
   TransferFunctionCache TransferFunctions;
   ImageReduction Reduction;
   ImageBlender Blender;

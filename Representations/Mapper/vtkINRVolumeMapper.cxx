@@ -41,6 +41,24 @@ vtkIdType vtkINRVolumeMapper::GetNumberOfClampedSamples() const
 
 int vtkINRVolumeMapper::GetImageReduction() const { return this->Self->Painter.last().reduction; }
 
+bool vtkINRVolumeMapper::GetConverged() const
+{
+  return this->Self->Painter.last().statistics.complete;
+}
+
+double vtkINRVolumeMapper::GetCacheHitRate() const
+{
+  const inr::FrameStatistics& frame = this->Self->Painter.last().statistics;
+  return frame.samples > 0
+             ? 1.0 - static_cast<double>(frame.missed) / static_cast<double>(frame.samples)
+             : 0.0;
+}
+
+double vtkINRVolumeMapper::GetCacheUsed() const
+{
+  return static_cast<double>(this->Self->Painter.last().cacheBytes) / (1 << 20);
+}
+
 const char* vtkINRVolumeMapper::GetBackendInUse() const
 {
   return this->Self->Painter.last().backend.c_str();
@@ -67,16 +85,32 @@ double* vtkINRVolumeMapper::GetBounds()
   return bounds;
 }
 
+inr::PaintSettings vtkINRVolumeMapper::Settings() const
+{
+  inr::PaintSettings settings;
+  settings.sampleDistance = this->SampleDistance;
+  settings.adaptiveSampling = this->AdaptiveSampling;
+  settings.levelOfDetailScale = this->LevelOfDetailScale;
+  settings.seed = static_cast<std::uint64_t>(this->Seed);
+  inr::RendererOptions& renderer = settings.renderer;
+  renderer.threads = this->NumberOfThreads;
+  renderer.cached = this->CacheMode != NETWORK_ONLY;
+  renderer.cache.bytes = std::int64_t{this->CacheSize} << 20;
+  renderer.cache.precision = static_cast<inr::CachePrecision>(this->CachePrecision);
+  renderer.cache.brickSize = this->BrickSize;
+  renderer.cache.maximumRequests = this->MaximumRequests;
+  renderer.cache.ranking = this->PriorityRanking;
+  return settings;
+}
+
 void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   if (renderer->GetSelector()) {
     return; // a selection buffer holds identities, not colours
   }
-  const inr::PaintSettings settings{this->SampleDistance, this->NumberOfThreads,
-                                    static_cast<std::uint64_t>(this->Seed)};
   inr::PaintMessages messages;
   try {
-    messages = this->Self->Painter.paint(this, renderer, volume, settings);
+    messages = this->Self->Painter.paint(this, renderer, volume, this->Settings());
   } catch (const std::exception& problem) {
     messages.error = problem.what();
   }
@@ -123,11 +157,22 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "SampleDistance: " << this->SampleDistance << "\n"
+     << indent << "AdaptiveSampling: " << this->AdaptiveSampling << "\n"
+     << indent << "LevelOfDetailScale: " << this->LevelOfDetailScale << "\n"
+     << indent << "CacheMode: " << this->CacheMode << "\n"
+     << indent << "CacheSize: " << this->CacheSize << "\n"
+     << indent << "CachePrecision: " << this->CachePrecision << "\n"
+     << indent << "BrickSize: " << this->BrickSize << "\n"
+     << indent << "MaximumRequests: " << this->MaximumRequests << "\n"
+     << indent << "PriorityRanking: " << this->PriorityRanking << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Seed: " << this->Seed << "\n"
      << indent << "FrameTime: " << this->GetFrameTime() << "\n"
      << indent << "NumberOfSamples: " << this->GetNumberOfSamples() << "\n"
      << indent << "NumberOfClampedSamples: " << this->GetNumberOfClampedSamples() << "\n"
+     << indent << "Converged: " << this->GetConverged() << "\n"
+     << indent << "CacheHitRate: " << this->GetCacheHitRate() << "\n"
+     << indent << "CacheUsed: " << this->GetCacheUsed() << "\n"
      << indent << "ImageReduction: " << this->GetImageReduction() << "\n"
      << indent << "BackendInUse: " << this->GetBackendInUse() << "\n"
      << indent << "OpaqueDepthRead: " << this->GetOpaqueDepthRead() << "\n";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkINRVolumeMapper
- * @brief draws an implicit neural representation (INR) straight from its network
+ * @brief draws an implicit neural representation (INR) through a cache of decoded bricks
  *
  * The input is image data whose selected point scalars are a vtkINRDataArray, as vtkINRReader
  * gives them. The picture always shows the INR's native resolution, however coarse the grid is that
@@ -18,9 +18,13 @@
  * opacity, 2D transfer functions, masks, scalars that are not an INR. Shading draws a warning. A
  * message comes once, not at every frame.
  *
- * When the render window asks for more than 0.1 frames per second and the last frame says that full
- * resolution is too slow for it, the picture is computed at a half, a quarter or an eighth of the
- * window's resolution and stretched. Hardware selection does not see the volume.
+ * What rays meet is decoded brick by brick, at the level of resolution that the picture's pixels
+ * deserve, and kept in a cache from frame to frame. A still frame waits until every sample is
+ * there; it is the same whatever the size of the cache. When the render window asks for more than
+ * 0.1 frames per second, a frame takes what the cache has, coarser levels where the wanted ones are
+ * missing, and decodes more in the time that is left; and if even that is too slow, the picture is
+ * computed at a half, a quarter or an eighth of the window's resolution and stretched. Hardware
+ * selection does not see the volume.
  */
 #ifndef vtkINRVolumeMapper_h
 #define vtkINRVolumeMapper_h
@@ -30,6 +34,10 @@
 #include <vtkVolumeMapper.h>
 
 #include <memory> // for std::unique_ptr
+
+namespace inr {
+struct PaintSettings;
+}
 
 class VTKINRMAPPER_EXPORT vtkINRVolumeMapper : public vtkVolumeMapper
 {
@@ -48,6 +56,77 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Whether samples where little can be seen stand for up to four sample distances. Default on.
+   */
+  vtkSetMacro(AdaptiveSampling, bool);
+  vtkGetMacro(AdaptiveSampling, bool);
+  vtkBooleanMacro(AdaptiveSampling, bool);
+  ///@}
+
+  ///@{
+  /**
+   * How coarse the levels are that far voxels are read from: 1, the default, makes a voxel as large
+   * as a pixel; 0 always reads the full resolution; 2 is faster and softer.
+   */
+  vtkSetClampMacro(LevelOfDetailScale, double, 0.0, 64.0);
+  vtkGetMacro(LevelOfDetailScale, double);
+  ///@}
+
+  enum CacheModes {
+    CACHE_AND_NETWORK = 0, ///< voxels from the cache, decoded when they are first wanted
+    NETWORK_ONLY = 2       ///< every sample straight from the network: exact, and slow
+  };
+  ///@{
+  /** One of CacheModes. Default CACHE_AND_NETWORK. */
+  vtkSetMacro(CacheMode, int);
+  vtkGetMacro(CacheMode, int);
+  ///@}
+
+  ///@{
+  /**
+   * Memory for decoded bricks and their tables in MiB. 0, the default, is a quarter of the
+   * machine's memory, at most 16 GiB; memory is taken as bricks come in. A change empties the
+   * cache.
+   */
+  vtkSetClampMacro(CacheSize, int, 0, VTK_INT_MAX);
+  vtkGetMacro(CacheSize, int);
+  ///@}
+
+  enum CachePrecisions { FLOAT32 = 0, BITS16 = 1, BITS8 = 2 };
+  ///@{
+  /**
+   * How a cached voxel is stored, one of CachePrecisions. The integers divide the range of a
+   * brick's values. Default BITS16, the fastest; its error is below the network's. A change empties
+   * the cache.
+   */
+  vtkSetClampMacro(CachePrecision, int, FLOAT32, BITS8);
+  vtkGetMacro(CachePrecision, int);
+  ///@}
+
+  ///@{
+  /** Voxels per side of a cached brick. Default 40. A change empties the cache. */
+  vtkSetClampMacro(BrickSize, int, 4, 1024);
+  vtkGetMacro(BrickSize, int);
+  ///@}
+
+  ///@{
+  /** Bricks decoded for an interactive frame at most. Default 40. */
+  vtkSetClampMacro(MaximumRequests, int, 1, VTK_INT_MAX);
+  vtkGetMacro(MaximumRequests, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether an interactive frame decodes the bricks first that add most to the picture. Default on;
+   * off takes them in the order of the picture's tiles.
+   */
+  vtkSetMacro(PriorityRanking, bool);
+  vtkGetMacro(PriorityRanking, bool);
+  vtkBooleanMacro(PriorityRanking, bool);
+  ///@}
+
+  ///@{
   /** Threads that compute a frame; 0, the default, means every core this process may use. */
   vtkSetClampMacro(NumberOfThreads, int, 0, 4096);
   vtkGetMacro(NumberOfThreads, int);
@@ -62,13 +141,23 @@ public:
   ///@{
   /**
    * About the last frame drawn; 0 before the first: seconds from the call to the drawn picture,
-   * samples inferred, samples that lay outside their macro-cell's range and were moved into it, and
-   * how many times smaller than the viewport the picture's width and height were.
+   * samples looked up or inferred, samples that lay outside their macro-cell's range and were moved
+   * into it, and how many times smaller than the viewport the picture's width and height were.
    */
   double GetFrameTime() const;
   vtkIdType GetNumberOfSamples() const;
   vtkIdType GetNumberOfClampedSamples() const;
   int GetImageReduction() const;
+  ///@}
+
+  ///@{
+  /**
+   * About the last frame and the cache: whether every sample came from the level it asked for, the
+   * part of the samples that did (0 to 1), and the memory in use in MiB.
+   */
+  bool GetConverged() const;
+  double GetCacheHitRate() const;
+  double GetCacheUsed() const;
   ///@}
 
   /** What computed the last frame, such as "CPU avx512"; empty before the first. */
@@ -103,7 +192,17 @@ private:
 
   void ReportOnce(const std::string& error, const std::string& warning);
 
+  inr::PaintSettings Settings() const;
+
   double SampleDistance = 1.0;
+  bool AdaptiveSampling = true;
+  double LevelOfDetailScale = 1.0;
+  int CacheMode = CACHE_AND_NETWORK;
+  int CacheSize = 0;
+  int CachePrecision = BITS16;
+  int BrickSize = 40;
+  int MaximumRequests = 40;
+  bool PriorityRanking = true;
   int NumberOfThreads = 0;
   int Seed = 0;
 

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Our mapper beside VTK's software one, vtkFixedPointVolumeRayCastMapper, on the decoded voxels of
+// the same model: same camera, transfer function, threads and constant step; time inside the
+// mapper.
+//
+//   bench_against_vtk MODEL.inr NAME      prints one JSON object per line
+#include "Core/Image/Image.h"
+#include "Core/Image/Metrics.h"
+#include "Core/Inference/Evaluator.h"
+#include "Core/Model/ModelFile.h"
+#include "vtkINRReader.h"
+#include "vtkINRVolumeMapper.h"
+
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkFixedPointVolumeRayCastMapper.h>
+#include <vtkFloatArray.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkPointData.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <algorithm>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace {
+
+constexpr int Threads = 2;
+constexpr int Frames = 9;
+constexpr int Size = 512;
+
+vtkSmartPointer<vtkImageData> Decode(const inr::Model& model, const inr::ModelPointer& pointer)
+{
+  const inr::VolumeInfo& volume = model.volume;
+  std::vector<float> normalised(
+      static_cast<std::size_t>(volume.dims.x * volume.dims.y * volume.dims.z));
+  inr::EvaluateLattice(*inr::MakeEvaluator(pointer), inr::Arena(Threads),
+                       inr::VoxelLattice(volume.dims, glm::i64vec3(0), volume.dims),
+                       normalised.data());
+  vtkNew<vtkFloatArray> scalars;
+  scalars->SetName(volume.arrayName.c_str());
+  scalars->SetNumberOfValues(static_cast<vtkIdType>(normalised.size()));
+  for (std::size_t k = 0; k < normalised.size(); ++k) {
+    const double value = inr::ValueOf(volume, inr::NormalisedOutput(normalised[k]));
+    scalars->SetValue(static_cast<vtkIdType>(k), static_cast<float>(value));
+  }
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(static_cast<int>(volume.dims.x), static_cast<int>(volume.dims.y),
+                       static_cast<int>(volume.dims.z));
+  image->SetSpacing(volume.spacing.x, volume.spacing.y, volume.spacing.z);
+  image->SetOrigin(volume.origin.x, volume.origin.y, volume.origin.z);
+  image->GetPointData()->SetScalars(scalars);
+  return image;
+}
+
+struct Opacity
+{
+  std::string name;
+  std::vector<std::pair<double, double>> points; ///< fraction of the value range, opacity
+};
+
+void SetColours(vtkVolumeProperty* property, const inr::VolumeInfo& volume, const Opacity& opacity)
+{
+  const double range = volume.high - volume.low;
+  vtkNew<vtkPiecewiseFunction> alpha;
+  for (const auto& [fraction, value] : opacity.points) {
+    alpha->AddPoint(volume.low + fraction * range, value);
+  }
+  vtkNew<vtkColorTransferFunction> colour;
+  colour->AddRGBPoint(volume.low, 0.2, 0.3, 0.8);
+  colour->AddRGBPoint(volume.low + 0.5 * range, 0.9, 0.9, 0.8);
+  colour->AddRGBPoint(volume.high, 0.7, 0.0, 0.1);
+  property->SetScalarOpacity(alpha);
+  property->SetColor(colour);
+  property->SetInterpolationTypeToLinear();
+  property->ShadeOff();
+  const glm::dvec3& spacing = volume.spacing;
+  property->SetScalarOpacityUnitDistance(2 * std::min({spacing.x, spacing.y, spacing.z}));
+}
+
+struct Measured
+{
+  double milliseconds; ///< median
+  inr::Image picture;
+};
+
+inr::Image ReadBack(vtkRenderWindow* window)
+{
+  vtkNew<vtkWindowToImageFilter> reader;
+  reader->SetInput(window);
+  reader->SetInputBufferTypeToRGBA();
+  reader->ReadFrontBufferOff();
+  reader->ShouldRerenderOff();
+  reader->Update();
+  vtkImageData* output = reader->GetOutput();
+  inr::Image image(Size, Size, 4);
+  const auto* bytes = static_cast<const unsigned char*>(output->GetScalarPointer());
+  std::transform(bytes, bytes + image.pixels.size(), image.pixels.begin(),
+                 [](unsigned char byte) { return static_cast<float>(byte) / 255.0f; });
+  return image;
+}
+
+Measured Measure(vtkVolumeMapper* mapper, const inr::VolumeInfo& info, const Opacity& opacity)
+{
+  vtkNew<vtkVolume> volume;
+  volume->SetMapper(mapper);
+  SetColours(volume->GetProperty(), info, opacity);
+  vtkNew<vtkRenderer> renderer;
+  renderer->AddVolume(volume);
+  vtkNew<vtkRenderWindow> window;
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(0);
+  window->SetAlphaBitPlanes(1);
+  window->SetSize(Size, Size);
+  window->AddRenderer(renderer);
+  renderer->ResetCamera();
+  renderer->GetActiveCamera()->Azimuth(30);
+  renderer->GetActiveCamera()->Elevation(20);
+  renderer->GetActiveCamera()->Zoom(1.3);
+  renderer->ResetCameraClippingRange();
+  window->Render(); // makes what there is to make
+  std::vector<double> times;
+  for (int frame = 0; frame < Frames; ++frame) {
+    window->Render();
+    times.push_back(1000 * mapper->GetTimeToDraw());
+  }
+  std::sort(times.begin(), times.end());
+  return {times[Frames / 2], ReadBack(window)};
+}
+
+void Report(const std::string& name, double value, const std::string& unit,
+            const std::string& better, const std::string& more)
+{
+  std::cout << "{\"name\": \"" << name << "\", \"value\": " << value << ", \"unit\": \"" << unit
+            << "\", \"better\": \"" << better << "\"" << more << "}" << std::endl;
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  if (argc != 3) {
+    std::cerr << "usage: bench_against_vtk MODEL.inr NAME\n";
+    return 2;
+  }
+  const inr::ModelPointer model = inr::ReadModel(argv[1]);
+  const std::string scene = argv[2];
+  vtkNew<vtkFixedPointVolumeRayCastMapper> fixed;
+  fixed->SetInputData(Decode(*model, model));
+  fixed->SetNumberOfThreads(Threads);
+  fixed->AutoAdjustSampleDistancesOff();
+  fixed->SetImageSampleDistance(1);
+  const glm::dvec3& spacing = model->volume.spacing;
+  fixed->SetSampleDistance(static_cast<float>(std::min({spacing.x, spacing.y, spacing.z})));
+
+  vtkNew<vtkINRReader> reader;
+  reader->SetFileName(argv[1]);
+  vtkNew<vtkINRVolumeMapper> ours;
+  ours->SetInputConnection(reader->GetOutputPort());
+  ours->SetNumberOfThreads(Threads);
+  ours->SetSampleDistance(1);
+
+  const std::vector<Opacity> opacities = {
+      {"sparse", {{0, 0}, {0.55, 0}, {0.65, 0.3}, {0.75, 0}, {1, 0}}},
+      {"dense", {{0, 0.02}, {0.5, 0.1}, {1, 0.3}}}};
+  for (const Opacity& opacity : opacities) {
+    const std::string where = " " + opacity.name + ", " + scene;
+    const Measured theirs = Measure(fixed, model->volume, opacity);
+    Report("VTK fixed frame" + where, theirs.milliseconds, "ms", "lower", "");
+    for (const bool adaptive : {false, true}) {
+      ours->SetAdaptiveSampling(adaptive);
+      ours->SetLevelOfDetailScale(adaptive ? 1 : 0);
+      const Measured mine = Measure(ours, model->volume, opacity);
+      const std::string how = adaptive ? " adaptive" : " constant step";
+      Report("cached frame" + where + how, mine.milliseconds, "ms", "lower", "");
+      const double target = adaptive ? (opacity.name == "sparse" ? 1.0 / 3 : 0.6) : 0.9;
+      Report("vs VTK fixed" + where + how, mine.milliseconds / theirs.milliseconds, "", "lower",
+             ", \"target\": " + std::to_string(target) + ", \"baseline\": \"VTK fixed frame" +
+                 where + "\"");
+      Report("image PSNR" + where + how, inr::ImagePsnr(mine.picture, theirs.picture), "dB",
+             "higher", adaptive ? ", \"target\": 35" : "");
+    }
+  }
+  return 0;
+}
