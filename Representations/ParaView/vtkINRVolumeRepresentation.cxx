@@ -64,12 +64,58 @@ void vtkINRVolumeRepresentation::SetSampleDistance(double voxels)
   this->GetMapper()->SetSampleDistance(voxels);
 }
 
+void vtkINRVolumeRepresentation::SetAdaptiveSampling(bool on)
+{
+  this->GetMapper()->SetAdaptiveSampling(on);
+}
+
+void vtkINRVolumeRepresentation::SetLevelOfDetailScale(double scale)
+{
+  this->GetMapper()->SetLevelOfDetailScale(scale);
+}
+
+void vtkINRVolumeRepresentation::SetCacheMode(int mode) { this->GetMapper()->SetCacheMode(mode); }
+
+void vtkINRVolumeRepresentation::SetCacheSize(int mebibytes)
+{
+  this->GetMapper()->SetCacheSize(mebibytes);
+}
+
+void vtkINRVolumeRepresentation::SetCachePrecision(int precision)
+{
+  this->GetMapper()->SetCachePrecision(precision);
+}
+
+void vtkINRVolumeRepresentation::SetBrickSize(int voxels)
+{
+  this->GetMapper()->SetBrickSize(voxels);
+}
+
+void vtkINRVolumeRepresentation::SetMaximumRequests(int bricks)
+{
+  this->GetMapper()->SetMaximumRequests(bricks);
+}
+
+void vtkINRVolumeRepresentation::SetPriorityRanking(bool on)
+{
+  this->GetMapper()->SetPriorityRanking(on);
+}
+
 void vtkINRVolumeRepresentation::SetNumberOfThreads(int threads)
 {
   this->GetMapper()->SetNumberOfThreads(threads);
 }
 
 void vtkINRVolumeRepresentation::SetSeed(int seed) { this->GetMapper()->SetSeed(seed); }
+
+bool vtkINRVolumeRepresentation::GetConverged() { return this->GetMapper()->GetConverged(); }
+
+double vtkINRVolumeRepresentation::GetCacheHitRate()
+{
+  return this->GetMapper()->GetCacheHitRate();
+}
+
+double vtkINRVolumeRepresentation::GetCacheUsed() { return this->GetMapper()->GetCacheUsed(); }
 
 double vtkINRVolumeRepresentation::GetFrameTime() { return this->GetMapper()->GetFrameTime(); }
 

@@ -29,8 +29,19 @@ public:
   ///@{
   /// Forwarded to vtkINRVolumeMapper, where they are documented.
   void SetSampleDistance(double voxels);
+  void SetAdaptiveSampling(bool on);
+  void SetLevelOfDetailScale(double scale);
+  void SetCacheMode(int mode);
+  void SetCacheSize(int mebibytes);
+  void SetCachePrecision(int precision);
+  void SetBrickSize(int voxels);
+  void SetMaximumRequests(int bricks);
+  void SetPriorityRanking(bool on);
   void SetNumberOfThreads(int threads);
   void SetSeed(int seed);
+  bool GetConverged();
+  double GetCacheHitRate();
+  double GetCacheUsed();
   double GetFrameTime();
   const char* GetBackendInUse();
   ///@}

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The cache's properties in ParaView: what they may and what they must not change in a picture."""
+import numpy as np
+from paraview import simple
+from pvtest import MODEL, check, load_plugin, look_at, picture, psnr, show_view
+
+load_plugin()
+view = show_view()
+display = simple.Show(simple.OpenDataFile(MODEL), view)
+look_at(view)
+
+
+def value(name):
+    return display.GetPropertyValue(name)
+
+
+def shown(name, **properties):
+    """The picture with some properties set and what the mapper says about it."""
+    for key, value in properties.items():
+        setattr(display, key, value)
+    pixels = picture(view, "cache-" + name)
+    display.UpdatePropertyInformation()
+    return pixels
+
+
+cached = shown("default")
+check(value("Converged") == 1, "a still picture is not converged")
+check(value("CacheHitRate") == 1, "a still picture has misses", value("CacheHitRate"))
+check(value("CacheUsed") > 0, "no cache in use")
+
+# Memory is a promise, and no part of the picture.
+small = shown("small", CacheSize=1, BrickSize=12)
+check(value("CacheUsed") <= 1, "the cache takes more than it may:", value("CacheUsed"))
+check(value("Converged") == 1, "a small cache does not converge")
+large = shown("large", CacheSize=256, BrickSize=12)
+check(np.array_equal(small, large), "the size of the cache shows in the picture")
+
+# Storage and interpolation cost little, levels of detail a little more.
+exact = shown("float", CachePrecision="Float", BrickSize=40, LevelOfDetailScale=0)
+check(psnr(shown("bits16", CachePrecision="16 bit"), exact) > 50, "16 bit")
+check(psnr(shown("bits8", CachePrecision="8 bit"), exact) > 40, "8 bit")
+network = shown("network", CacheMode="Network only")
+check(value("CacheUsed") == 0, "a cache without use:", value("CacheUsed"))
+error = psnr(exact, network)
+print(f"cache against network: {error:.1f} dB")
+check(error > 38, "interpolation costs", error, "dB")
+coarse = shown("coarse", CacheMode="Cache and network", LevelOfDetailScale=8)
+check(25 < psnr(coarse, exact) < error + 20, "coarse levels", psnr(coarse, exact))
+
+# Interactive pictures come at once and lead to the still one.
+display.LevelOfDetailScale = 1
+display.CacheSize = 64
+proxy = view.SMProxy
+proxy.InteractiveRender()
+for _ in range(50):
+    proxy.InteractiveRender()
+    display.UpdatePropertyInformation()
+    if value("Converged") == 1:
+        break
+check(value("Converged") == 1, "interactive pictures do not converge:", value("CacheHitRate"))
