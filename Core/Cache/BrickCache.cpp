@@ -68,6 +68,12 @@ std::int64_t BrickCache::bytes() const
   return bytesFor(this->Levels, this->precision(), this->capacity());
 }
 
+std::int64_t BrickCache::usedInFrame() const
+{
+  const auto isUsed = [this](const std::atomic<std::uint64_t>& use) { return use >= this->Frame; };
+  return std::count_if(this->LastUse.get(), this->LastUse.get() + this->capacity(), isUsed);
+}
+
 void BrickCache::beginFrame()
 {
   ++this->Frame;

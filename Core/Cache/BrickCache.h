@@ -42,6 +42,9 @@ public:
     }
   }
 
+  std::int64_t
+  usedInFrame() const; ///< bricks touched or inserted since beginFrame, and pinned ones
+
   /// Bricks touched or inserted from here on are not evicted until the next call.
   void beginFrame();
   /// Stores and maps an unmapped brick. Evicts the least recently used one that is neither of the

@@ -11,15 +11,24 @@ namespace inr {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Bricks inferred in one go: they share the threads, and time and abort are looked at in between.
 constexpr std::int64_t BricksAtOnce = 2;
 
-double SecondsSince(Clock::time_point start)
+class Timer
 {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+public:
+  explicit Timer(double limit) : Limit(limit) {}
+  double seconds() const
+  {
+    return std::chrono::duration<double>(Clock::now() - this->Start).count();
+  }
+  double left() const { return this->Limit - this->seconds(); }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point Start = Clock::now();
+  double Limit;
+};
 
 /// log2 of the longest sample in steps: the coarsest level's, four times as long where it is faint.
 int StepMultiples(int levels) { return levels + 2; }
@@ -66,11 +75,21 @@ const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double ste
   return this->Steps->lookup();
 }
 
+void CachedRenderer::forgetColors()
+{
+  this->Unfinished.reset();
+  this->Steps.reset();
+}
+
 FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& geometry,
                                        const Majorants& majorants, const ColorLookup& colors,
                                        const MarchSettings& settings, const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
 {
+  if (this->Unfinished && frame.timeLimit > 0 && this->Unfinished->continues(frame)) {
+    return this->refine(frame.timeLimit, output, keepGoing);
+  }
+  this->Unfinished.reset(); // before the table that it reads may change
   const StepLookup& steps = this->stepsFor(colors, settings.step * settings.unitsPerT);
   const CachedScene scene{frame,   geometry,    majorants,    colors,
                           steps,   this->Cache, this->Kernel, FormatOf(this->Cache),
@@ -107,11 +126,11 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
   CompletePass pass(scene);
   double marching = 0;
   while (true) {
-    const auto begin = Clock::now();
+    const Timer march(0);
     this->Cache.beginFrame();
     RequestRanking requests;
     pass.advance(this->Threads, keepGoing, output, requests);
-    marching += SecondsSince(begin);
+    marching += march.seconds();
     if (pass.done()) {
       break;
     }
@@ -132,25 +151,44 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
 FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const PassOutput& output,
                                              const std::function<bool()>& keepGoing)
 {
-  const auto start = Clock::now();
-  const auto timeIsLeft = [&] { return SecondsSince(start) < scene.frame.timeLimit; };
+  const Timer timer(scene.frame.timeLimit);
   while (true) {
-    const auto begin = Clock::now();
+    const Timer march(0);
     this->Cache.beginFrame();
     RequestRanking requests;
     FrameStatistics statistics = MarchOnce(scene, this->Threads, keepGoing, output, requests);
+    statistics.marchSeconds = march.seconds();
     statistics.complete = requests.empty();
-    const double marching = SecondsSince(begin);
-    statistics.marchSeconds = marching;
-    const auto goOn = [&] {
-      return SecondsSince(start) + marching < scene.frame.timeLimit && (!keepGoing || keepGoing());
-    };
-    const auto keys = requests.ranked(this->Options.maximumRequests, this->Options.ranking);
-    const std::int64_t loaded = this->load(keys, timeIsLeft);
-    if (statistics.complete || loaded == 0 || !goOn()) {
+    const bool fits = this->Cache.usedInFrame() + requests.count() <= this->Cache.capacity();
+    if (!fits) { // should the same be asked for again
+      this->Unfinished.emplace(scene, output);
+    }
+    this->load(requests.ranked(this->Options.maximumRequests, this->Options.ranking),
+               [&] { return timer.left() > 0; });
+    if (statistics.complete || !fits || timer.left() < statistics.marchSeconds) {
       return statistics;
     }
   }
+}
+
+FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& output,
+                                       const std::function<bool()>& keepGoing)
+{
+  const Timer timer(timeLimit);
+  double marching = 0;
+  do {
+    const Timer march(0);
+    this->Cache.beginFrame();
+    RequestRanking requests;
+    this->Unfinished->advance(this->Threads, keepGoing, requests);
+    marching += march.seconds();
+    this->load(requests.ranked(this->Cache.capacity(), false), [&] { return timer.left() > 0; });
+  } while (!this->Unfinished->done() && timer.left() > 0);
+  this->Unfinished->copyTo(output);
+  FrameStatistics statistics = this->Unfinished->statistics();
+  statistics.complete = this->Unfinished->done();
+  statistics.marchSeconds = marching;
+  return statistics;
 }
 
 } // namespace inr

@@ -3,7 +3,7 @@
 
 #include "Core/Cache/BrickSource.h"
 #include "Core/Parallel.h"
-#include "Core/Render/CachedPasses.h"
+#include "Core/Render/Refinement.h"
 #include "Core/Render/StepTable.h"
 
 #include <functional>
@@ -48,7 +48,7 @@ public:
                          const MarchSettings& settings, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
   /// Forgets what was made of the colours; for when they change.
-  void forgetColors() { this->Steps.reset(); }
+  void forgetColors();
 
   const BrickCache& cache() const { return this->Cache; }
 
@@ -58,6 +58,8 @@ private:
                                  const std::function<bool()>& keepGoing);
   FrameStatistics renderInTime(const CachedScene& scene, const PassOutput& output,
                                const std::function<bool()>& keepGoing);
+  FrameStatistics refine(double timeLimit, const PassOutput& output,
+                         const std::function<bool()>& keepGoing);
   std::int64_t load(const std::vector<BrickKey>& keys, const std::function<bool()>& keepGoing);
 
   CacheOptions Options;
@@ -66,6 +68,8 @@ private:
   BrickCache Cache;
   std::shared_ptr<const BrickSource> Source;
   std::optional<StepTable> Steps;
+  /// Of the latest frame, when the cache cannot hold what it wants.
+  std::optional<Refinement> Unfinished;
 };
 
 } // namespace inr

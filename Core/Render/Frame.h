@@ -50,6 +50,10 @@ struct Frame
   std::uint64_t frameIndex = 0;
 };
 
+/// Whether two frames make the same picture: all but the time they may take, and the opaque depth
+/// by its values.
+bool IsSamePicture(const Frame& a, const Frame& b);
+
 /// What making a picture took.
 struct FrameStatistics
 {

@@ -112,7 +112,8 @@ PaintMessages FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer
   }
   this->makeRenderer(input.array->GetModel(), settings.renderer);
   this->Caster->setTransferFunction(this->TransferFunctions.get(property));
-  const Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
+  Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
+  frame.timeLimit = this->timeLimit(renderer->GetRenderWindow(), settings.stillTimeLimit);
   if (!this->draw(frame, renderer)) {
     messages.error = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
                      "float textures.";
@@ -131,6 +132,19 @@ void FramePainter::makeRenderer(const ModelPointer& model, const RendererOptions
   this->CasterOptions = options;
 }
 
+double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) const
+{
+  constexpr double glance = 0.5; // what a user waits for without noticing
+  const double rate = window->GetDesiredUpdateRate();
+  if (rate >= ImageReduction::StillRate) {
+    return glance / rate;
+  }
+  if (!RefinementTimer::canRefine(window)) {
+    return 0;
+  }
+  return stillTimeLimit < 0 ? glance : stillTimeLimit;
+}
+
 bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
 {
   const Viewport viewport = GetViewport(renderer);
@@ -142,7 +156,6 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   const double rate = window->GetDesiredUpdateRate();
   const int reduction = this->Reduction.factor(rate, pixels);
   Frame frame = scene;
-  frame.timeLimit = rate < ImageReduction::StillRate ? 0.0 : 0.5 / rate;
   frame.width = (viewport.width + reduction - 1) / reduction;
   frame.height = (viewport.height + reduction - 1) / reduction;
 
@@ -167,6 +180,10 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   }
   last.backend = "CPU " + this->Caster->kernel();
   last.reduction = reduction;
+  // What follows an interactive picture is the application's business.
+  if (!last.statistics.complete && rate < ImageReduction::StillRate) {
+    this->Refine.request(window);
+  }
   last.cacheBytes = this->Caster->cacheBytes();
   this->Reduction.record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
   return this->Blender.blend(renderer, viewport, last.rgba);

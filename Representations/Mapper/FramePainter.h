@@ -7,6 +7,7 @@
 #include "FrameBuilder.h"
 #include "ImageBlender.h"
 #include "ImageReduction.h"
+#include "RefinementTimer.h"
 #include "TransferFunctionBuilder.h"
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include <string>
 
 class vtkINRDataArray;
+class vtkRenderWindow;
 class vtkRenderer;
 class vtkVolume;
 class vtkVolumeMapper;
@@ -36,6 +38,7 @@ struct PaintSettings
   double sampleDistance = 1; ///< voxels
   bool adaptiveSampling = true;
   double levelOfDetailScale = 1;
+  double stillTimeLimit = -1; ///< seconds; below 0: see vtkINRVolumeMapper
   std::uint64_t seed = 0;
   RendererOptions renderer;
 };
@@ -69,11 +72,16 @@ public:
   PaintMessages paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                       const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Last; }
-  void release(vtkWindow* window) { this->Blender.release(window); }
+  void release(vtkWindow* window)
+  {
+    this->Refine.cancel();
+    this->Blender.release(window);
+  }
 
 private:
   void makeRenderer(const ModelPointer& model, const RendererOptions& options);
   bool draw(const Frame& frame, vtkRenderer* renderer);
+  double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;
 
   std::unique_ptr<Renderer> Caster;
   ModelPointer CasterModel;
@@ -81,6 +89,7 @@ private:
   TransferFunctionCache TransferFunctions;
   ImageReduction Reduction;
   ImageBlender Blender;
+  RefinementTimer Refine;
   PaintedFrame Last;
 };
 

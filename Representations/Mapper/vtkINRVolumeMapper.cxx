@@ -91,6 +91,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   settings.sampleDistance = this->SampleDistance;
   settings.adaptiveSampling = this->AdaptiveSampling;
   settings.levelOfDetailScale = this->LevelOfDetailScale;
+  settings.stillTimeLimit = this->StillTimeLimit;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   inr::RendererOptions& renderer = settings.renderer;
   renderer.threads = this->NumberOfThreads;
@@ -165,6 +166,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "BrickSize: " << this->BrickSize << "\n"
      << indent << "MaximumRequests: " << this->MaximumRequests << "\n"
      << indent << "PriorityRanking: " << this->PriorityRanking << "\n"
+     << indent << "StillTimeLimit: " << this->StillTimeLimit << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Seed: " << this->Seed << "\n"
      << indent << "FrameTime: " << this->GetFrameTime() << "\n"

@@ -127,6 +127,17 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Seconds after which a still frame is shown with what is there and refined in the following
+   * ones, which the mapper asks the window's interactor for. 0: a still frame is complete, however
+   * long it takes. Below 0, the default: 0.5 where the window has an interactor, else 0.
+   * Screenshots and offscreen windows are always complete.
+   */
+  vtkSetMacro(StillTimeLimit, double);
+  vtkGetMacro(StillTimeLimit, double);
+  ///@}
+
+  ///@{
   /** Threads that compute a frame; 0, the default, means every core this process may use. */
   vtkSetClampMacro(NumberOfThreads, int, 0, 4096);
   vtkGetMacro(NumberOfThreads, int);
@@ -203,6 +214,7 @@ private:
   int BrickSize = 40;
   int MaximumRequests = 40;
   bool PriorityRanking = true;
+  double StillTimeLimit = -1.0;
   int NumberOfThreads = 0;
   int Seed = 0;
 

@@ -101,6 +101,11 @@ void vtkINRVolumeRepresentation::SetPriorityRanking(bool on)
   this->GetMapper()->SetPriorityRanking(on);
 }
 
+void vtkINRVolumeRepresentation::SetStillTimeLimit(double seconds)
+{
+  this->GetMapper()->SetStillTimeLimit(seconds);
+}
+
 void vtkINRVolumeRepresentation::SetNumberOfThreads(int threads)
 {
   this->GetMapper()->SetNumberOfThreads(threads);

@@ -188,6 +188,32 @@ TEST(Cached, FramesInALimitedTimeEndWithTheCompletePicture)
   EXPECT_EQ(image.pixels, truth.pixels);
 }
 
+TEST(Cached, FramesInALimitedTimeEndEvenWhereTheCacheIsTooSmall)
+{
+  const glm::i64vec3 dims(90, 70, 80);
+  inr::Frame frame = Oblique(glm::dvec3(dims), 150);
+  inr::CacheOptions options = Options(inr::CachePrecision::Bits16, 16);
+  inr::Renderer complete = CachedRenderer(dims, Waves, options);
+  const inr::Image truth = Render(complete, frame);
+
+  options.bytes = 200000; // some twenty bricks of more than a hundred
+  inr::Renderer hurried = CachedRenderer(dims, Waves, options);
+  frame.timeLimit = 0.005;
+  inr::Image image;
+  inr::FrameStatistics statistics;
+  int frames = 0;
+  do {
+    statistics = hurried.render(frame, image);
+    ++frames;
+  } while (!statistics.complete && frames < 3000);
+  EXPECT_GT(frames, 2);
+  EXPECT_TRUE(statistics.complete);
+  EXPECT_EQ(image.pixels, truth.pixels);
+
+  frame.clipToWorld[0][0] *= 1.01; // another picture starts anew
+  EXPECT_FALSE(hurried.render(frame, image).complete);
+}
+
 TEST(Cached, CoarseLevelsStayInRegister)
 {
   // A linear ramp is the same at every level; a shift by a fraction of a voxel would show.

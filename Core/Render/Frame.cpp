@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/Frame.h"
+
+#include <algorithm>
+
+namespace inr {
+
+namespace {
+
+bool HaveSameDepth(const Frame& a, const Frame& b)
+{
+  if (a.opaqueDepth == nullptr || b.opaqueDepth == nullptr) {
+    return a.opaqueDepth == b.opaqueDepth;
+  }
+  const auto pixels = static_cast<std::ptrdiff_t>(a.width) * a.height;
+  return std::equal(a.opaqueDepth, a.opaqueDepth + pixels, b.opaqueDepth);
+}
+
+} // namespace
+
+bool IsSamePicture(const Frame& a, const Frame& b)
+{
+  return a.width == b.width && a.height == b.height && a.clipToWorld == b.clipToWorld &&
+         a.worldToIndex == b.worldToIndex && a.clippingPlanes == b.clippingPlanes &&
+         a.unitDistance == b.unitDistance && a.sampleDistance == b.sampleDistance &&
+         a.adaptiveSampling == b.adaptiveSampling && a.levelOfDetailScale == b.levelOfDetailScale &&
+         a.seed == b.seed && a.frameIndex == b.frameIndex && HaveSameDepth(a, b);
+}
+
+} // namespace inr

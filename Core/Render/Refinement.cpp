@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/Refinement.h"
+
+namespace inr {
+
+namespace {
+
+std::vector<float> CopyOfDepth(const Frame& frame)
+{
+  if (frame.opaqueDepth == nullptr) {
+    return {};
+  }
+  const auto pixels = static_cast<std::ptrdiff_t>(frame.width) * frame.height;
+  return {frame.opaqueDepth, frame.opaqueDepth + pixels};
+}
+
+Frame WithDepth(Frame frame, const std::vector<float>& depth)
+{
+  frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
+  return frame;
+}
+
+} // namespace
+
+Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
+    : OpaqueDepth(CopyOfDepth(scene.frame)), Picture(WithDepth(scene.frame, this->OpaqueDepth)),
+      Geometry(this->Picture, scene.cache.hierarchy().dims()),
+      Scene{this->Picture, this->Geometry, scene.majorants, scene.colors,  scene.steps,
+            scene.cache,   scene.kernel,   scene.format,    scene.settings},
+      Pass(this->Scene), Rgba(soFar.rgba),
+      Depth(soFar.depth != nullptr ? *soFar.depth : Image(soFar.rgba.width, soFar.rgba.height, 1))
+{}
+
+void Refinement::advance(const Arena& arena, const std::function<bool()>& keepGoing,
+                         RequestRanking& requests)
+{
+  this->Pass.advance(arena, keepGoing, {this->Rgba, &this->Depth}, requests);
+}
+
+void Refinement::copyTo(const PassOutput& output) const
+{
+  output.rgba = this->Rgba;
+  if (output.depth != nullptr) {
+    *output.depth = this->Depth;
+  }
+}
+
+} // namespace inr

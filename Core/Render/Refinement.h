@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Image/Image.h"
+#include "Core/Render/CachedPasses.h"
+
+#include <vector>
+
+namespace inr {
+
+/// A complete picture in the making, over several calls: for views that want more bricks than the
+/// cache holds. Whatever is finished is final; the rest shows an earlier, coarser picture.
+class Refinement
+{
+public:
+  /// Takes copies of the scene's frame and of `soFar`; what else the scene refers to must outlive
+  /// this.
+  Refinement(const CachedScene& scene, const PassOutput& soFar);
+  Refinement(const Refinement&) = delete;
+  Refinement& operator=(const Refinement&) = delete;
+
+  /// Whether `frame` asks for the same picture.
+  bool continues(const Frame& frame) const { return IsSamePicture(this->Picture, frame); }
+
+  /// One round of the complete pass; the bricks that it waits for come out of `requests`.
+  void advance(const Arena& arena, const std::function<bool()>& keepGoing,
+               RequestRanking& requests);
+  bool done() const { return this->Pass.done(); }
+  void copyTo(const PassOutput& output) const;
+  const FrameStatistics& statistics() const { return this->Pass.statistics(); }
+
+private:
+  std::vector<float> OpaqueDepth;
+  Frame Picture; ///< with its depth there
+  RayGeometry Geometry;
+  CachedScene Scene;
+  CompletePass Pass;
+  Image Rgba;
+  Image Depth;
+};
+
+} // namespace inr
