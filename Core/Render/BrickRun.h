@@ -60,7 +60,9 @@ public:
 
   int level() const { return this->Level; }
   bool exact() const { return this->Exact; } ///< served == wanted
-  BrickKey wanted() const { return this->Wanted; }
+  /// The brick to load, which is the wanted one unless said otherwise.
+  BrickKey wish() const { return this->Wish; }
+  void wishFor(BrickKey brick) { this->Wish = brick; }
   int count() const { return this->Count; }     ///< samples added
   float weight() const { return this->Weight; } ///< of these
 
@@ -72,7 +74,7 @@ private:
   BrickPath Path{};
   int Place = 0;
   bool Exact = false;
-  BrickKey Wanted = 0;
+  BrickKey Wish = 0;
   int Count = 0;
   float Weight = 0;
 };

@@ -92,7 +92,7 @@ CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
   const ValueRange& range = state.walker.range();
   const double depth = state.walker.extinction() * settings.unitsPerT * settings.step;
   state.detail.moveTo(state.walker.enter());
-  int longest = state.detail.level();
+  int longest = state.detail.coarsest();
   for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= faint; ++k) {
     ++longest;
   }
@@ -129,15 +129,13 @@ void CachedMarcher::fill(CachedRay& state, const Segment& segment)
     if (begin >= end || (t >= segment.exit && state.next != first)) {
       break;
     }
-    const int level = state.detail.dithered(state.stream, state.next);
-    BrickRun* run = this->runFor(state, level, t);
-    if (run == nullptr) {
-      this->Waiting = true;
+    const int most = this->likeSamples(state, segment, sampling);
+    const int count = state.detail.isDithered() ? this->addDithered(state, segment, sampling, most)
+                                                : this->addAlike(state, segment, sampling, most);
+    state.next += static_cast<std::int64_t>(count) << sampling.multiple;
+    if (this->Waiting) {
       break;
     }
-    const int count = this->likeSamples(state, segment, sampling, *run);
-    this->add(state, segment, sampling, *run, count);
-    state.next += static_cast<std::int64_t>(count) << sampling.multiple;
     if (begin + sampling.length > end) {
       this->LastLength = static_cast<float>((end - begin) * this->Scene.settings.unitsPerT);
       this->Ended = true;
@@ -149,47 +147,85 @@ void CachedMarcher::fill(CachedRay& state, const Segment& segment)
 }
 
 int CachedMarcher::likeSamples(const CachedRay& state, const Segment& segment,
-                               const Sampling& sampling, const BrickRun& run) const
+                               const Sampling& sampling) const
 {
-  if (sampling.multiple < segment.longest || state.detail.isDithered()) {
+  if (sampling.multiple < segment.longest) {
     return 1;
   }
-  const double step = this->Scene.settings.step;
   const double limit = std::min(segment.exit, state.ray.length);
   const auto fits = [&](int k) {
     const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
-    const double begin = static_cast<double>(at) * step;
-    return begin + sampling.length <= limit && begin + state.jitter * sampling.length < run.exit();
+    return static_cast<double>(at) * this->Scene.settings.step + sampling.length <= limit;
   };
   // A guess by division, made good by what decides: where a batch begins must not matter.
-  const double begin = static_cast<double>(state.next) * step;
-  const double room = std::min(limit, run.exit()) - begin;
+  const double begin = static_cast<double>(state.next) * this->Scene.settings.step;
   const int most = SampleBatch::Capacity - this->Count;
-  int count = static_cast<int>(std::min(room / sampling.length, static_cast<double>(most)));
+  const double room = (limit - begin) / sampling.length;
+  int count = static_cast<int>(std::clamp(room, 1.0, static_cast<double>(most)));
   while (count > 1 && !fits(count - 1)) {
     --count;
   }
   while (count < most && fits(count)) {
     ++count;
   }
-  return std::max(count, 1);
+  return count;
 }
 
-void CachedMarcher::add(const CachedRay& state, const Segment& segment, const Sampling& sampling,
-                        BrickRun& run, int count)
+double CachedMarcher::placeOf(const CachedRay& state, const Sampling& sampling, int k) const
 {
-  const double step = this->Scene.settings.step;
-  const double offset = state.jitter * sampling.length;
-  for (int k = 0; k < count; ++k) {
-    const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
-    const double t = std::min(static_cast<double>(at) * step + offset, state.ray.length);
-    this->T[this->Count + k] = t;
-    this->Batch.along[this->Count + k] = run.along(t);
-    this->Batch.path[this->Count + k] = run.place();
-    this->Batch.multiple[this->Count + k] = sampling.multiple;
+  const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
+  const double t = static_cast<double>(at) * this->Scene.settings.step;
+  return std::min(t + state.jitter * sampling.length, state.ray.length);
+}
+
+int CachedMarcher::addAlike(const CachedRay& state, const Segment& segment,
+                            const Sampling& sampling, int most)
+{
+  BrickRun* run = this->runFor(state, state.detail.level(), this->placeOf(state, sampling, 0));
+  if (run == nullptr) {
+    this->Waiting = true;
+    return 0;
   }
-  run.count(count, segment.depth);
+  int count = 1;
+  if (this->placeOf(state, sampling, most - 1) < run->exit()) {
+    count = most;
+  } else {
+    while (this->placeOf(state, sampling, count) < run->exit()) {
+      ++count;
+    }
+  }
+  for (int k = 0; k < count; ++k) {
+    this->T[this->Count + k] = this->placeOf(state, sampling, k);
+  }
+  for (int k = this->Count; k < this->Count + count; ++k) {
+    this->Batch.along[k] = run->along(this->T[k]);
+    this->Batch.path[k] = run->place();
+    this->Batch.multiple[k] = sampling.multiple;
+  }
+  run->count(count, segment.depth);
   this->Count += count;
+  return count;
+}
+
+int CachedMarcher::addDithered(const CachedRay& state, const Segment& segment,
+                               const Sampling& sampling, int most)
+{
+  for (int k = 0; k < most; ++k) {
+    const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
+    const double t = this->placeOf(state, sampling, k);
+    BrickRun* run = this->runFor(state, state.detail.dithered(state.stream, at), t);
+    if (run == nullptr) {
+      this->Waiting = true;
+      return k;
+    }
+    this->T[this->Count] = t;
+    this->Batch.along[this->Count] = run->along(t);
+    this->Batch.path[this->Count] = run->place();
+    this->Batch.multiple[this->Count] = sampling.multiple;
+    run->count(1, segment.depth);
+    ++this->Count;
+  }
+  return most;
 }
 
 BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double t)
@@ -219,6 +255,10 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double t)
   }
   cache.touch(slot);
   run.open(level, wanted, served, cache.view(slot), hierarchy);
+  if (this->Missing == OnMiss::Approach && !run.exact()) {
+    const int next = IdOf(served.key).level - 1;
+    run.wishFor(KeyOf(hierarchy.brickAt(next, ray.at(t))));
+  }
   this->enlist(run);
   return true;
 }
@@ -234,7 +274,7 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
   this->Statistics.samples += run.count();
   if (run.count() > 0 && !run.exact()) {
     this->Statistics.missed += run.count();
-    this->Requests.add(run.wanted(), static_cast<std::uint32_t>(run.count()),
+    this->Requests.add(run.wish(), static_cast<std::uint32_t>(run.count()),
                        run.weight() * transmittance);
   }
   run.close();

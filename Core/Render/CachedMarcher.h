@@ -42,7 +42,8 @@ struct CachedRay
 
 /// What a ray does where the brick it wants is not there.
 enum class OnMiss {
-  UseCoarser, ///< read the nearest coarser level that is
+  UseCoarser, ///< read the nearest coarser level that is, and wish for the wanted one
+  Approach,   ///< the same, but wish for the level after the coarser one
   Stop        ///< wait
 };
 
@@ -84,10 +85,13 @@ private:
   Sampling samplingAt(const CachedRay& state, const Segment& segment, std::int64_t k) const;
   void fill(CachedRay& state, const Segment& segment);
   /// How many samples from state.next on differ in nothing but their place.
-  int likeSamples(const CachedRay& state, const Segment& segment, const Sampling& sampling,
-                  const BrickRun& run) const;
-  void add(const CachedRay& state, const Segment& segment, const Sampling& sampling, BrickRun& run,
-           int count);
+  int likeSamples(const CachedRay& state, const Segment& segment, const Sampling& sampling) const;
+  /// t of sample k from state.next on.
+  double placeOf(const CachedRay& state, const Sampling& sampling, int k) const;
+  /// Add up to `most` such samples, of one level and brick or of dithered levels; how many.
+  int addAlike(const CachedRay& state, const Segment& segment, const Sampling& sampling, int most);
+  int addDithered(const CachedRay& state, const Segment& segment, const Sampling& sampling,
+                  int most);
   BrickRun* runFor(const CachedRay& state, int level, double t);
   bool open(BrickRun& run, const Ray& ray, int level, double t);
   void close(BrickRun& run, float transmittance);

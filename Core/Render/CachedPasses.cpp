@@ -35,7 +35,7 @@ void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
 
 } // namespace
 
-FrameStatistics MarchOnce(const CachedScene& scene, const Arena& arena,
+FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
                           const std::function<bool()>& keepGoing, const PassOutput& output,
                           RequestRanking& requests)
 {
@@ -43,7 +43,7 @@ FrameStatistics MarchOnce(const CachedScene& scene, const Arena& arena,
   std::vector<FrameStatistics> statistics(static_cast<std::size_t>(tiling.count()));
   std::vector<RequestList> lists(static_cast<std::size_t>(tiling.count()));
   ForEachTile(arena, tiling.count(), keepGoing, [&](std::int64_t k) {
-    CachedMarcher marcher(scene, OnMiss::UseCoarser);
+    CachedMarcher marcher(scene, onMiss);
     const Tile tile = tiling.tile(k);
     for (int y = tile.y; y < tile.y + tile.height; ++y) {
       for (int x = tile.x; x < tile.x + tile.width; ++x) {

@@ -21,7 +21,7 @@ struct PassOutput
 
 /// Marches the whole picture once with what is in the cache and notes what was missing. Throws
 /// Error(Cancelled) when `keepGoing` says so; see ForEachTile.
-FrameStatistics MarchOnce(const CachedScene& scene, const Arena& arena,
+FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
                           const std::function<bool()>& keepGoing, const PassOutput& output,
                           RequestRanking& requests);
 

@@ -152,11 +152,13 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Pas
                                              const std::function<bool()>& keepGoing)
 {
   const Timer timer(scene.frame.timeLimit);
+  const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
   while (true) {
     const Timer march(0);
     this->Cache.beginFrame();
     RequestRanking requests;
-    FrameStatistics statistics = MarchOnce(scene, this->Threads, keepGoing, output, requests);
+    FrameStatistics statistics =
+        MarchOnce(scene, onMiss, this->Threads, keepGoing, output, requests);
     statistics.marchSeconds = march.seconds();
     statistics.complete = requests.empty();
     const bool fits = this->Cache.usedInFrame() + requests.count() <= this->Cache.capacity();

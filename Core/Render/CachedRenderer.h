@@ -21,12 +21,13 @@ struct CacheOptions
   int brickSize = 40;       ///< voxels per side, 4 to 1024
   int maximumRequests = 40; ///< bricks inferred between two looks at what is wanted; above 0
   bool ranking = true;      ///< what contributes most first; else in the order of the tiles
+  bool preloading = true;   ///< level by level from coarse to fine; else the wanted level at once
 
   bool operator==(const CacheOptions& other) const
   {
     return this->bytes == other.bytes && this->precision == other.precision &&
            this->brickSize == other.brickSize && this->maximumRequests == other.maximumRequests &&
-           this->ranking == other.ranking;
+           this->ranking == other.ranking && this->preloading == other.preloading;
   }
 };
 

@@ -38,6 +38,8 @@ public:
 
   /// The finer of the two levels in question.
   INR_HOST_DEVICE int level() const { return this->Level; }
+  /// The coarser one.
+  INR_HOST_DEVICE int coarsest() const { return this->Level + (this->isDithered() ? 1 : 0); }
   INR_HOST_DEVICE bool isDithered() const { return this->Fraction > 0.0f; }
   /// The level of sample number `counter` of the ray whose random stream is `stream`.
   INR_HOST_DEVICE int dithered(std::uint64_t stream, std::int64_t counter) const

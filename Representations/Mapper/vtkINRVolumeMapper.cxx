@@ -101,6 +101,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   renderer.cache.brickSize = this->BrickSize;
   renderer.cache.maximumRequests = this->MaximumRequests;
   renderer.cache.ranking = this->PriorityRanking;
+  renderer.cache.preloading = this->Preloading;
   return settings;
 }
 
@@ -166,6 +167,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "BrickSize: " << this->BrickSize << "\n"
      << indent << "MaximumRequests: " << this->MaximumRequests << "\n"
      << indent << "PriorityRanking: " << this->PriorityRanking << "\n"
+     << indent << "Preloading: " << this->Preloading << "\n"
      << indent << "StillTimeLimit: " << this->StillTimeLimit << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Seed: " << this->Seed << "\n"

@@ -128,6 +128,16 @@ public:
 
   ///@{
   /**
+   * Whether what is missing is decoded level by level, from coarse to fine, so that an interactive
+   * picture sharpens everywhere; off decodes the wanted level at once. Default on.
+   */
+  vtkSetMacro(Preloading, bool);
+  vtkGetMacro(Preloading, bool);
+  vtkBooleanMacro(Preloading, bool);
+  ///@}
+
+  ///@{
+  /**
    * Seconds after which a still frame is shown with what is there and refined in the following
    * ones, which the mapper asks the window's interactor for. 0: a still frame is complete, however
    * long it takes. Below 0, the default: 0.5 where the window has an interactor, else 0.
@@ -214,6 +224,7 @@ private:
   int BrickSize = 40;
   int MaximumRequests = 40;
   bool PriorityRanking = true;
+  bool Preloading = true;
   double StillTimeLimit = -1.0;
   int NumberOfThreads = 0;
   int Seed = 0;

@@ -101,6 +101,8 @@ void vtkINRVolumeRepresentation::SetPriorityRanking(bool on)
   this->GetMapper()->SetPriorityRanking(on);
 }
 
+void vtkINRVolumeRepresentation::SetPreloading(bool on) { this->GetMapper()->SetPreloading(on); }
+
 void vtkINRVolumeRepresentation::SetStillTimeLimit(double seconds)
 {
   this->GetMapper()->SetStillTimeLimit(seconds);

@@ -37,6 +37,7 @@ public:
   void SetBrickSize(int voxels);
   void SetMaximumRequests(int bricks);
   void SetPriorityRanking(bool on);
+  void SetPreloading(bool on);
   void SetStillTimeLimit(double seconds);
   void SetNumberOfThreads(int threads);
   void SetSeed(int seed);

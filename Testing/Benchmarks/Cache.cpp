@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the cache of bricks gains and keeps: scenes of one model at 512x512 on 2 threads.
+//
+//   bench_cache MODEL.inr NAME      prints one JSON object per line; cache.py writes the result
+//   file
+#include "Core/Image/Metrics.h"
+#include "Core/Model/ModelFile.h"
+#include "Core/Render/Renderer.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+constexpr int Threads = 2;
+constexpr int Size = 512;
+
+struct Look
+{
+  std::string name;
+  inr::TransferFunction function;
+};
+
+/// Opacity at fractions of the value range, linear in between; colour from blue to red.
+inr::TransferFunction MakeFunction(const inr::VolumeInfo& volume,
+                                   const std::vector<std::pair<float, float>>& opacity)
+{
+  inr::TransferFunction function;
+  function.low = volume.low;
+  function.high = volume.high;
+  for (int k = 0; k < 1024; ++k) {
+    const float x = static_cast<float>(k) / 1023;
+    std::size_t next = 1;
+    while (next + 1 < opacity.size() && opacity[next].first < x) {
+      ++next;
+    }
+    const auto& [x0, a0] = opacity[next - 1];
+    const auto& [x1, a1] = opacity[next];
+    function.table.emplace_back(x, 0.5f, 1 - x, a0 + (a1 - a0) * (x - x0) / (x1 - x0));
+  }
+  return function;
+}
+
+std::vector<Look> Looks(const inr::VolumeInfo& volume)
+{
+  return {{"sparse", MakeFunction(volume, {{0, 0}, {0.55f, 0}, {0.65f, 0.3f}, {0.75f, 0}, {1, 0}})},
+          {"dense", MakeFunction(volume, {{0, 0.02f}, {0.5f, 0.1f}, {1, 0.3f}})}};
+}
+
+/// The whole volume, turned by `degrees` about y; opacities refer to two voxels of 256 per axis.
+inr::Frame View(const inr::VolumeInfo& volume, double degrees = 30)
+{
+  const glm::dvec3 extent(volume.dims);
+  const double reach = extent.x;
+  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::dvec3(0, 1, 0));
+  const glm::dvec3 eye = 0.5 * extent + glm::dvec3(turn * glm::dvec4(0, 0.8, 2.0, 0)) * reach;
+  inr::Frame frame;
+  frame.width = frame.height = Size;
+  frame.clipToWorld =
+      glm::inverse(glm::perspective(glm::radians(35.0), 1.0, 0.3 * reach, 5 * reach) *
+                   glm::lookAt(eye, 0.5 * extent, glm::dvec3(0, 1, 0)));
+  frame.sampleDistance = 1;
+  frame.unitDistance = 2 * reach / 256;
+  return frame;
+}
+
+void Report(const std::string& name, double value, const std::string& unit,
+            const std::string& better, const std::string& more = "")
+{
+  std::cout << "{\"name\": \"" << name << "\", \"value\": " << value << ", \"unit\": \"" << unit
+            << "\", \"better\": \"" << better << "\"" << more << "}" << std::endl;
+}
+
+std::string Target(double target, const std::string& baseline = "")
+{
+  std::ostringstream text;
+  text << ", \"target\": " << target;
+  if (!baseline.empty()) {
+    text << ", \"baseline\": \"" << baseline << "\"";
+  }
+  return text.str();
+}
+
+inr::RendererOptions Cached()
+{
+  inr::RendererOptions options;
+  options.threads = Threads;
+  options.cache.bytes = std::int64_t{4} << 30;
+  return options;
+}
+
+struct Timed
+{
+  double seconds; ///< median
+  inr::Image picture;
+  inr::FrameStatistics statistics;
+};
+
+Timed Median(inr::Renderer& renderer, const inr::Frame& frame, int frames)
+{
+  Timed timed;
+  std::vector<double> times;
+  for (int k = 0; k < frames; ++k) {
+    timed.statistics = renderer.render(frame, timed.picture);
+    times.push_back(timed.statistics.seconds);
+  }
+  std::sort(times.begin(), times.end());
+  timed.seconds = times[times.size() / 2];
+  return timed;
+}
+
+/// Warm frames against the network alone and against one dense grid.
+void CompareWithUncached(const inr::ModelPointer& model, const Look& look, const std::string& name)
+{
+  const std::string where = " " + look.name + ", " + name;
+  inr::Frame frame = View(model->volume);
+  inr::RendererOptions options = Cached();
+  inr::Renderer cached(model, options);
+  cached.setTransferFunction(look.function);
+  inr::Image first;
+  const double cold = cached.render(frame, first).seconds;
+  Report("first complete frame" + where, 1000 * cold, "ms", "lower");
+  const Timed warm = Median(cached, frame, 7);
+  Report("cached frame" + where, 1000 * warm.seconds, "ms", "lower");
+
+  options.cached = false;
+  inr::Renderer network(model, options);
+  network.setTransferFunction(look.function);
+  const Timed uncached = Median(network, frame, 1);
+  Report("uncached frame" + where, 1000 * uncached.seconds, "ms", "lower");
+  Report("cached vs uncached RM" + where, uncached.seconds / warm.seconds, "", "higher",
+         Target(40, "uncached frame" + where));
+
+  frame.levelOfDetailScale = 0;
+  const Timed exact = Median(cached, frame, 5);
+  Report("interpolation error" + where, inr::ImagePsnr(exact.picture, uncached.picture), "dB",
+         "higher", Target(40));
+  options = Cached();
+  options.cache.precision = inr::CachePrecision::Float32;
+  Timed floats;
+  {
+    inr::Renderer renderer(model, options);
+    renderer.setTransferFunction(look.function);
+    floats = Median(renderer, frame, 3);
+  }
+  Report("16 bit error" + where, inr::ImagePsnr(exact.picture, floats.picture), "dB", "higher");
+  // A single brick as large as the volume is a dense grid; 1000 voxels keep its rows apart.
+  options.cache.precision = inr::CachePrecision::Bits16;
+  options.cache.brickSize = 1000;
+  options.cache.bytes = std::int64_t{8} << 30;
+  inr::Renderer dense(model, options);
+  dense.setTransferFunction(look.function);
+  const Timed grid = Median(dense, frame, 5);
+  Report("dense grid frame" + where, 1000 * grid.seconds, "ms", "lower");
+  Report("cached vs dense" + where, exact.seconds / grid.seconds, "", "lower",
+         Target(1.3, "dense grid frame" + where));
+}
+
+/// The camera goes round with a cache of an eighth of what one view wants.
+void SteadyMisses(const inr::ModelPointer& model, const Look& look, const std::string& name)
+{
+  const std::string where = " " + look.name + ", " + name;
+  inr::RendererOptions options = Cached();
+  std::int64_t bricks = 0;
+  std::int64_t bytes = 0;
+  {
+    inr::Renderer all(model, options);
+    all.setTransferFunction(look.function);
+    Median(all, View(model->volume), 1);
+    bricks = all.cachedBricks();
+  }
+  const std::int64_t voxels =
+      std::int64_t{options.cache.brickSize} * options.cache.brickSize * options.cache.brickSize;
+  bytes = bricks / 8 * (2 * voxels + 2000);
+  options.cache.bytes = std::max<std::int64_t>(bytes, 9 * (2 * voxels + 2000));
+  inr::Renderer small(model, options);
+  small.setTransferFunction(look.function);
+  double cached = 0;
+  constexpr int frames = 20;
+  for (int k = 0; k < frames; ++k) {
+    inr::Frame frame = View(model->volume, 30 + 2.0 * k);
+    frame.timeLimit = 0.2;
+    inr::Image picture;
+    cached += small.render(frame, picture).seconds / frames;
+  }
+  inr::RendererOptions plain = options;
+  plain.cached = false;
+  inr::Renderer network(model, plain);
+  network.setTransferFunction(look.function);
+  const Timed uncached = Median(network, View(model->volume), 1);
+  Report("steady-miss frame" + where, 1000 * cached, "ms", "lower");
+  Report("steady-miss RM" + where, uncached.seconds / cached, "", "higher",
+         Target(4.8, "uncached frame" + where));
+}
+
+inr::ModelPointer Scaled(const inr::ModelPointer& model, std::int64_t dims)
+{
+  auto scaled = std::make_shared<inr::Model>(*model);
+  scaled->volume.dims = glm::i64vec3(dims);
+  return scaled;
+}
+
+/// The same view of larger and larger volumes: the first picture, and one when all is there.
+void Growth(const inr::ModelPointer& model, const Look& look, const std::string& name)
+{
+  double smallest = 0;
+  for (const std::int64_t dims : {256, 1024, 4096, 131072}) {
+    const std::string where = " " + std::to_string(dims) + "^3 " + look.name + ", " + name;
+    const inr::ModelPointer large = Scaled(model, dims);
+    inr::Renderer renderer(large, Cached());
+    renderer.setTransferFunction(look.function);
+    inr::Frame frame = View(large->volume);
+    frame.timeLimit = 1e-3;
+    inr::Image picture;
+    Report("first image" + where, renderer.render(frame, picture).seconds, "s", "lower", Target(1));
+    frame.timeLimit = 0;
+    const double complete = Median(renderer, frame, 1).seconds;
+    Report("first complete frame" + where, complete, "s", "lower");
+    const Timed warm = Median(renderer, frame, 5);
+    smallest = smallest > 0 ? smallest : warm.seconds;
+    Report("frame" + where, 1000 * warm.seconds, "ms", "lower");
+    Report("bricks" + where, static_cast<double>(renderer.cachedBricks()), "", "lower");
+    Report("frame time growth" + where, warm.seconds / smallest, "", "lower",
+           Target(1.5, "frame 256^3 " + look.name + ", " + name));
+    if (dims == 4096) {
+      Report("frames per second 4096 " + look.name + ", " + name, 1 / warm.seconds, "frames/s",
+             "higher", Target(10));
+      frame.timeLimit = 1.0 / 30;
+      Report("interactive frames per second 4096 " + look.name + ", " + name,
+             1 / Median(renderer, frame, 7).seconds, "frames/s", "higher", Target(30));
+    }
+  }
+}
+
+/// Hit rates after the same number of bricks, with and without ranking.
+void Ranking(const inr::ModelPointer& model, const Look& look, const std::string& name)
+{
+  double worst = 1;
+  for (int camera = 0; camera < 5; ++camera) {
+    std::vector<double> rates[2];
+    for (const bool ranked : {false, true}) {
+      inr::RendererOptions options = Cached();
+      options.cache.ranking = ranked;
+      options.cache.maximumRequests = 4;
+      inr::Renderer renderer(Scaled(model, 1024), options);
+      renderer.setTransferFunction(look.function);
+      inr::Frame frame = View(model->volume, 72.0 * camera);
+      frame = View(Scaled(model, 1024)->volume, 72.0 * camera);
+      frame.width = frame.height = 256;
+      frame.timeLimit = 1e-9; // one batch of bricks for each frame
+      for (int k = 0; k < 40; ++k) {
+        inr::Image picture;
+        const inr::FrameStatistics statistics = renderer.render(frame, picture);
+        rates[ranked ? 1 : 0].push_back(1 - static_cast<double>(statistics.missed) /
+                                                static_cast<double>(statistics.samples));
+      }
+    }
+    for (std::size_t k = 0; k < rates[0].size(); ++k) {
+      worst = std::min(worst, rates[1][k] - rates[0][k]);
+    }
+    Report("hit rate after 40 batches, camera " + std::to_string(camera) + " " + look.name + ", " +
+               name,
+           rates[1].back(), "", "higher",
+           ", \"note\": \"without ranking " + std::to_string(rates[0].back()) + "\"");
+  }
+  Report("smallest gain of ranking " + look.name + ", " + name, worst, "", "higher", Target(0));
+}
+
+/// From a new transfer function to new majorants.
+void TransferFunctionChange(const inr::ModelPointer& model, const Look& look)
+{
+  for (const int edge : {16, 1}) { // 4096 cells, 16.8 million
+    auto changed = std::make_shared<inr::Model>(*model);
+    changed->volume.dims = glm::i64vec3(256);
+    changed->macroCells = inr::MakeMacroCells(changed->volume.dims, edge);
+    for (std::size_t k = 0; k < changed->macroCells.ranges.size(); ++k) {
+      const float low = static_cast<float>(k % 977) / 977;
+      changed->macroCells.ranges[k] = {low, std::min(1.0f, low + 0.2f)};
+    }
+    inr::Renderer renderer(changed, Cached());
+    const auto start = std::chrono::steady_clock::now();
+    renderer.setTransferFunction(look.function);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto cells = static_cast<double>(changed->macroCells.ranges.size());
+    Report("majorants of " + std::to_string(changed->macroCells.ranges.size()) + " cells",
+           1000 * seconds, "ms", "lower", Target(100));
+    Report("majorant rate, " + std::to_string(changed->macroCells.ranges.size()) + " cells",
+           cells / seconds / 1e6, "M cells/s", "higher");
+  }
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  if (argc != 3) {
+    std::cerr << "usage: bench_cache MODEL.inr NAME\n";
+    return 2;
+  }
+  const inr::ModelPointer model = inr::ReadModel(argv[1]);
+  for (const Look& look : Looks(model->volume)) {
+    CompareWithUncached(model, look, argv[2]);
+    SteadyMisses(model, look, argv[2]);
+    Growth(model, look, argv[2]);
+    Ranking(model, look, argv[2]);
+  }
+  TransferFunctionChange(model, Looks(model->volume).front());
+  return 0;
+}
