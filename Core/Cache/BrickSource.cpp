@@ -60,21 +60,19 @@ private:
   std::vector<float> layerInside(const BrickId& id, const BrickBox& box, std::int64_t z) const
   {
     const std::int64_t points = id.level == 0 ? 1 : 2; // of each voxel, along an axis
-    const glm::dvec3 size(this->Levels.size(id.level));
-    const glm::i64vec3 count = box.count * points;
-    std::vector<glm::vec3> positions;
-    positions.reserve(static_cast<std::size_t>(count.x * count.y * points));
-    for (std::int64_t k = z * points; k < (z + 1) * points; ++k) {
-      for (std::int64_t j = 0; j < count.y; ++j) {
-        for (std::int64_t i = 0; i < count.x; ++i) {
-          const glm::dvec3 within = (glm::dvec3(i, j, k) + 0.5) / static_cast<double>(points);
-          positions.emplace_back((glm::dvec3(box.first) + within) / size);
-        }
+    const glm::i64vec3 begin(box.first.x, box.first.y, box.first.z + z);
+    const glm::i64vec3 count(box.count.x, box.count.y, 1);
+    std::vector<float> axes[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto size = static_cast<double>(this->Levels.size(id.level)[axis]);
+      for (std::int64_t k = 0; k < count[axis] * points; ++k) {
+        const double within = (static_cast<double>(k) + 0.5) / static_cast<double>(points);
+        const double u = (static_cast<double>(begin[axis]) + within) / size;
+        axes[axis].push_back(static_cast<float>(u));
       }
     }
-    std::vector<float> sampled(positions.size());
-    this->Field->evaluate(positions.data(), static_cast<std::int64_t>(positions.size()),
-                          sampled.data());
+    std::vector<float> sampled(axes[0].size() * axes[1].size() * axes[2].size());
+    this->Field->evaluateGrid(axes, sampled.data());
     return points == 1 ? Clamped(sampled) : Filtered(sampled, box.count.x, box.count.y);
   }
 

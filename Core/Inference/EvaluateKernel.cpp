@@ -3,9 +3,8 @@
 // Built once per instruction set; see Lanes.h.
 #include "Core/Inference/EvaluateKernel.h"
 
-#include "Core/Inference/Activations.h"
 #include "Core/Inference/Encode.h"
-#include "Core/Inference/Mlp.h"
+#include "Core/Inference/Network.h"
 
 namespace inr {
 namespace INR_ISA {
@@ -24,20 +23,8 @@ void EvaluateBlock(const ModelView& model, const float* xyz, std::int64_t count,
   float* in = workspace;
   float* out = workspace + BlockSize * model.widest;
   EncodeBlock(model, xyz, count, in, BlockSize);
-  for (int l = 0; l < model.layerCount; ++l) {
-    const LayerView& layer = model.layers[l];
-    const bool last = l + 1 == model.layerCount;
-    MultiplyBlock({layer.weights, layer.rows, layer.columns, layer.columns, 1}, in, BlockSize,
-                  samples, out);
-    const Activation activation = last ? model.outputActivation : model.activation;
-    for (int row = 0; row < layer.rows; ++row) {
-      Activate(activation, out + row * BlockSize, samples);
-    }
-    float* const swap = in;
-    in = out;
-    out = swap;
-  }
-  std::memcpy(values, in, static_cast<std::size_t>(count) * sizeof(float));
+  const float* const outputs = RunNetwork(model, in, out, BlockSize, samples);
+  std::memcpy(values, outputs, static_cast<std::size_t>(count) * sizeof(float));
 }
 
 void EvaluateAll(const ModelView& model, const float* xyz, std::int64_t count, float* values,

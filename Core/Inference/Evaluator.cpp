@@ -3,9 +3,11 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/EvaluateKernel.h"
+#include "Core/Inference/GridKernel.h"
 #include "Core/Inference/KernelTable.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace inr {
@@ -26,11 +28,17 @@ Layout CheckedLayout(const Model& model)
   return layout;
 }
 
+LatticeAxis ViewOf(const std::vector<float>& axis)
+{
+  return {axis.data(), static_cast<std::int64_t>(axis.size())};
+}
+
 class KernelEvaluator : public Evaluator
 {
 public:
   KernelEvaluator(ModelPointer model, InstructionSet set)
       : Source(std::move(model)), Set(set), Kernel(EvaluateKernelFor(set)),
+        LatticeKernel(GridKernelFor(set)),
         Views(this->Source->description, CheckedLayout(*this->Source),
               this->Source->parameters.data())
   {}
@@ -42,16 +50,42 @@ public:
     this->Kernel.evaluate(model, &positions->x, count, values, workspace.data());
   }
 
+  void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const override
+  {
+    const ModelView& model = this->Views.view();
+    const auto bytes = static_cast<std::size_t>(this->LatticeKernel.workspace(model));
+    std::vector<std::max_align_t> workspace(bytes / sizeof(std::max_align_t) + 1);
+    const LatticeAxis views[3] = {ViewOf(axes[0]), ViewOf(axes[1]), ViewOf(axes[2])};
+    this->LatticeKernel.evaluate(model, views, values, workspace.data());
+  }
+
   std::string kernel() const override { return InstructionSetName(this->Set); }
 
 private:
   ModelPointer Source;
   InstructionSet Set;
   const EvaluateKernel& Kernel;
+  const GridKernel& LatticeKernel;
   ModelViewStorage Views;
 };
 
 } // namespace
+
+void Evaluator::evaluateGrid(const std::vector<float> (&axes)[3], float* values) const
+{
+  std::vector<glm::vec3> positions;
+  positions.reserve(axes[0].size() * axes[1].size() * axes[2].size());
+  for (const float z : axes[2]) {
+    for (const float y : axes[1]) {
+      for (const float x : axes[0]) {
+        positions.emplace_back(x, y, z);
+      }
+    }
+  }
+  this->evaluate(positions.data(), static_cast<std::int64_t>(positions.size()), values);
+}
+
+const GridKernel& GridKernelFor(InstructionSet set) { return INR_KERNEL_FOR(set, Grid); }
 
 const EvaluateKernel& EvaluateKernelFor(InstructionSet set)
 {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace inr {
 
@@ -22,6 +23,11 @@ public:
   /// are clamped to [0, 1]; y is the network's output, not clamped. float32 arithmetic; a value
   /// does not depend on its neighbours in the batch. Best in batches of 64 or more.
   virtual void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const = 0;
+
+  /// Values y at all points of a lattice, x fastest in `values`, on the calling thread. The axes'
+  /// coordinates are in [0, 1] and rise. Equal to `evaluate` but for the order of summation; a
+  /// value does not depend on the lattice around it.
+  virtual void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const;
 
   /// The instruction set in use: "avx512", "avx2" or "baseline".
   virtual std::string kernel() const = 0;

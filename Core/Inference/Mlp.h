@@ -10,7 +10,7 @@ namespace INR_ISA {
 
 /// Registers hold a tile of TileRows outputs by TileGroups * LaneCount samples.
 constexpr int TileRows = 4;
-constexpr int TileGroups = LaneCount == 16 ? 4 : 2;
+constexpr int TileGroups = LaneCount == 16 ? 4 : 2; // at most 4; see MultiplyBlock
 
 /// A matrix in memory: element (r, c) is at data[r * rowStep + c * columnStep], so that a transpose
 /// is a view too.
@@ -76,7 +76,11 @@ inline void MultiplyBlock(const MatrixView& matrix, const float* in, std::int64_
   for (; first + TileGroups * LaneCount <= samples; first += TileGroups * LaneCount) {
     MultiplyStrip<TileGroups>(matrix, in + first, stride, out + first);
   }
-  for (; first < samples; first += LaneCount) {
+  if (samples - first == 3 * LaneCount) {
+    MultiplyStrip<3>(matrix, in + first, stride, out + first);
+  } else if (samples - first == 2 * LaneCount) {
+    MultiplyStrip<2>(matrix, in + first, stride, out + first);
+  } else if (samples > first) {
     MultiplyStrip<1>(matrix, in + first, stride, out + first);
   }
 }

@@ -45,6 +45,29 @@ void Inference(benchmark::State& state, const inr::Description& description,
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(positions.size()));
 }
 
+/// Bricks of 40^3 samples at a spacing of 1/256, each on one thread.
+void Bricks(benchmark::State& state, const inr::Description& description, const std::string& kernel,
+            int threads)
+{
+  constexpr std::int64_t edge = 40;
+  const auto evaluator = inr::MakeEvaluator(RandomModel(description), kernel);
+  const inr::Arena arena(threads);
+  for (auto _ : state) {
+    arena.forEachBlock(threads, 1, [&](std::int64_t brick, std::int64_t) {
+      std::vector<float> axes[3];
+      for (std::vector<float>& axis : axes) {
+        for (std::int64_t k = 0; k < edge; ++k) {
+          axis.push_back((static_cast<float>(brick * edge + k) + 0.5f) / 256.0f);
+        }
+      }
+      std::vector<float> values(edge * edge * edge);
+      evaluator->evaluateGrid(axes, values.data());
+      benchmark::DoNotOptimize(values.data());
+    });
+  }
+  state.SetItemsProcessed(state.iterations() * threads * edge * edge * edge);
+}
+
 /// A linear field: costs nothing beside the training step.
 class Ramp : public inr::SampleSource
 {
@@ -92,6 +115,7 @@ void Register(const std::string& what, Benchmark function)
 
 [[maybe_unused]] const bool Registered = [] {
   Register("inference", Inference);
+  Register("brick inference", Bricks);
   Register("training", Training);
   return true;
 }();

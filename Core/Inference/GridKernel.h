@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Inference/InstructionSet.h"
+#include "Core/Inference/ModelView.h"
+
+#include <cstdint>
+
+namespace inr {
+
+/// One axis of a lattice of samples: rising coordinates in [0, 1].
+struct LatticeAxis
+{
+  const float* u;
+  std::int64_t count;
+};
+
+/// Network outputs on a regular lattice, for one instruction set.
+struct GridKernel
+{
+  /// Bytes of scratch memory that `evaluate` needs, aligned for anything.
+  std::int64_t (*workspace)(const ModelView& model);
+  /// x fastest in `values`.
+  void (*evaluate)(const ModelView& model, const LatticeAxis (&axes)[3], float* values,
+                   void* workspace);
+};
+
+/// The kernel built for `set`, which must be usable.
+const GridKernel& GridKernelFor(InstructionSet set);
+
+namespace baseline {
+extern const GridKernel Grid;
+}
+namespace avx2 {
+extern const GridKernel Grid;
+}
+namespace avx512 {
+extern const GridKernel Grid;
+}
+
+} // namespace inr
