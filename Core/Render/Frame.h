@@ -30,7 +30,8 @@ struct Frame
 
   /// World length to which the transfer function's opacity refers; above 0.
   double unitDistance = 1;
-  /// Distance between samples in voxels, along the axis in which the voxels are densest; above 0.
+  /// Distance between samples in voxels, along the axis in which the voxels are densest; 1/1000 to
+  /// 1,000,000.
   double sampleDistance = 0.5;
 
   /// Samples where little can be seen stand for up to four times the sample distance.

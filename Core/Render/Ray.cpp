@@ -9,10 +9,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace inr {
 
 namespace {
+
+/// Keeps a ray's lattice of samples within 64 bits for any volume.
+constexpr double SmallestStep = 1e-3;
+constexpr double LargestStep = 1e6;
+constexpr std::int64_t MaximumPixels = std::int64_t{1} << 28;
 
 void Require(bool condition, const char* message)
 {
@@ -64,8 +70,16 @@ struct Interval
 RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture(frame)
 {
   Require(frame.width > 0 && frame.height > 0, "a picture needs at least one pixel");
-  Require(std::isfinite(frame.sampleDistance) && frame.sampleDistance > 0,
-          "the sample distance must be above 0");
+  if (std::int64_t{frame.width} * frame.height > MaximumPixels) {
+    throw Error(ErrorCode::TooLarge, "a picture of " + std::to_string(frame.width) + " x " +
+                                         std::to_string(frame.height) +
+                                         " pixels; render it in tiles of at most 2^28");
+  }
+  Require(frame.sampleDistance >= SmallestStep && frame.sampleDistance <= LargestStep,
+          "the sample distance must be between 1/1000 and 1,000,000 voxels");
+  Require(frame.levelOfDetailScale >= 0 && std::isfinite(frame.levelOfDetailScale),
+          "the level-of-detail scale must be finite and not negative");
+  Require(frame.timeLimit >= 0, "the time limit must not be negative");
   Require(std::isfinite(frame.unitDistance) && frame.unitDistance > 0,
           "the opacity unit distance must be above 0");
   this->WorldToClip = Inverse(frame.clipToWorld, "the camera's matrix has no inverse");

@@ -252,8 +252,7 @@ void Ranking(const inr::ModelPointer& model, const Look& look, const std::string
       options.cache.maximumRequests = 4;
       inr::Renderer renderer(Scaled(model, 1024), options);
       renderer.setTransferFunction(look.function);
-      inr::Frame frame = View(model->volume, 72.0 * camera);
-      frame = View(Scaled(model, 1024)->volume, 72.0 * camera);
+      inr::Frame frame = View(Scaled(model, 1024)->volume, 72.0 * camera);
       frame.width = frame.height = 256;
       frame.timeLimit = 1e-9; // one batch of bricks for each frame
       for (int k = 0; k < 40; ++k) {
@@ -310,9 +309,9 @@ int main(int argc, char* argv[])
   for (const Look& look : Looks(model->volume)) {
     CompareWithUncached(model, look, argv[2]);
     SteadyMisses(model, look, argv[2]);
-    Growth(model, look, argv[2]);
     Ranking(model, look, argv[2]);
   }
+  Growth(model, Looks(model->volume).front(), argv[2]); // minutes: a terabyte is decoded in parts
   TransferFunctionChange(model, Looks(model->volume).front());
   return 0;
 }

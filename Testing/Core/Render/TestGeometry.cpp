@@ -148,7 +148,12 @@ TEST(Geometry, RefusesImpossibleFrames)
     EXPECT_THROW(Render(renderer, frame), inr::Error);
   };
   refused([](inr::Frame& frame) { frame.width = 0; });
+  refused([](inr::Frame& frame) { frame.width = frame.height = 1 << 21; });
   refused([](inr::Frame& frame) { frame.sampleDistance = 0; });
+  refused([](inr::Frame& frame) { frame.sampleDistance = 1e-300; });
+  refused([](inr::Frame& frame) { frame.sampleDistance = std::nan(""); });
+  refused([](inr::Frame& frame) { frame.levelOfDetailScale = -1; });
+  refused([](inr::Frame& frame) { frame.timeLimit = std::nan(""); });
   refused([](inr::Frame& frame) { frame.unitDistance = std::nan(""); });
   refused([](inr::Frame& frame) { frame.worldToIndex = glm::dmat4(0.0); });
   refused([](inr::Frame& frame) { frame.clipToWorld[1][1] = HUGE_VAL; });

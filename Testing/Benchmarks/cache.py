@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs bench_cache, and bench_against_vtk where it was built, and writes cache.json.
+
+    cmake --preset vtk -DINR_BUILD_BENCHMARKS=ON && cmake --build --preset vtk
+    Testing/with-display.sh Testing/Benchmarks/cache.py build-vtk/Testing/Benchmarks \\
+        rm_mixing=MODEL.inr [NAME=MODEL.inr...]
+"""
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import results_file
+
+folder = Path(sys.argv[1])
+results = []
+for argument in sys.argv[2:]:
+    name, model = argument.split("=", 1)
+    for program in ("bench_against_vtk", "bench_cache"):
+        if not (folder / program).exists():
+            continue
+        process = subprocess.Popen([folder / program, model, name], stdout=subprocess.PIPE, text=True)
+        for line in process.stdout:
+            if line.startswith("{"):
+                result = json.loads(line)
+                result["value"] = float(f"{result['value']:.4g}")
+                result.setdefault("note", "512x512, 2 threads")
+                results.append(result)
+                print(f"{result['name']}: {result['value']} {result['unit']}", flush=True)
+        if process.wait() != 0:
+            sys.exit(f"{program} failed")
+results_file.write("cache", results)
