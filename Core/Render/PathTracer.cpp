@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/PathTracer.h"
+
+#include "Core/Error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace inr {
+
+namespace {
+
+void Require(bool condition, const char* message)
+{
+  if (!condition) {
+    throw Error(ErrorCode::InvalidArgument, message);
+  }
+}
+
+bool IsFinite(const glm::dvec3& v)
+{
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool IsNonNegative(const glm::dvec3& v) { return IsFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
+
+void Check(const PathOptions& options)
+{
+  Require(options.maximumBounces >= 0, "the number of bounces must not be negative");
+  Require(options.rouletteAfter >= 0, "Russian roulette cannot begin before the first bounce");
+  Require(options.scatteringAlbedo >= 0 && options.scatteringAlbedo <= 1,
+          "the scattering albedo must be in [0, 1]");
+  Require(std::abs(options.anisotropy) < 1, "the anisotropy must be inside (-1, 1)");
+  Require(IsNonNegative(options.ambientLight), "the ambient light must be finite, not negative");
+}
+
+void Check(const Light& light)
+{
+  Require(IsNonNegative(light.color), "a light's colour must be finite, not negative");
+  if (light.kind != LightKind::Point) {
+    Require(IsFinite(light.direction) && glm::length(light.direction) > 0,
+            "a light must shine into some direction");
+  }
+  if (light.kind != LightKind::Directional) {
+    Require(IsFinite(light.position), "a light's position must be finite");
+    Require(IsNonNegative(light.attenuation) && glm::length(light.attenuation) > 0,
+            "a light's attenuation must be finite and not negative, and not 0 altogether");
+  }
+  if (light.kind == LightKind::Spot) {
+    Require(light.coneAngle > 0 && light.coneAngle <= 90,
+            "a spot light's cone angle must be above 0 and at most 90 degrees");
+    Require(std::isfinite(light.exponent) && light.exponent >= 0,
+            "a spot light's exponent must be finite, not negative");
+  }
+}
+
+/// The paths of a tile, each asking for one value in a round.
+class TileOfPaths
+{
+public:
+  TileOfPaths(const PathScene& scene, const Tile& tile) : Scene(scene), Place(tile)
+  {
+    this->Paths.reserve(static_cast<std::size_t>(tile.width) * tile.height);
+    for (int k = 0; k < tile.width * tile.height; ++k) {
+      this->Paths.push_back(BeginPath(scene, this->x(k), this->y(k)));
+      if (this->Paths.back().ray.length > 0) {
+        this->Live.push_back(k);
+      }
+    }
+    this->Statistics.rays = static_cast<std::int64_t>(this->Live.size());
+  }
+
+  void trace(FieldSampler& sampler)
+  {
+    for (this->place(); !this->Live.empty(); this->place()) {
+      sampler.sample(this->Points.data(), static_cast<std::int64_t>(this->Points.size()),
+                     this->Values.data());
+      this->Statistics.samples += static_cast<std::int64_t>(this->Points.size());
+      this->collide();
+    }
+  }
+
+  void write(Image& rgba) const
+  {
+    for (int k = 0; k < this->Place.width * this->Place.height; ++k) {
+      const PathState& path = this->Paths[static_cast<std::size_t>(k)];
+      const glm::vec4 color(path.radiance, path.collided ? 1.0f : 0.0f);
+      std::copy_n(&color.x, 4, rgba.pixel(this->x(k), this->y(k)));
+    }
+  }
+
+  const FrameStatistics& statistics() const { return this->Statistics; }
+
+private:
+  int x(int k) const { return this->Place.x + k % this->Place.width; }
+  int y(int k) const { return this->Place.y + k / this->Place.width; }
+
+  void place()
+  {
+    this->Samples.clear();
+    this->Points.clear();
+    PathSample sample{};
+    std::size_t alive = 0;
+    for (const int k : this->Live) {
+      if (PlaceSample(this->Scene, this->Paths[static_cast<std::size_t>(k)], sample)) {
+        this->Samples.push_back(sample);
+        this->Points.push_back(sample.point);
+        this->Live[alive++] = k;
+      }
+    }
+    this->Live.resize(alive);
+    this->Values.resize(alive);
+  }
+
+  void collide()
+  {
+    std::size_t alive = 0;
+    for (std::size_t live = 0; live < this->Live.size(); ++live) {
+      const int k = this->Live[live];
+      const PathSample& sample = this->Samples[live];
+      float value = this->Values[live];
+      this->Statistics.clamped += ClampToRange(sample.range, value) ? 1 : 0;
+      if (Collide(this->Scene, this->Paths[static_cast<std::size_t>(k)], sample.majorant, value)) {
+        this->Live[alive++] = k;
+      }
+    }
+    this->Live.resize(alive);
+  }
+
+  const PathScene& Scene;
+  Tile Place;
+  FrameStatistics Statistics;
+  std::vector<PathState> Paths;
+  std::vector<int> Live;           ///< indices into Paths
+  std::vector<PathSample> Samples; ///< of the live ones
+  std::vector<FieldPoint> Points;
+  std::vector<float> Values;
+};
+
+} // namespace
+
+void Accumulator::reset(int width, int height)
+{
+  this->Width = width;
+  this->Height = height;
+  this->Count = 0;
+  this->Sums.assign(static_cast<std::size_t>(width) * height * 4, 0.0);
+}
+
+void Accumulator::add(const Image& sample)
+{
+  Require(sample.width == this->Width && sample.height == this->Height && sample.channels == 4,
+          "an accumulator takes RGBA pictures of the size it was reset to");
+  for (std::size_t k = 0; k < this->Sums.size(); ++k) {
+    this->Sums[k] += sample.pixels[k];
+  }
+  ++this->Count;
+}
+
+void Accumulator::mean(Image& rgba) const
+{
+  rgba = Image(this->Width, this->Height, 4);
+  const double weight = this->Count > 0 ? 1.0 / static_cast<double>(this->Count) : 0.0;
+  std::transform(this->Sums.begin(), this->Sums.end(), rgba.pixels.begin(),
+                 [weight](double sum) { return static_cast<float>(sum * weight); });
+}
+
+PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
+                       const Majorants& majorants, const ColorLookup& colors,
+                       const PathOptions& options, std::vector<Light> lights, int levels)
+    : Lights(std::move(lights)),
+      Inner(frame, geometry, dims), Scene{frame,
+                                          geometry,
+                                          this->Inner,
+                                          majorants,
+                                          colors,
+                                          this->Lights.data(),
+                                          static_cast<int>(this->Lights.size()),
+                                          options,
+                                          glm::dvec3(dims),
+                                          geometry.worldPerUnit() / frame.unitDistance,
+                                          levels}
+{
+  Check(options);
+  std::for_each(this->Lights.begin(), this->Lights.end(), [](const Light& light) { Check(light); });
+  Require(levels >= 1, "a field has at least one level");
+}
+
+FrameStatistics PathTracer::trace(const Tile& tile, FieldSampler& sampler, Image& rgba) const
+{
+  TileOfPaths paths(this->Scene, tile);
+  paths.trace(sampler);
+  paths.write(rgba);
+  return paths.statistics();
+}
+
+} // namespace inr

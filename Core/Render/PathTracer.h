@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Image/Image.h"
+#include "Core/Render/PathTracing.h"
+#include "Core/Render/Tiling.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// The mean of complete pictures, each of one sample per pixel.
+class Accumulator
+{
+public:
+  /// Forgets everything, for pictures of width x height RGBA pixels.
+  void reset(int width, int height);
+  /// Throws Error(InvalidArgument) when the shape is another.
+  void add(const Image& sample);
+
+  /// Pictures added since the last reset.
+  std::int64_t samples() const { return this->Count; }
+  /// Premultiplied RGBA; transparent black before the first sample. `rgba` is resized.
+  void mean(Image& rgba) const;
+
+private:
+  int Width = 0;
+  int Height = 0;
+  std::int64_t Count = 0;
+  std::vector<double> Sums; ///< of floats: exact to far more samples than anyone waits for
+};
+
+/// A frame by path tracing: what is at random in it depends on (Frame::seed, Frame::frameIndex,
+/// pixel) only, so that the picture is independent of tiles and threads.
+class PathTracer
+{
+public:
+  /// `levels` >= 1 are the cache levels that points are asked at, by Frame::levelOfDetailScale; 1
+  /// means native resolution everywhere. The references must outlive the tracer. Throws
+  /// Error(InvalidArgument) for options and lights outside their documented ranges.
+  PathTracer(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
+             const Majorants& majorants, const ColorLookup& colors, const PathOptions& options,
+             std::vector<Light> lights, int levels = 1);
+  PathTracer(const PathTracer&) = delete;
+  PathTracer& operator=(const PathTracer&) = delete;
+
+  /// Traces one path through each pixel of a tile and writes premultiplied RGBA into `rgba`, a
+  /// picture of the frame's size; alpha is 1 where the path met the medium, 0 where it passed.
+  /// Tiles may be traced from several threads, each with a sampler of its own.
+  FrameStatistics trace(const Tile& tile, FieldSampler& sampler, Image& rgba) const;
+
+private:
+  std::vector<Light> Lights;
+  InnerRays Inner;
+  PathScene Scene;
+};
+
+} // namespace inr

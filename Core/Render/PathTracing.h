@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The stages of path tracing, as functions over one path; a tile runs each over its live paths.
+//
+// Distances to collisions come from delta tracking (Woodcock et al., "Techniques used in the GEM
+// code for Monte Carlo neutronics calculations", 1965) against the macro-cells' majorants, the
+// transmittance towards a light from ratio tracking (Novak et al., "Residual ratio tracking for
+// estimating attenuation in participating media", 2014). Both are without bias.
+#pragma once
+
+#include "Core/HostDevice.h"
+#include "Core/Random.h"
+#include "Core/Render/CellWalker.h"
+#include "Core/Render/LevelOfDetail.h"
+#include "Core/Render/Lights.h"
+#include "Core/Render/PathTracingField.h"
+#include "Core/Render/PathTracingGeometry.h"
+#include "Core/Render/PathTracingPhase.h"
+#include "Core/Render/RayMarching.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace inr {
+
+/// What a medium does with light, apart from its transfer function.
+struct PathOptions
+{
+  int maximumBounces = 16;      ///< scatterings of a path, not negative
+  float scatteringAlbedo = 1;   ///< in [0, 1]; multiplies the transfer function's colour
+  double anisotropy = 0;        ///< mean cosine of a scattering, in (-1, 1)
+  glm::vec3 ambientLight{0.0f}; ///< radiance from everywhere outside; never the backdrop
+  /// The medium shines with the transfer function's colour and scatters nothing: the picture that
+  /// ray marching makes.
+  bool emissionOnly = false;
+  /// Scatterings after which a path ends at random, by how little light it still carries.
+  int rouletteAfter = 4;
+};
+
+/// What the stages share within a frame. All read-only.
+struct PathScene
+{
+  const Frame& frame;
+  const RayGeometry& geometry;
+  const InnerRays& inner;
+  const Majorants& majorants;
+  const ColorLookup& colors;
+  const Light* lights;
+  int lightCount;
+  PathOptions options;
+  glm::dvec3 dims;  ///< voxels per axis
+  double unitsPerT; ///< opacity unit distances per unit of t
+  int levels;       ///< that a point may be asked at, at least 1
+};
+
+/// Where a path stands: on its way, or between a scattering and a light.
+struct PathState
+{
+  INR_HOST_DEVICE PathState(const PathScene& scene, const Ray& pixelRay, std::uint64_t pixelStream)
+      : ray(pixelRay), walker(scene.majorants, scene.dims, pixelRay), stream(pixelStream)
+  {}
+
+  Ray ray; ///< the one that is being followed now
+  CellWalker walker;
+  double t = 0;         ///< on it
+  std::uint64_t stream; ///< of random numbers
+  std::uint64_t drawn = 0;
+
+  glm::dvec3 travel{0.0};     ///< world direction of the path
+  glm::dvec3 vertex{0.0};     ///< point index of the last scattering
+  glm::vec3 throughput{1.0f}; ///< from the camera to here
+  glm::vec3 radiance{0.0f};   ///< gathered
+  glm::vec3 fromLight{0.0f};  ///< on its way to be gathered, if nothing absorbs it
+  float passed = 1;           ///< of it, so far
+  double footprint = 0;       ///< of the pixel at the vertex
+  int bounces = 0;
+  bool collided = false;
+  bool towardsLight = false;
+};
+
+/// Opacities this near to 1 take their place: extinction must be finite.
+constexpr float MaximumOpacity = 1.0f - 0x1p-20f;
+
+/// Extinction per opacity unit distance.
+INR_HOST_DEVICE inline float Extinction(float opacity)
+{
+  return -std::log1p(-(opacity < MaximumOpacity ? opacity : MaximumOpacity));
+}
+
+/// The next random number of a path, uniform in [0, 1).
+INR_HOST_DEVICE inline double Draw(PathState& path)
+{
+  return static_cast<double>(RandomBits(path.stream, path.drawn++) >> 11) * 0x1p-53;
+}
+
+INR_HOST_DEVICE inline float Largest(const glm::vec3& v)
+{
+  return glm::max(v.x, glm::max(v.y, v.z));
+}
+
+/// Keeps something of weight `chance` <= 1 alive in proportion; 0 means that it ends, else what to
+/// divide by.
+INR_HOST_DEVICE inline float Roulette(PathState& path, float chance)
+{
+  if (chance >= 1.0f) {
+    return 1.0f;
+  }
+  return Draw(path) < chance ? chance : 0.0f;
+}
+
+INR_HOST_DEVICE inline void Follow(const PathScene& scene, PathState& path, const Ray& ray)
+{
+  path.ray = ray;
+  path.ray.footprint = path.footprint;
+  path.walker = CellWalker(scene.majorants, scene.dims, path.ray);
+  path.t = 0;
+}
+
+/// Sends the path on from its vertex.
+INR_HOST_DEVICE inline void GoOn(const PathScene& scene, PathState& path)
+{
+  const double cosine = SamplePhaseCosine(scene.options.anisotropy, Draw(path));
+  path.travel = Turn(path.travel, cosine, Draw(path));
+  path.towardsLight = false;
+  Follow(scene, path, scene.inner.ray(path.vertex, path.travel));
+}
+
+/// Sends the path towards a light, one of them all at random; or, where that gives nothing, on.
+INR_HOST_DEVICE inline void LookAtLight(const PathScene& scene, PathState& path)
+{
+  if (scene.lightCount > 0) {
+    const int chosen =
+        glm::min(static_cast<int>(Draw(path) * scene.lightCount), scene.lightCount - 1);
+    const Illumination light = IlluminationAt(scene.lights[chosen], scene.inner.world(path.vertex));
+    const double cosine = glm::dot(path.travel, light.toLight);
+    const double phase = PhaseDensity(scene.options.anisotropy, cosine);
+    path.fromLight =
+        path.throughput * light.irradiance * static_cast<float>(phase * scene.lightCount);
+    if (Largest(path.fromLight) > 0.0f) {
+      path.towardsLight = true;
+      path.passed = 1.0f;
+      Follow(scene, path, scene.inner.ray(path.vertex, light.toLight, light.distance));
+      return;
+    }
+  }
+  GoOn(scene, path);
+}
+
+/// A path at the beginning; its ray may miss the volume.
+INR_HOST_DEVICE inline PathState BeginPath(const PathScene& scene, int x, int y)
+{
+  PathState path(scene, scene.geometry.ray(x, y), PixelStream(scene.frame, x, y));
+  path.travel = scene.inner.worldDirection(path.ray.direction);
+  return path;
+}
+
+/// A place where a path may collide, and what decides whether it does.
+struct PathSample
+{
+  FieldPoint point;
+  ValueRange range; ///< of its macro-cell
+  float majorant;   ///< extinction per opacity unit distance
+};
+
+/// Moves along the ray to its next place of possible collision; false when it leaves first.
+INR_HOST_DEVICE inline bool NextCollision(const PathScene& scene, PathState& path,
+                                          PathSample& sample)
+{
+  const double end = path.ray.length;
+  double depth = -std::log1p(-Draw(path));
+  while (path.t < end) {
+    path.walker.moveTo(path.t);
+    if (!path.walker.moveToVisible(end)) {
+      return false;
+    }
+    const double begin = glm::max(path.t, path.walker.enter());
+    sample.majorant = glm::min(path.walker.extinction(), Extinction(1.0f));
+    const double perT = sample.majorant * scene.unitsPerT;
+    const double exit = glm::min(path.walker.exit(), end);
+    if (depth < perT * (exit - begin)) {
+      path.t = begin + depth / perT;
+      sample.range = path.walker.range();
+      return true;
+    }
+    depth -= glm::max(0.0, perT * (exit - begin));
+    path.t = exit;
+  }
+  return false;
+}
+
+/// Gathers what comes from outside along the ray that has left; false when that ends the path.
+INR_HOST_DEVICE inline bool Leave(const PathScene& scene, PathState& path)
+{
+  if (path.towardsLight) {
+    path.radiance += path.fromLight * path.passed;
+    GoOn(scene, path);
+    return true;
+  }
+  if (path.collided) {
+    path.radiance += path.throughput * scene.options.ambientLight;
+  }
+  return false;
+}
+
+/// Where the path asks for the field next; false when it has ended.
+INR_HOST_DEVICE inline bool PlaceSample(const PathScene& scene, PathState& path, PathSample& sample)
+{
+  while (!NextCollision(scene, path, sample)) {
+    if (!Leave(scene, path)) {
+      return false;
+    }
+  }
+  LevelOfDetail detail(path.ray, scene.frame.levelOfDetailScale, scene.levels);
+  detail.moveTo(path.t);
+  const int level = detail.isDithered()
+                        ? detail.dithered(path.stream, static_cast<std::int64_t>(path.drawn++))
+                        : detail.level();
+  const glm::dvec3 inside = glm::clamp(path.ray.at(path.t), glm::dvec3(0.0), scene.dims - 1.0);
+  sample.point = MakeFieldPoint(inside, level);
+  return true;
+}
+
+/// Takes from the light on its way what does not pass; false when none is left, which is also what
+/// becomes, at random and without bias, of light that has become faint.
+INR_HOST_DEVICE inline bool Attenuate(PathState& path, float passes)
+{
+  constexpr float faint = 0.1f;
+  path.passed *= passes;
+  if (path.passed >= faint) {
+    return true;
+  }
+  const float chance = path.passed > 0.0f ? Roulette(path, path.passed / faint) : 0.0f;
+  path.passed = faint;
+  return chance > 0.0f;
+}
+
+/// A scattering at the path's place; false when the path ends there.
+INR_HOST_DEVICE inline bool Scatter(const PathScene& scene, PathState& path, const glm::vec3& color)
+{
+  const PathOptions& options = scene.options;
+  if (path.bounces >= options.maximumBounces) {
+    return false;
+  }
+  ++path.bounces;
+  path.throughput *= color * options.scatteringAlbedo;
+  float chance = Largest(path.throughput);
+  if (path.bounces > options.rouletteAfter && chance > 0.0f) {
+    chance = Roulette(path, glm::min(chance, 1.0f));
+    path.throughput /= chance > 0.0f ? chance : 1.0f;
+  }
+  if (!(chance > 0.0f)) {
+    return false;
+  }
+  path.footprint = path.ray.footprint + path.ray.footprintGrowth * path.t;
+  path.vertex = path.ray.at(path.t);
+  LookAtLight(scene, path);
+  return true;
+}
+
+/// Lets the path collide, or not, with what the field has at its place; false when that ends it.
+INR_HOST_DEVICE inline bool Collide(const PathScene& scene, PathState& path, float majorant,
+                                    float value)
+{
+  const glm::vec4 entry = scene.colors.at(value);
+  const float share = glm::min(Extinction(entry.w) / majorant, 1.0f);
+  if (path.towardsLight) {
+    if (share > 0.0f && !Attenuate(path, 1.0f - share)) {
+      GoOn(scene, path);
+    }
+    return true;
+  }
+  if (Draw(path) >= share) {
+    return true;
+  }
+  path.collided = true;
+  const glm::vec3 color(entry);
+  if (scene.options.emissionOnly) {
+    path.radiance += path.throughput * color;
+    return false;
+  }
+  return Scatter(scene, path, color);
+}
+
+} // namespace inr

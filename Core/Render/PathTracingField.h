@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/HostDevice.h"
+#include "Core/Inference/Evaluator.h"
+
+#include <glm/common.hpp>
+#include <glm/gtc/type_precision.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// A place at which a path asks for the field: native point index = voxel + fraction.
+struct FieldPoint
+{
+  glm::ivec3 voxel;
+  glm::vec3 fraction; ///< in [0, 1]
+  int level;          ///< of the hierarchy, 0 = native
+};
+
+/// `index` is a native point index, within 32 bits.
+INR_HOST_DEVICE inline FieldPoint MakeFieldPoint(const glm::dvec3& index, int level = 0)
+{
+  const glm::dvec3 floor = glm::floor(index);
+  return {glm::ivec3(floor), glm::vec3(index - floor), level};
+}
+
+/// Where paths get the field's values from. One for each thread and tile.
+class FieldSampler
+{
+public:
+  virtual ~FieldSampler() = default;
+
+  /// Normalised values at `count` points inside the volume. A value must not depend on its
+  /// neighbours in the batch.
+  virtual void sample(const FieldPoint* points, std::int64_t count, float* values) = 0;
+};
+
+/// The continuous field itself, whatever level is asked for.
+class EvaluatorSampler : public FieldSampler
+{
+public:
+  /// `evaluator` must outlive the sampler.
+  EvaluatorSampler(const Evaluator& evaluator, const glm::i64vec3& dims)
+      : Field(evaluator), Dims(dims)
+  {}
+
+  void sample(const FieldPoint* points, std::int64_t count, float* values) override;
+
+private:
+  const Evaluator& Field;
+  glm::dvec3 Dims;
+  std::vector<glm::vec3> Positions;
+};
+
+} // namespace inr

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/PathTracingGeometry.h"
+
+#include <glm/matrix.hpp>
+
+namespace inr {
+
+InnerRays::InnerRays(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims)
+    : ToWorld(glm::inverse(frame.worldToIndex)), ToIndex(frame.worldToIndex),
+      WorldPerUnit(geometry.worldPerUnit())
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    this->Low[axis] = dims[axis] == 1 ? -0.5 : 0.0;
+    this->High[axis] = dims[axis] == 1 ? 0.5 : static_cast<double>(dims[axis] - 1);
+  }
+  for (const glm::dvec4& plane : frame.clippingPlanes) {
+    this->Planes.push_back(glm::transpose(this->ToWorld) * plane);
+  }
+}
+
+} // namespace inr

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/HostDevice.h"
+#include "Core/Render/Ray.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+
+#include <limits>
+#include <vector>
+
+namespace inr {
+
+/// Rays that start inside the volume. Directions and lengths are the world's, whatever spacing or
+/// shear lies between it and the grid.
+class InnerRays
+{
+public:
+  /// `geometry` has checked the frame.
+  InnerRays(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims);
+
+  /// The ray from point index `from` along the world unit vector `direction`, clipped to the
+  /// visible domain (point bounds), the clipping planes and `limit`, a world length. Neither the
+  /// camera's near and far planes nor opaque geometry stop it. Its footprint is left at 0.
+  INR_HOST_DEVICE Ray ray(const glm::dvec3& from, const glm::dvec3& direction,
+                          double limit = std::numeric_limits<double>::infinity()) const
+  {
+    Ray ray;
+    ray.entry = from;
+    ray.direction = this->ToIndex * direction * this->WorldPerUnit;
+    ray.inverse = 1.0 / ray.direction;
+    ray.length = limit / this->WorldPerUnit;
+    for (int axis = 0; axis < 3; ++axis) {
+      Keep(from[axis] - this->Low[axis], ray.direction[axis], ray.length);
+      Keep(this->High[axis] - from[axis], -ray.direction[axis], ray.length);
+    }
+    for (const glm::dvec4& plane : this->Planes) {
+      Keep(glm::dot(plane, glm::dvec4(from, 1.0)), glm::dot(plane, glm::dvec4(ray.direction, 0.0)),
+           ray.length);
+    }
+    return ray;
+  }
+
+  INR_HOST_DEVICE glm::dvec3 world(const glm::dvec3& index) const
+  {
+    return glm::dvec3(this->ToWorld * glm::dvec4(index, 1.0));
+  }
+  /// World unit vector of a direction in point indices.
+  INR_HOST_DEVICE glm::dvec3 worldDirection(const glm::dvec3& direction) const
+  {
+    return glm::normalize(glm::dmat3(this->ToWorld) * direction);
+  }
+
+private:
+  /// Ends the ray where value + slope * t falls below 0. A start that rounding has put outside
+  /// counts as being on the border.
+  INR_HOST_DEVICE static void Keep(double value, double slope, double& length)
+  {
+    if (slope < 0) {
+      const double end = value > 0 ? -value / slope : 0.0;
+      length = end < length ? end : length;
+    }
+  }
+
+  glm::dmat4 ToWorld;
+  glm::dmat3 ToIndex;
+  glm::dvec3 Low;
+  glm::dvec3 High;
+  std::vector<glm::dvec4> Planes; ///< over point indices
+  double WorldPerUnit;
+};
+
+} // namespace inr
