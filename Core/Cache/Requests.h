@@ -14,7 +14,7 @@ struct Request
 {
   BrickKey key;
   std::uint32_t samples; ///< that wanted it
-  float contribution;    ///< at most so much opacity was at stake, summed over the samples
+  float contribution;    ///< part of the light that still reaches them, summed over the samples
 };
 
 /// What one tile's rays missed, in the order in which they did.

@@ -57,7 +57,6 @@ void BrickRun::open(int level, const BrickSpan& wanted, const BrickSpan& served,
   this->Exact = wanted.key == served.key;
   this->Wish = wanted.key;
   this->Count = 0;
-  this->Weight = 0;
   this->Path.voxels = view.voxels;
   this->Path.base = view.low;
   this->Path.quantum = view.step;

@@ -46,12 +46,7 @@ public:
   double exit() const { return this->Exit; }
   /// Length along `path()` at t.
   float along(double t) const { return static_cast<float>(t - this->Reference); }
-  /// Notes samples; `weight` is the most that each can add to the opacity.
-  void count(int samples, float weight)
-  {
-    this->Count += samples;
-    this->Weight += static_cast<float>(samples) * weight;
-  }
+  void count(int samples) { this->Count += samples; }
 
   const BrickPath& path() const { return this->Path; }
   /// The path's number in the batch being filled.
@@ -63,8 +58,7 @@ public:
   /// The brick to load, which is the wanted one unless said otherwise.
   BrickKey wish() const { return this->Wish; }
   void wishFor(BrickKey brick) { this->Wish = brick; }
-  int count() const { return this->Count; }     ///< samples added
-  float weight() const { return this->Weight; } ///< of these
+  int count() const { return this->Count; } ///< samples so far
 
 private:
   int Level = -1;
@@ -76,7 +70,6 @@ private:
   bool Exact = false;
   BrickKey Wish = 0;
   int Count = 0;
-  float Weight = 0;
 };
 
 } // namespace inr

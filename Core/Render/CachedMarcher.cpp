@@ -96,8 +96,7 @@ CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
   for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= faint; ++k) {
     ++longest;
   }
-  return {state.walker.exit(), range.low, range.high, static_cast<float>(std::min(depth, 1.0)),
-          longest};
+  return {state.walker.exit(), range.low, range.high, longest};
 }
 
 CachedMarcher::Sampling CachedMarcher::samplingAt(const CachedRay& state, const Segment& segment,
@@ -130,8 +129,8 @@ void CachedMarcher::fill(CachedRay& state, const Segment& segment)
       break;
     }
     const int most = this->likeSamples(state, segment, sampling);
-    const int count = state.detail.isDithered() ? this->addDithered(state, segment, sampling, most)
-                                                : this->addAlike(state, segment, sampling, most);
+    const int count = state.detail.isDithered() ? this->addDithered(state, sampling, most)
+                                                : this->addAlike(state, sampling, most);
     state.next += static_cast<std::int64_t>(count) << sampling.multiple;
     if (this->Waiting) {
       break;
@@ -178,8 +177,7 @@ double CachedMarcher::placeOf(const CachedRay& state, const Sampling& sampling, 
   return std::min(t + state.jitter * sampling.length, state.ray.length);
 }
 
-int CachedMarcher::addAlike(const CachedRay& state, const Segment& segment,
-                            const Sampling& sampling, int most)
+int CachedMarcher::addAlike(const CachedRay& state, const Sampling& sampling, int most)
 {
   BrickRun* run = this->runFor(state, state.detail.level(), this->placeOf(state, sampling, 0));
   if (run == nullptr) {
@@ -202,13 +200,12 @@ int CachedMarcher::addAlike(const CachedRay& state, const Segment& segment,
     this->Batch.path[k] = run->place();
     this->Batch.multiple[k] = sampling.multiple;
   }
-  run->count(count, segment.depth);
+  run->count(count);
   this->Count += count;
   return count;
 }
 
-int CachedMarcher::addDithered(const CachedRay& state, const Segment& segment,
-                               const Sampling& sampling, int most)
+int CachedMarcher::addDithered(const CachedRay& state, const Sampling& sampling, int most)
 {
   for (int k = 0; k < most; ++k) {
     const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
@@ -222,7 +219,7 @@ int CachedMarcher::addDithered(const CachedRay& state, const Segment& segment,
     this->Batch.along[this->Count] = run->along(t);
     this->Batch.path[this->Count] = run->place();
     this->Batch.multiple[this->Count] = sampling.multiple;
-    run->count(1, segment.depth);
+    run->count(1);
     ++this->Count;
   }
   return most;
@@ -275,7 +272,7 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
   if (run.count() > 0 && !run.exact()) {
     this->Statistics.missed += run.count();
     this->Requests.add(run.wish(), static_cast<std::uint32_t>(run.count()),
-                       run.weight() * transmittance);
+                       static_cast<float>(run.count()) * transmittance);
   }
   run.close();
 }

@@ -70,7 +70,6 @@ private:
     double exit;
     float low; ///< value range
     float high;
-    float depth; ///< most that a step can add to the optical depth, at most 1
     int longest; ///< log2 of the most steps a sample may stand for
   };
 
@@ -89,9 +88,8 @@ private:
   /// t of sample k from state.next on.
   double placeOf(const CachedRay& state, const Sampling& sampling, int k) const;
   /// Add up to `most` such samples, of one level and brick or of dithered levels; how many.
-  int addAlike(const CachedRay& state, const Segment& segment, const Sampling& sampling, int most);
-  int addDithered(const CachedRay& state, const Segment& segment, const Sampling& sampling,
-                  int most);
+  int addAlike(const CachedRay& state, const Sampling& sampling, int most);
+  int addDithered(const CachedRay& state, const Sampling& sampling, int most);
   BrickRun* runFor(const CachedRay& state, int level, double t);
   bool open(BrickRun& run, const Ray& ray, int level, double t);
   void close(BrickRun& run, float transmittance);

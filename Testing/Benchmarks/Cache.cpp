@@ -249,6 +249,7 @@ void Ranking(const inr::ModelPointer& model, const Look& look, const std::string
     for (const bool ranked : {false, true}) {
       inr::RendererOptions options = Cached();
       options.cache.ranking = ranked;
+      options.cache.preloading = false;
       options.cache.maximumRequests = 4;
       inr::Renderer renderer(Scaled(model, 1024), options);
       renderer.setTransferFunction(look.function);
