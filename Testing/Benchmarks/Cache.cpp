@@ -302,17 +302,23 @@ void TransferFunctionChange(const inr::ModelPointer& model, const Look& look)
 
 int main(int argc, char* argv[])
 {
-  if (argc != 3) {
-    std::cerr << "usage: bench_cache MODEL.inr NAME\n";
+  const bool framesOnly = argc == 4 && std::string(argv[3]) == "frames";
+  if (argc != 3 && !framesOnly) {
+    std::cerr << "usage: bench_cache MODEL.inr NAME [frames]\n";
     return 2;
   }
   const inr::ModelPointer model = inr::ReadModel(argv[1]);
-  for (const Look& look : Looks(model->volume)) {
+  const std::vector<Look> looks = Looks(model->volume);
+  for (const Look& look : looks) {
     CompareWithUncached(model, look, argv[2]);
     SteadyMisses(model, look, argv[2]);
-    Ranking(model, look, argv[2]);
   }
-  Growth(model, Looks(model->volume).front(), argv[2]); // minutes: a terabyte is decoded in parts
-  TransferFunctionChange(model, Looks(model->volume).front());
+  TransferFunctionChange(model, looks.front());
+  if (!framesOnly) {
+    for (const Look& look : looks) {
+      Ranking(model, look, argv[2]);
+    }
+    Growth(model, looks.front(), argv[2]);
+  }
   return 0;
 }

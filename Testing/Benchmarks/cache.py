@@ -4,7 +4,9 @@
 
     cmake --preset vtk -DINR_BUILD_BENCHMARKS=ON && cmake --build --preset vtk
     Testing/with-display.sh Testing/Benchmarks/cache.py build-vtk/Testing/Benchmarks \\
-        rm_mixing=MODEL.inr [NAME=MODEL.inr...]
+        NAME=MODEL.inr [NAME=MODEL.inr:frames...]
+
+":frames" leaves out what takes minutes.
 """
 import json
 import subprocess
@@ -17,10 +19,12 @@ folder = Path(sys.argv[1])
 results = []
 for argument in sys.argv[2:]:
     name, model = argument.split("=", 1)
-    for program in ("bench_against_vtk", "bench_cache"):
+    model, _, part = model.partition(":")
+    for program, more in (("bench_against_vtk", []), ("bench_cache", [part] if part else [])):
         if not (folder / program).exists():
             continue
-        process = subprocess.Popen([folder / program, model, name], stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen([folder / program, model, name, *more], stdout=subprocess.PIPE,
+                                   text=True)
         for line in process.stdout:
             if line.startswith("{"):
                 result = json.loads(line)
