@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Render/Lights.h"
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
@@ -27,6 +29,9 @@ struct Frame
   const float* opaqueDepth = nullptr;
   /// World-space half spaces; a point p is kept where dot(plane, (p, 1)) >= 0 for all of them.
   std::vector<glm::dvec4> clippingPlanes;
+
+  /// The scene's, for what is lit: none of them shines on a medium that only emits and absorbs.
+  std::vector<Light> lights;
 
   /// World length to which the transfer function's opacity refers; above 0.
   double unitDistance = 1;

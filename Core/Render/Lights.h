@@ -30,6 +30,14 @@ struct Light
   glm::dvec3 attenuation{1.0, 0.0, 0.0};
   double coneAngle = 30; ///< of a spot, degrees from its axis to its rim, above 0 up to 90
   double exponent = 1; ///< of a spot: irradiance is in proportion to cos(angle from axis)^exponent
+
+  bool operator==(const Light& other) const
+  {
+    return this->kind == other.kind && this->position == other.position &&
+           this->direction == other.direction && this->color == other.color &&
+           this->attenuation == other.attenuation && this->coneAngle == other.coneAngle &&
+           this->exponent == other.exponent;
+  }
 };
 
 /// What a point gets from a light where nothing is in between.

@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "SceneCheck.h"
+#include "SceneLights.h"
 #include "vtkINRDataArray.h"
 
 #include <vtkAbstractArray.h>
@@ -64,6 +65,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.clippingPlanes = ClippingPlanes(mapper->GetClippingPlanes());
   const auto piece = PiecePlanes(grid, frame.worldToIndex);
   frame.clippingPlanes.insert(frame.clippingPlanes.end(), piece.begin(), piece.end());
+  frame.lights = SceneLights(renderer);
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
   frame.sampleDistance = settings.sampleDistance;
   frame.adaptiveSampling = settings.adaptiveSampling;
