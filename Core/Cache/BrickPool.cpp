@@ -12,6 +12,41 @@ namespace {
 
 constexpr std::int64_t RoomBehind = 64;
 
+struct Range
+{
+  float low, high;
+};
+
+/// The least and the greatest of at least one value.
+Range RangeOf(const float* values, std::int64_t count)
+{
+  constexpr std::int64_t lanes = 16; // side by side, for the compiler to make vectors of
+  float low[lanes];
+  float high[lanes];
+  std::fill_n(low, lanes, values[0]);
+  std::fill_n(high, lanes, values[0]);
+  const std::int64_t whole = count - count % lanes;
+  for (std::int64_t k = 0; k < whole; k += lanes) {
+    for (std::int64_t lane = 0; lane < lanes; ++lane) {
+      const float value = values[k + lane];
+      low[lane] = value < low[lane] ? value : low[lane];
+      high[lane] = value > high[lane] ? value : high[lane];
+    }
+  }
+  for (std::int64_t k = whole; k < count; ++k) {
+    low[0] = std::min(low[0], values[k]);
+    high[0] = std::max(high[0], values[k]);
+  }
+  return {*std::min_element(low, low + lanes), *std::max_element(high, high + lanes)};
+}
+
+/// Zero for a constant brick, else at least the smallest step whose inverse is finite.
+float StepOf(const Range& range, float steps)
+{
+  const float width = range.high - range.low;
+  return width > 0 ? std::max(width / steps, std::numeric_limits<float>::min()) : 0.0f;
+}
+
 template <typename Stored>
 void Quantise(const float* values, std::int64_t count, float low, float step, unsigned char* to)
 {
@@ -19,8 +54,9 @@ void Quantise(const float* values, std::int64_t count, float low, float step, un
   const float inverse = step > 0 ? 1.0f / step : 0.0f;
   auto* stored = reinterpret_cast<Stored*>(to);
   for (std::int64_t k = 0; k < count; ++k) {
-    const float scaled = std::min((values[k] - low) * inverse + 0.5f, most);
-    stored[k] = static_cast<Stored>(scaled);
+    const float scaled = (values[k] - low) * inverse + 0.5f;
+    // By way of int, which vectors convert to.
+    stored[k] = static_cast<Stored>(static_cast<int>(scaled < most ? scaled : most));
   }
 }
 
@@ -49,10 +85,9 @@ void BrickPool::store(std::int32_t slot, const float* values)
     std::memcpy(this->brick(slot), values, static_cast<std::size_t>(this->BytesPerBrick));
     return;
   }
-  const auto range = std::minmax_element(values, values + this->VoxelsPerBrick);
+  const Range range = RangeOf(values, this->VoxelsPerBrick);
   const bool wide = this->Precision == CachePrecision::Bits16;
-  scale.low = *range.first;
-  scale.step = (*range.second - *range.first) / (wide ? 65535.0f : 255.0f);
+  scale = {range.low, StepOf(range, wide ? 65535.0f : 255.0f)};
   const auto quantise = wide ? Quantise<std::uint16_t> : Quantise<std::uint8_t>;
   quantise(values, this->VoxelsPerBrick, scale.low, scale.step, this->brick(slot));
 }

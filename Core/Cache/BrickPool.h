@@ -30,6 +30,7 @@ public:
 
   CachePrecision precision() const { return this->Precision; }
   std::int64_t slots() const { return static_cast<std::int64_t>(this->Scales.size()); }
+  /// `values`: voxelsPerBrick finite ones.
   void store(std::int32_t slot, const float* values);
   BrickView view(std::int32_t slot) const;
 

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -60,6 +62,38 @@ TEST(BrickPool, KeepsAConstantBrickExactly)
   const std::vector<float> values(Voxels, 0.3f);
   EXPECT_EQ(LargestError(inr::CachePrecision::Bits16, values), 0.0f);
   EXPECT_EQ(LargestError(inr::CachePrecision::Bits8, values), 0.0f);
+}
+
+// Of which a quantum is too small for its inverse to be a float.
+TEST(BrickPool, KeepsRangesThatAreHardlyThere)
+{
+  for (const float high : {1e-44f, 1e-40f, 3e-38f, 1e-36f, 1e-34f}) {
+    const std::vector<float> values = RandomBrick(0.0f, high);
+    const float smallest = std::numeric_limits<float>::min();
+    for (const auto precision : {inr::CachePrecision::Bits16, inr::CachePrecision::Bits8}) {
+      const float quanta = precision == inr::CachePrecision::Bits16 ? 65535 : 255;
+      const float quantum = std::max(high / quanta, smallest);
+      EXPECT_LE(LargestError(precision, values), 0.5f * quantum + 1e-5f * high) << high;
+    }
+  }
+}
+
+// Whole vectors of voxels and what remains of them, with the extremes anywhere.
+TEST(BrickPool, FindsTheRangeOfAnyNumberOfVoxels)
+{
+  for (std::int64_t count = 1; count < 70; ++count) {
+    for (std::int64_t at = 0; at < count; ++at) {
+      std::vector<float> values(static_cast<std::size_t>(count), 0.5f);
+      values[static_cast<std::size_t>(at)] = 0.875f;
+      values[static_cast<std::size_t>((at + 1) % count)] = count > 1 ? 0.125f : 0.875f;
+      inr::BrickPool pool(inr::CachePrecision::Bits8, count, 1);
+      pool.store(0, values.data());
+      for (std::int64_t k = 0; k < count; ++k) {
+        ASSERT_NEAR(Stored(pool, 0, k), values[static_cast<std::size_t>(k)],
+                    0.75f / 255 / 2 + 1e-6f);
+      }
+    }
+  }
 }
 
 TEST(BrickPool, SlotsAreApart)
