@@ -24,6 +24,8 @@ PageTable::PageTable(std::int64_t bricks)
       Entries(static_cast<std::size_t>(bricks * EntriesPerPage), Unmapped),
       Mapped(static_cast<std::size_t>(bricks), 0)
 {
+  // Growing would take more than was asked for.
+  this->Free.reserve(static_cast<std::size_t>(bricks));
   for (auto page = static_cast<std::int32_t>(bricks); page > 0; --page) {
     this->Free.push_back(page - 1);
   }

@@ -60,4 +60,31 @@ TEST(PageTable, HasPagesOnlyForWhatIsMapped)
   EXPECT_EQ(table.pages(), 1);
 }
 
+// The volume has 3.8e10 bricks; the table knows nothing but the number that may be mapped.
+TEST(PageTable, MemoryFollowsWhatIsMappedInAHugeVolume)
+{
+  constexpr std::int64_t bricks = 100000;
+  EXPECT_LE(inr::PageTable::bytesFor(bricks), bricks * 400);
+  inr::PageTable table(bricks);
+  std::map<inr::BrickKey, std::int32_t> model;
+  for (std::uint64_t k = 0; static_cast<std::int64_t>(model.size()) < bricks; ++k) {
+    const auto slot = static_cast<std::int32_t>(model.size());
+    if (model.emplace(RandomKey(k, 3361), slot).second) {
+      table.map(RandomKey(k, 3361), slot);
+    }
+  }
+  EXPECT_LE(table.pages(), bricks);
+  for (const auto& entry : model) {
+    ASSERT_EQ(table.find(entry.first), entry.second);
+  }
+  for (std::uint64_t k = 0; k < 100000; ++k) {
+    const inr::BrickKey key = RandomKey(k + (std::uint64_t{1} << 40), 3361);
+    ASSERT_EQ(table.find(key) < 0, model.count(key) == 0);
+  }
+  for (const auto& entry : model) {
+    table.unmap(entry.first);
+  }
+  EXPECT_EQ(table.pages(), 0);
+}
+
 } // namespace
