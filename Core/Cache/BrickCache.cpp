@@ -2,9 +2,10 @@
 #include "Core/Cache/BrickCache.h"
 
 #include "Core/Error.h"
+#include "Core/Random.h"
 
 #include <algorithm>
-#include <limits>
+#include <functional>
 #include <string>
 
 namespace inr {
@@ -17,7 +18,7 @@ std::int64_t BrickCache::bytesFor(const Hierarchy& hierarchy, CachePrecision pre
                                   std::int64_t bricks)
 {
   const auto perSlot =
-      static_cast<std::int64_t>(sizeof(BrickKey) + sizeof(std::uint64_t) + sizeof(std::int32_t));
+      static_cast<std::int64_t>(sizeof(BrickKey) + 2 * sizeof(std::uint64_t)); // use, candidate
   return BrickPool::bytesFor(precision, hierarchy.voxelsPerBrick(), bricks) +
          PageTable::bytesFor(bricks) + bricks * perSlot;
 }
@@ -27,7 +28,7 @@ std::int64_t BrickCache::capacityFor(const Hierarchy& hierarchy, CachePrecision 
 {
   // More than the volume has would stay empty.
   std::int64_t most = 0;
-  constexpr std::int64_t enough = std::numeric_limits<std::int32_t>::max() / 64;
+  constexpr std::int64_t enough = (std::int64_t{1} << SlotBits) - 1;
   for (int level = 0; level < hierarchy.levels() && most < enough; ++level) {
     const glm::i64vec3& bricks = hierarchy.bricks(level);
     most += bricks.x * bricks.y * bricks.z;
@@ -61,6 +62,7 @@ BrickCache::BrickCache(const Hierarchy& hierarchy, CachePrecision precision, std
   for (std::int64_t slot = 0; slot < this->capacity(); ++slot) {
     this->LastUse[static_cast<std::size_t>(slot)] = 0;
   }
+  this->Candidates.reserve(static_cast<std::size_t>(this->capacity())); // within the budget
 }
 
 std::int64_t BrickCache::bytes() const
@@ -74,40 +76,65 @@ std::int64_t BrickCache::usedInFrame() const
   return std::count_if(this->LastUse.get(), this->LastUse.get() + this->capacity(), isUsed);
 }
 
-void BrickCache::beginFrame()
+void BrickCache::beginFrame() { ++this->Frame; }
+
+// The first few per cent of all that can be evicted, from a sample drawn by a fixed rule: sorting
+// all of them would take longer than a frame may wait.
+std::uint64_t BrickCache::lastCandidate() const
 {
-  ++this->Frame;
-  this->CandidatesKnown = false;
+  constexpr std::int64_t samples = 2048;
+  const std::int64_t stride = this->capacity() / samples;
+  if (stride < 2) {
+    return ~std::uint64_t{0};
+  }
+  std::vector<std::uint64_t> sample;
+  for (std::int64_t k = 0; k < samples; ++k) {
+    // Not evenly: what is in use may be, too.
+    const std::uint64_t within = MixBits(static_cast<std::uint64_t>(k));
+    const auto offset = static_cast<std::int64_t>(within % static_cast<std::uint64_t>(stride));
+    const auto slot = static_cast<std::int32_t>(k * stride + offset);
+    if (this->lastUse(slot) < this->Frame) {
+      sample.push_back(this->candidate(slot));
+    }
+  }
+  const std::size_t wanted =
+      static_cast<std::size_t>(std::max<std::int64_t>(samples / 32, 1024 / stride));
+  if (sample.size() <= wanted) {
+    return ~std::uint64_t{0};
+  }
+  const auto last = sample.begin() + static_cast<std::ptrdiff_t>(wanted);
+  std::nth_element(sample.begin(), last, sample.end());
+  return *last;
 }
 
 void BrickCache::findCandidates()
 {
-  this->Candidates.clear();
+  const std::uint64_t last = this->lastCandidate();
   const auto slots = static_cast<std::int32_t>(this->capacity());
   for (std::int32_t slot = 0; slot < slots; ++slot) {
-    if (this->LastUse[static_cast<std::size_t>(slot)] < this->Frame) {
-      this->Candidates.push_back(slot);
+    const std::uint64_t candidate = this->candidate(slot);
+    if (candidate <= last && this->lastUse(slot) < this->Frame) {
+      this->Candidates.push_back(candidate);
     }
   }
-  const auto older = [this](std::int32_t a, std::int32_t b) {
-    const std::uint64_t usedA = this->LastUse[static_cast<std::size_t>(a)];
-    const std::uint64_t usedB = this->LastUse[static_cast<std::size_t>(b)];
-    return usedA != usedB ? usedA > usedB : a > b;
-  };
-  std::sort(this->Candidates.begin(), this->Candidates.end(), older);
-  this->CandidatesKnown = true;
+  std::sort(this->Candidates.begin(), this->Candidates.end(), std::greater<>());
 }
 
 std::int32_t BrickCache::freeSlot()
 {
-  if (!this->CandidatesKnown) {
+  constexpr std::uint64_t slotMask = (std::uint64_t{1} << SlotBits) - 1;
+  while (this->ExhaustedIn != this->Frame) {
+    while (!this->Candidates.empty()) {
+      const std::uint64_t candidate = this->Candidates.back();
+      this->Candidates.pop_back();
+      const auto slot = static_cast<std::int32_t>(candidate & slotMask);
+      if (this->candidate(slot) == candidate) { // not used since
+        return slot;
+      }
+    }
     this->findCandidates();
-  }
-  while (!this->Candidates.empty()) {
-    const std::int32_t slot = this->Candidates.back();
-    this->Candidates.pop_back();
-    if (this->LastUse[static_cast<std::size_t>(slot)] < this->Frame) { // not touched since
-      return slot;
+    if (this->Candidates.empty()) {
+      this->ExhaustedIn = this->Frame;
     }
   }
   return -1;

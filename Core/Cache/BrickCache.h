@@ -42,8 +42,8 @@ public:
     }
   }
 
-  std::int64_t
-  usedInFrame() const; ///< bricks touched or inserted since beginFrame, and pinned ones
+  /// Bricks touched or inserted since beginFrame, and pinned ones. Looks at all slots.
+  std::int64_t usedInFrame() const;
 
   /// Bricks touched or inserted from here on are not evicted until the next call.
   void beginFrame();
@@ -58,11 +58,23 @@ private:
                                std::int64_t bricks);
   static std::int64_t capacityFor(const Hierarchy& hierarchy, CachePrecision precision,
                                   std::int64_t bytes);
+  std::uint64_t lastUse(std::int32_t slot) const
+  {
+    return this->LastUse[static_cast<std::size_t>(slot)].load(std::memory_order_relaxed);
+  }
+  /// A slot in the order in which slots are evicted: by last use, then by number. A pinned one's
+  /// use, with its upper bits gone, is still later than any frame.
+  std::uint64_t candidate(std::int32_t slot) const
+  {
+    return this->lastUse(slot) << SlotBits | static_cast<std::uint64_t>(slot);
+  }
+  std::uint64_t lastCandidate() const;
   std::int32_t freeSlot();
   void findCandidates();
 
   static constexpr std::uint64_t Pinned = ~std::uint64_t{0};
   static constexpr BrickKey NoBrick = ~BrickKey{0};
+  static constexpr int SlotBits = 25; ///< leaves frames for 17 years at a thousand a second
 
   Hierarchy Levels;
   BrickPool Pool;
@@ -72,9 +84,11 @@ private:
   std::vector<BrickKey> Owners; ///< of each slot
   /// Frame in which each slot was last used, 0 = empty.
   std::unique_ptr<std::atomic<std::uint64_t>[]> LastUse;
-  /// Slots that may be evicted before the next frame, the least recently used last.
-  std::vector<std::int32_t> Candidates;
-  bool CandidatesKnown = false;
+  /// The first slots in that order, the very first at the end. Uses only get later, so one not used
+  /// since it came in here is still before all others, and all slots are looked at only when the
+  /// list has run out.
+  std::vector<std::uint64_t> Candidates;
+  std::uint64_t ExhaustedIn = 0; ///< frame in which nothing can be evicted any more
 };
 
 } // namespace inr

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
+#include <unordered_map>
+#include <utility>
 
 namespace {
 
@@ -120,5 +123,89 @@ TEST_F(BrickCacheTest, EvictsTheLeastRecentlyUsedAsASimpleModelDoes)
     }
   }
 }
+
+/// What the cache should do, on a set sorted by last use and slot.
+class SimpleCache
+{
+public:
+  explicit SimpleCache(std::int64_t slots)
+  {
+    for (std::int32_t slot = 0; slot < slots; ++slot) {
+      this->Order.insert({0, slot});
+      this->Owner.push_back(-1);
+    }
+  }
+
+  std::int32_t find(std::int64_t k) const
+  {
+    const auto at = this->Slot.find(k);
+    return at == this->Slot.end() ? inr::PageTable::Unmapped : at->second;
+  }
+  void use(std::int32_t slot, std::uint64_t frame)
+  {
+    const auto index = static_cast<std::size_t>(slot);
+    this->Order.erase({this->LastUse[slot], slot});
+    this->LastUse[slot] = std::max(this->LastUse[slot], frame);
+    this->Order.insert({this->LastUse[slot], slot});
+    ASSERT_GE(this->Owner[index], 0);
+  }
+  bool insert(std::int64_t k, std::uint64_t frame)
+  {
+    const auto [lastUse, slot] = *this->Order.begin();
+    if (lastUse >= frame) {
+      return false;
+    }
+    std::int64_t& owner = this->Owner[static_cast<std::size_t>(slot)];
+    this->Slot.erase(owner);
+    owner = k;
+    this->Slot[k] = slot;
+    this->use(slot, frame);
+    return true;
+  }
+  std::int64_t mapped() const { return static_cast<std::int64_t>(this->Slot.size()); }
+
+private:
+  std::set<std::pair<std::uint64_t, std::int32_t>> Order;
+  std::unordered_map<std::int32_t, std::uint64_t> LastUse;
+  std::unordered_map<std::int64_t, std::int32_t> Slot; ///< of a brick
+  std::vector<std::int64_t> Owner;
+};
+
+/// Random frames on a cache of about `slots`, of which each uses up to `uses` bricks out of
+/// `bricks`: every brick must be in the very slot where the simple cache has it.
+void CompareWithASimpleCache(std::int64_t slots, std::uint64_t bricks, std::uint64_t uses)
+{
+  const inr::Hierarchy levels({1500000, 2, 2}, 4);
+  const auto key = [](std::int64_t k) { return inr::KeyOf({0, {k, 0, 0}}); };
+  inr::BrickCache cache(levels, inr::CachePrecision::Bits8, slots * 400);
+  SimpleCache model(cache.capacity());
+  const std::vector<float> values(16, 0.5f);
+  for (std::uint64_t frame = 2; frame < 200; ++frame) {
+    cache.beginFrame();
+    const std::uint64_t inFrame = inr::RandomBits(1, frame) % uses;
+    for (std::uint64_t use = 0; use < inFrame; ++use) {
+      const auto k = static_cast<std::int64_t>(inr::RandomBits(frame, use) % bricks);
+      const std::int32_t slot = cache.find(key(k));
+      ASSERT_EQ(slot, model.find(k));
+      if (slot < 0) {
+        ASSERT_EQ(cache.insert(key(k), values.data()), model.insert(k, frame));
+        ASSERT_EQ(cache.find(key(k)), model.find(k));
+        continue;
+      }
+      cache.touch(slot);
+      const bool pinned = use == 7 && frame % 5 == 0;
+      model.use(slot, pinned ? ~std::uint64_t{0} : frame);
+      if (pinned) {
+        cache.pin(key(k));
+      }
+    }
+    ASSERT_EQ(cache.mapped(), model.mapped());
+  }
+}
+
+TEST(BrickCacheTraces, AFewSlots) { CompareWithASimpleCache(60, 150, 40); }
+TEST(BrickCacheTraces, MoreUsedInAFrameThanThereAreSlots) { CompareWithASimpleCache(60, 500, 300); }
+TEST(BrickCacheTraces, ManySlots) { CompareWithASimpleCache(20000, 60000, 6000); }
+TEST(BrickCacheTraces, ManySlotsOfWhichMostAreInUse) { CompareWithASimpleCache(6000, 9000, 20000); }
 
 } // namespace
