@@ -93,6 +93,79 @@ TEST(Hierarchy, LocatesAPointAtItsPlaceInEveryLevel)
   }
 }
 
+/// Where a level of `size` voxels shows position `voxel`: the definition, in whole numbers.
+std::int64_t BrickByDefinition(std::int64_t voxel, std::int64_t size, std::int64_t stride)
+{
+  std::int64_t brick = 0;
+  const std::int64_t first = std::min(voxel, std::max<std::int64_t>(size - 2, 0));
+  while ((brick + 1) * stride <= first) {
+    ++brick;
+  }
+  return brick;
+}
+
+TEST(Hierarchy, EveryVoxelOfASmallVolumeIsWhereTheDefinitionPutsIt)
+{
+  for (const int edge : {4, 5, 8}) {
+    for (std::int64_t voxels = 1; voxels < 70; ++voxels) {
+      const inr::Hierarchy levels({voxels, 3, 1}, edge);
+      for (int level = 0; level < levels.levels(); ++level) {
+        const std::int64_t size = levels.size(level).x;
+        const std::int64_t stride = levels.brickDims().x - 1;
+        for (std::int64_t v = 0; v < size; ++v) {
+          // Just above the voxel, so that rounding cannot decide.
+          const double place =
+              std::min(static_cast<double>(v) + 1e-7, static_cast<double>(size - 1));
+          const double index = (place - levels.bias(level).x) / levels.scale(level).x;
+          const auto brick = levels.locate(level, {index, 0, 0}).brick.at.x;
+          ASSERT_EQ(brick, BrickByDefinition(v, size, stride)) << voxels << ' ' << v;
+          ASSERT_LT(brick, levels.bricks(level).x);
+        }
+        ASSERT_EQ(BrickByDefinition(size - 1, size, stride), levels.bricks(level).x - 1);
+      }
+    }
+  }
+}
+
+// Trilinear weights of voxel pairs make a linear field whole, whichever brick serves the sample.
+TEST(Hierarchy, ALinearFieldIsContinuousAcrossTheFacesOfEveryLevel)
+{
+  for (const i64vec3& dims : Sizes) {
+    const inr::Hierarchy levels(dims, 40);
+    for (int level = 0; level < levels.levels(); ++level) {
+      const std::int64_t stride = levels.brickDims().x - 1;
+      const std::int64_t bricks = levels.bricks(level).x;
+      for (const std::int64_t face : {std::int64_t{1}, bricks / 2, bricks - 1}) {
+        if (face < 1 || face >= bricks) {
+          continue;
+        }
+        const double step = 1e-6;
+        for (const double offset : {-step, 0.0, step}) {
+          const double place = static_cast<double>(face * stride) + offset;
+          const double index = (place - levels.bias(level).x) / levels.scale(level).x;
+          const inr::Hierarchy::Location at = levels.locate(level, {index, 0, 0});
+          const double value = static_cast<double>(at.brick.at.x * stride) + at.local.x;
+          EXPECT_NEAR(value, place, 1e-9 * static_cast<double>(levels.size(level).x));
+          if (offset != 0) { // exactly on the face either is right
+            EXPECT_EQ(at.brick.at.x, offset < 0 ? face - 1 : face) << level;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Hierarchy, CountsTheBricksOfLargeVolumes)
+{
+  const inr::Hierarchy wide({10240, 7680, 1536}, 40);
+  EXPECT_EQ(wide.bricks(0), i64vec3(263, 197, 40)); // (n - 1)/39, rounded up
+  EXPECT_EQ(wide.levels(), 9);                      // 10240 / 2^8 = 40
+  EXPECT_EQ(wide.size(8), i64vec3(40, 30, 6));
+  const inr::Hierarchy huge(i64vec3(131072), 40);
+  EXPECT_EQ(huge.bricks(0), i64vec3(3361));
+  EXPECT_EQ(huge.levels(), 13);
+}
+
 TEST(Hierarchy, RefusesNonsense)
 {
   EXPECT_THROW(inr::Hierarchy({0, 1, 1}, 40), inr::Error);
