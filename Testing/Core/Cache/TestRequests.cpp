@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/Requests.h"
+#include "Core/Random.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
 
 namespace {
 
@@ -55,6 +59,76 @@ TEST(Requests, SumsDoNotDependOnHowAListWasMade)
   ranking.add(apart);
   EXPECT_EQ(ranking.count(), 20);
   EXPECT_EQ(ranking.ranked(1, true).front(), Brick(0, 19));
+}
+
+/// A wish that is `place`-th in a picture of random wishes for a few hundred bricks.
+inr::Request RandomWish(std::uint64_t picture, std::uint64_t place)
+{
+  const std::uint64_t bits = inr::RandomBits(picture, place);
+  const int level = static_cast<int>(bits % 5);
+  const auto x = static_cast<std::int64_t>(bits / 5 % (300U >> level));
+  // Halves add up exactly in any order, and often to the same.
+  return {Brick(level, x), 1 + static_cast<std::uint32_t>(bits >> 60),
+          0.5f * static_cast<float>(bits >> 40 & 3)};
+}
+
+/// The bricks of one picture, ranked by adding up in a map and sorting in the order that is
+/// promised.
+std::vector<inr::BrickKey> RankedByASimpleModel(const std::vector<inr::Request>& wishes)
+{
+  std::map<inr::BrickKey, double> contributions;
+  for (const inr::Request& wish : wishes) {
+    contributions[wish.key] += static_cast<double>(wish.contribution);
+  }
+  std::vector<inr::BrickKey> keys;
+  for (const auto& entry : contributions) {
+    keys.push_back(entry.first); // in order of the keys, which a stable sort keeps
+  }
+  std::stable_sort(keys.begin(), keys.end(), [](inr::BrickKey a, inr::BrickKey b) {
+    return inr::IdOf(a).level > inr::IdOf(b).level;
+  });
+  std::stable_sort(keys.begin(), keys.end(), [&](inr::BrickKey a, inr::BrickKey b) {
+    return contributions[a] > contributions[b];
+  });
+  return keys;
+}
+
+std::vector<inr::BrickKey> InOrderOfAppearance(const std::vector<inr::Request>& wishes)
+{
+  std::vector<inr::BrickKey> keys;
+  for (const inr::Request& wish : wishes) {
+    if (std::find(keys.begin(), keys.end(), wish.key) == keys.end()) {
+      keys.push_back(wish.key);
+    }
+  }
+  return keys;
+}
+
+TEST(Requests, AreRankedAsASimpleModelRanksThem)
+{
+  for (std::uint64_t picture = 0; picture < 100; ++picture) {
+    std::vector<inr::Request> wishes(inr::RandomBits(7, picture) % 2000);
+    inr::RequestRanking ranking;
+    inr::RequestList tile;
+    for (std::uint64_t k = 0; k < wishes.size(); ++k) {
+      wishes[k] = RandomWish(picture, k);
+      tile.add(wishes[k].key, wishes[k].samples, wishes[k].contribution);
+      if (k % 90 == 89) {
+        ranking.add(tile);
+        tile = {};
+      }
+    }
+    ranking.add(tile);
+    std::vector<inr::BrickKey> best = RankedByASimpleModel(wishes);
+    std::vector<inr::BrickKey> first = InOrderOfAppearance(wishes);
+    ASSERT_EQ(ranking.count(), static_cast<std::int64_t>(best.size()));
+    ASSERT_EQ(ranking.ranked(10000, true), best) << picture;
+    ASSERT_EQ(ranking.ranked(10000, false), first) << picture;
+    best.resize(std::min<std::size_t>(best.size(), 40));
+    first.resize(best.size());
+    ASSERT_EQ(ranking.ranked(40, true), best) << picture;
+    ASSERT_EQ(ranking.ranked(40, false), first) << picture;
+  }
 }
 
 } // namespace
