@@ -34,10 +34,13 @@ void Check(const TransferFunction& function)
           "a transfer function's colours must be finite and its opacities in [0, 1]");
 }
 
+float ExtinctionOf(const glm::vec4& entry) { return -std::log1p(-entry.w); }
+
 } // namespace
 
 ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volume)
-    : Entries(function.table)
+    : Entries(function.table), Below(ExtinctionOf(function.below)),
+      Above(ExtinctionOf(function.above))
 {
   Check(function);
   const double last = static_cast<double>(this->Entries.size() - 1);
@@ -60,7 +63,7 @@ ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volum
   }
   this->Maxima.emplace_back();
   for (const glm::vec4& entry : this->Entries) {
-    this->Maxima[0].push_back(entry.w);
+    this->Maxima[0].push_back(ExtinctionOf(entry));
   }
   for (std::size_t span = 2; span <= this->Entries.size(); span *= 2) {
     const std::vector<float>& half = this->Maxima.back();
@@ -74,32 +77,29 @@ ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volum
 
 float ColorTable::maximumOverNodes(int first, int last) const
 {
-  const int count = last - first + 1;
-  int level = 0;
-  while ((2 << level) <= count) {
-    ++level;
-  }
+  const auto count = static_cast<unsigned>(last - first + 1);
+  const int level = 31 - __builtin_clz(count);
   const std::vector<float>& row = this->Maxima[static_cast<std::size_t>(level)];
   const int lastSpan = last - (1 << level) + 1;
   return std::max(row[static_cast<std::size_t>(first)], row[static_cast<std::size_t>(lastSpan)]);
 }
 
-float ColorTable::maximumOpacity(const ValueRange& range) const
+float ColorTable::maximumExtinction(const ValueRange& range) const
 {
   if (range.empty()) {
     return 0.0f;
   }
-  // Between nodes opacity is linear: the extremes are at the nodes inside and at the two ends.
+  // Between nodes opacity is linear: its extremes are at the nodes inside and at the two ends.
   // Taking the nodes just outside instead of the ends also covers the rounding of the coordinate.
   const float begin = this->Lookup.coordinate(range.low);
   const float end = this->Lookup.coordinate(range.high);
   const auto top = static_cast<float>(this->Lookup.count - 1);
   float maximum = 0.0f;
   if (begin <= 0.0f) {
-    maximum = std::max(maximum, this->Lookup.below.w);
+    maximum = std::max(maximum, this->Below);
   }
   if (end >= top) {
-    maximum = std::max(maximum, this->Lookup.above.w);
+    maximum = std::max(maximum, this->Above);
   }
   if (end < -1.0f || begin > top + 1.0f) {
     return maximum;

@@ -61,15 +61,18 @@ public:
 
   const ColorLookup& lookup() const { return this->Lookup; }
 
-  /// Largest opacity over the normalised values [low, high]; 0 for an empty range.
-  float maximumOpacity(const ValueRange& range) const;
+  /// Largest extinction, -ln(1 - opacity), over the normalised values [low, high]; 0 for an empty
+  /// range.
+  float maximumExtinction(const ValueRange& range) const;
 
 private:
   float maximumOverNodes(int first, int last) const;
 
   std::vector<glm::vec4> Entries;
-  /// Maxima[k][i]: largest opacity of entries i .. i + 2^k - 1.
+  /// Maxima[k][i]: largest extinction of entries i .. i + 2^k - 1.
   std::vector<std::vector<float>> Maxima;
+  float Below; ///< extinction outside the transfer function's range
+  float Above;
   ColorLookup Lookup;
 };
 

@@ -3,8 +3,6 @@
 
 #include "Core/Parallel.h"
 
-#include <cmath>
-
 namespace inr {
 
 Majorants::Majorants(const MacroCells& cells)
@@ -21,7 +19,7 @@ void Majorants::update(const ColorTable& colors, const Arena& arena)
   arena.forEachBlock(count, cellsPerTask, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t k = begin; k < end; ++k) {
       const auto cell = static_cast<std::size_t>(k);
-      this->Extinctions[cell] = -std::log1p(-colors.maximumOpacity(this->Ranges[cell]));
+      this->Extinctions[cell] = colors.maximumExtinction(this->Ranges[cell]);
     }
   });
 }

@@ -69,10 +69,10 @@ TEST(ColorTable, MajorantBoundsEveryValueOfARange)
     if (low > high) {
       std::swap(low, high);
     }
-    const float bound = table.maximumOpacity({low, high});
+    const float bound = table.maximumExtinction({low, high});
     for (int k = 0; k <= 200; ++k) {
       const float y = std::min(high, low + (high - low) * static_cast<float>(k) / 200.0f);
-      ASSERT_LE(table.lookup().at(y).w, bound) << "seed " << seed << " y " << y;
+      ASSERT_LE(-std::log1p(-table.lookup().at(y).w), bound) << "seed " << seed << " y " << y;
     }
   }
 }
@@ -81,12 +81,12 @@ TEST(ColorTable, MajorantIsTight)
 {
   inr::TransferFunction function;
   function.table.assign(101, glm::vec4(0));
-  function.table[50].w = 1.0f;
+  function.table[50].w = 0.9f;
   const inr::ColorTable table(function, Range(0, 1));
-  EXPECT_EQ(table.maximumOpacity({0.0f, 0.47f}), 0.0f);
-  EXPECT_EQ(table.maximumOpacity({0.53f, 1.0f}), 0.0f);
-  EXPECT_EQ(table.maximumOpacity({0.2f, 0.8f}), 1.0f);
-  EXPECT_EQ(table.maximumOpacity({1.0f, -1.0f}), 0.0f); // empty
+  EXPECT_EQ(table.maximumExtinction({0.0f, 0.47f}), 0.0f);
+  EXPECT_EQ(table.maximumExtinction({0.53f, 1.0f}), 0.0f);
+  EXPECT_EQ(table.maximumExtinction({0.2f, 0.8f}), -std::log1p(-0.9f));
+  EXPECT_EQ(table.maximumExtinction({1.0f, -1.0f}), 0.0f); // empty
 }
 
 TEST(ColorTable, RefusesNonsense)
