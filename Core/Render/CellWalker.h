@@ -38,10 +38,9 @@ public:
   INR_HOST_DEVICE bool moveToVisible(double end)
   {
     while (this->extinction() <= 0.0f) {
-      if (this->Exit >= end) {
+      if (!this->leaveEmpty(end)) {
         return false;
       }
-      this->advance();
     }
     return true;
   }
@@ -62,13 +61,23 @@ private:
     return (static_cast<double>(plane) - this->Start[axis]) * this->Inverse[axis];
   }
 
-  INR_HOST_DEVICE void findAxisExit(int axis)
+  INR_HOST_DEVICE std::int64_t directionAlong(int axis) const
+  {
+    return this->Slope[axis] > 0 ? 1 : -1;
+  }
+
+  /// t at which the ray leaves the slab of cells `cell` along an axis.
+  INR_HOST_DEVICE double exitFrom(int axis, std::int64_t cell) const
   {
     const bool forward = this->Slope[axis] > 0;
-    const std::int64_t cell = this->Cell[axis];
     const bool open =
         this->Slope[axis] == 0 || (forward ? cell + 1 >= this->Cells->dims()[axis] : cell <= 0);
-    this->AxisExit[axis] = open ? Never : this->faceAt(axis, cell + (forward ? 1 : 0));
+    return open ? Never : this->faceAt(axis, cell + (forward ? 1 : 0));
+  }
+
+  INR_HOST_DEVICE void findAxisExit(int axis)
+  {
+    this->AxisExit[axis] = this->exitFrom(axis, this->Cell[axis]);
   }
 
   INR_HOST_DEVICE void findExit()
@@ -99,25 +108,97 @@ private:
       this->Cell[axis] = cell;
       this->findAxisExit(axis);
     }
-    const glm::i64vec3& dims = this->Cells->dims();
-    this->Index = this->Cell.x + dims.x * (this->Cell.y + dims.y * this->Cell.z);
+    this->Index = this->Cells->index(this->Cell);
     this->findExit();
+  }
+
+  /// The axis whose face comes first; of equal ones always the same.
+  INR_HOST_DEVICE static int firstOf(const glm::dvec3& exits)
+  {
+    return exits[0] <= exits[1] ? (exits[0] <= exits[2] ? 0 : 2) : (exits[1] <= exits[2] ? 1 : 2);
   }
 
   /// Into the next cell; there is one while Exit is not Never.
   INR_HOST_DEVICE void advance()
   {
-    const glm::dvec3& exits = this->AxisExit;
-    const int axis =
-        exits[0] <= exits[1] ? (exits[0] <= exits[2] ? 0 : 2) : (exits[1] <= exits[2] ? 1 : 2);
+    const int axis = firstOf(this->AxisExit);
     const glm::i64vec3& dims = this->Cells->dims();
     const std::int64_t stride = axis == 0 ? 1 : (axis == 1 ? dims.x : dims.x * dims.y);
-    const std::int64_t direction = this->Slope[axis] > 0 ? 1 : -1;
+    const std::int64_t direction = this->directionAlong(axis);
     this->Cell[axis] += direction;
     this->Index += direction * stride;
     this->Enter = this->Exit;
     this->findAxisExit(axis);
     this->findExit();
+  }
+
+  /// Out of an invisible cell or the block of such around it, into the very cell that going cell by
+  /// cell comes to; false, and nothing else, when that is not before `end`.
+  INR_HOST_DEVICE bool leaveEmpty(double end)
+  {
+    constexpr int worthwhile = 2; // smaller blocks are left sooner cell by cell
+    const int block = this->Cells->emptyBlock(this->Index);
+    if (block >= worthwhile) {
+      return this->leaveBlock(block, end);
+    }
+    if (this->Exit >= end) {
+      return false;
+    }
+    this->advance();
+    return true;
+  }
+
+  INR_HOST_DEVICE bool leaveBlock(int block, double end)
+  {
+    glm::i64vec3 last; // cells before the ray leaves the block along each axis
+    glm::dvec3 exits;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t low = (this->Cell[axis] >> block) << block;
+      const std::int64_t high = low + (std::int64_t{1} << block) - 1;
+      last[axis] = this->Slope[axis] > 0 ? glm::min(high, this->Cells->dims()[axis] - 1) : low;
+      exits[axis] = this->exitFrom(axis, last[axis]);
+    }
+    const int through = firstOf(exits);
+    const double t = exits[through];
+    if (t >= end) {
+      return false;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis != through && this->Slope[axis] != 0) {
+        this->Cell[axis] = this->cellAt(axis, last[axis], t, axis < through);
+      }
+    }
+    this->Cell[through] = last[through] + this->directionAlong(through);
+    this->Index = this->Cells->index(this->Cell);
+    for (int axis = 0; axis < 3; ++axis) {
+      this->findAxisExit(axis);
+    }
+    this->Enter = t;
+    this->findExit();
+    return true;
+  }
+
+  /// The cell along an axis, from the present one to `last`, at t; a face right at t has been
+  /// passed or not.
+  INR_HOST_DEVICE std::int64_t cellAt(int axis, std::int64_t last, double t, bool passed) const
+  {
+    const std::int64_t direction = this->directionAlong(axis);
+    const std::int64_t first = this->Cell[axis];
+    const auto behind = [&](std::int64_t cell) {
+      const double exit = this->exitFrom(axis, cell);
+      return passed ? exit <= t : exit < t;
+    };
+    const auto low = static_cast<double>(glm::min(first, last));
+    const auto high = static_cast<double>(glm::max(first, last));
+    const double place = this->Start[axis] + this->Slope[axis] * t;
+    auto cell = static_cast<std::int64_t>(glm::clamp(place, low, high)); // but for rounding
+    while (cell != last && behind(cell)) {
+      cell += direction;
+    }
+    while (cell != first && !behind(cell - direction)) {
+      cell -= direction;
+    }
+    return cell;
   }
 
   const Majorants* Cells;

@@ -9,7 +9,7 @@ Majorants::Majorants(const MacroCells& cells)
     : Dims(cells.empty() ? glm::i64vec3(1) : cells.dims),
       Spacing(cells.empty() ? glm::dvec3(1.0) : cells.spacing),
       Ranges(cells.empty() ? std::vector<ValueRange>{{0.0f, 1.0f}} : cells.ranges),
-      Extinctions(this->Ranges.size(), 0.0f)
+      Extinctions(this->Ranges.size(), 0.0f), Empty(this->Dims)
 {}
 
 void Majorants::update(const ColorTable& colors, const Arena& arena)
@@ -22,6 +22,7 @@ void Majorants::update(const ColorTable& colors, const Arena& arena)
       this->Extinctions[cell] = colors.maximumExtinction(this->Ranges[cell]);
     }
   });
+  this->Empty.update(this->Extinctions, arena);
 }
 
 } // namespace inr

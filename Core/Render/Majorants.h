@@ -3,6 +3,7 @@
 
 #include "Core/Model/MacroCells.h"
 #include "Core/Render/ColorTable.h"
+#include "Core/Render/EmptySpace.h"
 
 #include <cstdint>
 #include <vector>
@@ -39,11 +40,16 @@ public:
     return this->Extinctions[static_cast<std::size_t>(cell)];
   }
 
+  /// The largest aligned block of invisible cells around a cell has 2^k cells per axis; -1 = the
+  /// cell is visible.
+  int emptyBlock(std::int64_t cell) const { return this->Empty.block(cell); }
+
 private:
   glm::i64vec3 Dims;
   glm::dvec3 Spacing;
   std::vector<ValueRange> Ranges;
   std::vector<float> Extinctions; ///< apart: empty space is left by looking at nothing else
+  EmptySpace Empty;
 };
 
 } // namespace inr

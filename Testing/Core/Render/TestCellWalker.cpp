@@ -18,15 +18,16 @@ struct Cells
   inr::Majorants majorants;
 };
 
-/// Cells of a volume of `dims` voxels, as our files and upstream's have them; one in four visible.
-Cells MakeCells(const glm::i64vec3& dims, const glm::dvec3& spacing)
+/// Cells of a volume of `dims` voxels, as our files and upstream's have them; one in `rarity`
+/// visible.
+Cells MakeCells(const glm::i64vec3& dims, const glm::dvec3& spacing, std::uint64_t rarity = 4)
 {
   inr::MacroCells cells;
   cells.spacing = spacing;
   cells.dims = glm::i64vec3(glm::ceil(1.0 / spacing));
   cells.ranges.resize(static_cast<std::size_t>(cells.dims.x * cells.dims.y * cells.dims.z));
   for (std::size_t k = 0; k < cells.ranges.size(); ++k) {
-    const float value = inr::RandomBits(11, k) % 4 == 0 ? 0.9f : 0.1f;
+    const float value = inr::RandomBits(11, k) % rarity == 0 ? 0.9f : 0.1f;
     cells.ranges[k] = {value, value};
   }
   inr::TransferFunction function;
@@ -153,6 +154,67 @@ TEST(CellWalker, SkipsNothingThatCanBeSeen)
       }
     }
   }
+}
+
+struct Stretch
+{
+  double enter;
+  double exit;
+  bool operator==(const Stretch& other) const
+  {
+    return this->enter == other.enter && this->exit == other.exit;
+  }
+};
+
+/// The visible cells of a ray, found by stopping in every cell.
+std::vector<Stretch> SeenCellByCell(const Cells& cells, const inr::Ray& ray, double from)
+{
+  std::vector<Stretch> seen;
+  inr::CellWalker walker(cells.majorants, cells.dims, ray);
+  for (double t = from; t < ray.length; t = walker.exit()) {
+    walker.moveTo(t);
+    if (walker.extinction() > 0.0f) {
+      seen.push_back({walker.enter(), walker.exit()});
+    }
+  }
+  return seen;
+}
+
+/// The same, found by leaving empty blocks at once.
+std::vector<Stretch> SeenWithLeaps(const Cells& cells, const inr::Ray& ray, double from)
+{
+  std::vector<Stretch> seen;
+  inr::CellWalker walker(cells.majorants, cells.dims, ray);
+  walker.moveTo(from);
+  while (walker.moveToVisible(ray.length)) {
+    if (walker.exit() > walker.enter()) { // not just a corner
+      seen.push_back({walker.enter(), walker.exit()});
+    }
+    if (walker.exit() >= ray.length) {
+      break;
+    }
+    walker.moveTo(walker.exit());
+  }
+  return seen;
+}
+
+TEST(CellWalker, LeapsToTheVeryCellsThatStepsComeTo)
+{
+  std::size_t seen = 0;
+  for (const std::uint64_t rarity : {20, 300, 4000, 1000000}) {
+    for (const glm::dvec3& spacing :
+         {glm::dvec3(1.0 / 64), glm::dvec3(0.0131, 0.021, 0.0501), glm::dvec3(1, 0.01, 0.003)}) {
+      const Cells cells = MakeCells({256, 200, 300}, spacing, rarity);
+      for (const inr::Ray& ray : Rays(cells)) {
+        for (const double from : {0.0, 0.4 * ray.length}) {
+          const std::vector<Stretch> leaps = SeenWithLeaps(cells, ray, from);
+          ASSERT_EQ(leaps, SeenCellByCell(cells, ray, from));
+          seen += leaps.size();
+        }
+      }
+    }
+  }
+  EXPECT_GT(seen, 1000u);
 }
 
 } // namespace
