@@ -2,9 +2,10 @@
 #include "Core/Render/CachedRenderer.h"
 
 #include "Core/Error.h"
+#include "Core/Render/CachedPaths.h"
+#include "Core/Render/Timer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <unistd.h>
 
 namespace inr {
@@ -13,22 +14,6 @@ namespace {
 
 /// Bricks inferred in one go: they share the threads, and time and abort are looked at in between.
 constexpr std::int64_t BricksAtOnce = 2;
-
-class Timer
-{
-public:
-  explicit Timer(double limit) : Limit(limit) {}
-  double seconds() const
-  {
-    return std::chrono::duration<double>(Clock::now() - this->Start).count();
-  }
-  double left() const { return this->Limit - this->seconds(); }
-
-private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point Start = Clock::now();
-  double Limit;
-};
 
 /// log2 of the longest sample in steps: the coarsest level's, four times as long where it is faint.
 int StepMultiples(int levels) { return levels + 2; }
@@ -55,10 +40,10 @@ std::int64_t DefaultCacheBytes()
 CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
                                const CacheOptions& options, const BrickKernel& kernel,
                                const Arena& arena)
-    : Options(Checked(options)), Kernel(kernel), Threads(arena),
+    : Options(Checked(options)), Kernel(kernel), Threads(arena), Field(std::move(field)),
       Cache(Hierarchy(dims, options.brickSize), options.precision,
             options.bytes > 0 ? options.bytes : DefaultCacheBytes()),
-      Source(MakeBrickSource(std::move(field), this->Cache.hierarchy()))
+      Source(MakeBrickSource(this->Field, this->Cache.hierarchy()))
 {
   // There is always something to fall back on.
   const BrickKey coarsest = this->Cache.hierarchy().coarsest();
@@ -126,7 +111,7 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
   CompletePass pass(scene);
   double marching = 0;
   while (true) {
-    const Timer march(0);
+    const Timer march;
     this->Cache.beginFrame();
     RequestRanking requests;
     pass.advance(this->Threads, keepGoing, output, requests);
@@ -154,7 +139,7 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Pas
   const Timer timer(scene.frame.timeLimit);
   const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
   while (true) {
-    const Timer march(0);
+    const Timer march;
     this->Cache.beginFrame();
     RequestRanking requests;
     FrameStatistics statistics =
@@ -179,7 +164,7 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
   const Timer timer(timeLimit);
   double marching = 0;
   do {
-    const Timer march(0);
+    const Timer march;
     this->Cache.beginFrame();
     RequestRanking requests;
     this->Unfinished->advance(this->Threads, keepGoing, requests);
@@ -191,6 +176,39 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
   statistics.complete = this->Unfinished->done();
   statistics.marchSeconds = marching;
   return statistics;
+}
+
+TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* timer,
+                                       const std::function<bool()>& keepGoing)
+{
+  if (round.first) {
+    this->InferMisses = false;
+  }
+  if (round.whole) {
+    this->Cache.beginFrame();
+  }
+  const bool approach = timer != nullptr && this->Options.preloading;
+  const OnPathMiss onMiss = this->InferMisses ? OnPathMiss::Infer
+                            : approach        ? OnPathMiss::Approach
+                                              : OnPathMiss::UseCoarser;
+  RequestRanking requests;
+  TracedTiles traced = TraceThroughCache(round, this->Cache, *this->Field, onMiss, this->Threads,
+                                         keepGoing, requests);
+  this->loadForPaths(requests, timer, keepGoing);
+  return traced;
+}
+
+void CachedRenderer::loadForPaths(const RequestRanking& requests, const Timer* timer,
+                                  const std::function<bool()>& keepGoing)
+{
+  const std::int64_t room = this->Cache.capacity() - this->Cache.usedInFrame();
+  const bool some = timer != nullptr || this->InferMisses;
+  const std::int64_t most = std::min(room, some ? this->Options.maximumRequests : room);
+  this->load(requests.ranked(most, this->Options.ranking), [&] {
+    return (timer == nullptr || timer->left() > 0) && (!keepGoing || keepGoing());
+  });
+  // What does not fit is not worth loading for one path: paths come back to it from everywhere.
+  this->InferMisses = this->InferMisses || requests.count() > room;
 }
 
 } // namespace inr

@@ -3,6 +3,7 @@
 
 #include "Core/Cache/BrickSource.h"
 #include "Core/Parallel.h"
+#include "Core/Render/PathPicture.h"
 #include "Core/Render/Refinement.h"
 #include "Core/Render/StepTable.h"
 
@@ -12,6 +13,8 @@
 #include <vector>
 
 namespace inr {
+
+class Timer;
 
 /// How the cache is made and filled.
 struct CacheOptions
@@ -48,6 +51,11 @@ public:
                          const Majorants& majorants, const ColorLookup& colors,
                          const MarchSettings& settings, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
+  /// Traces a round of a path-traced picture and brings what its paths missed: in the time that
+  /// `timer` has left or, without one, all of it. Where the cache has no room for what the picture
+  /// wants, the rest is inferred at the paths' points instead.
+  TracedTiles tracePaths(const PathRound& round, const Timer* timer,
+                         const std::function<bool()>& keepGoing);
   /// Forgets what was made of the colours; for when they change.
   void forgetColors();
 
@@ -61,16 +69,21 @@ private:
                                const std::function<bool()>& keepGoing);
   FrameStatistics refine(double timeLimit, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
+  void loadForPaths(const RequestRanking& requests, const Timer* timer,
+                    const std::function<bool()>& keepGoing);
   std::int64_t load(const std::vector<BrickKey>& keys, const std::function<bool()>& keepGoing);
 
   CacheOptions Options;
   const BrickKernel& Kernel;
   const Arena& Threads;
+  std::shared_ptr<const Evaluator> Field;
   BrickCache Cache;
   std::shared_ptr<const BrickSource> Source;
   std::optional<StepTable> Steps;
   /// Of the latest frame, when the cache cannot hold what it wants.
   std::optional<Refinement> Unfinished;
+  /// Of the latest path-traced picture: it wants more than the cache can hold.
+  bool InferMisses = false;
 };
 
 } // namespace inr

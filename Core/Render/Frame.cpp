@@ -18,14 +18,23 @@ bool HaveSameDepth(const Frame& a, const Frame& b)
 
 } // namespace
 
+std::vector<float> CopyOfDepth(const Frame& frame)
+{
+  if (frame.opaqueDepth == nullptr) {
+    return {};
+  }
+  const auto pixels = static_cast<std::ptrdiff_t>(frame.width) * frame.height;
+  return {frame.opaqueDepth, frame.opaqueDepth + pixels};
+}
+
 bool IsSamePicture(const Frame& a, const Frame& b)
 {
   return a.width == b.width && a.height == b.height && a.clipToWorld == b.clipToWorld &&
          a.worldToIndex == b.worldToIndex && a.clippingPlanes == b.clippingPlanes &&
-         a.lights == b.lights && a.unitDistance == b.unitDistance &&
-         a.sampleDistance == b.sampleDistance && a.adaptiveSampling == b.adaptiveSampling &&
-         a.levelOfDetailScale == b.levelOfDetailScale && a.seed == b.seed &&
-         a.frameIndex == b.frameIndex && HaveSameDepth(a, b);
+         a.lights == b.lights && a.mode == b.mode && a.paths == b.paths &&
+         a.unitDistance == b.unitDistance && a.sampleDistance == b.sampleDistance &&
+         a.adaptiveSampling == b.adaptiveSampling && a.levelOfDetailScale == b.levelOfDetailScale &&
+         a.seed == b.seed && a.frameIndex == b.frameIndex && HaveSameDepth(a, b);
 }
 
 } // namespace inr

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Render/Lights.h"
+#include "Core/Render/PathOptions.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
@@ -10,6 +11,11 @@
 #include <vector>
 
 namespace inr {
+
+enum class RenderMode : std::uint8_t {
+  RayMarching, ///< the medium emits and absorbs
+  PathTracing  ///< it scatters light
+};
 
 /// One picture to make: a plain value that holds everything a host's camera and scene say.
 /// Matrices act on column vectors. Pixel (0, 0) is the bottom left one.
@@ -33,6 +39,12 @@ struct Frame
   /// The scene's, for what is lit: none of them shines on a medium that only emits and absorbs.
   std::vector<Light> lights;
 
+  RenderMode mode = RenderMode::RayMarching;
+  PathOptions paths; ///< for path tracing
+  /// Of path tracing: the picture is the mean of so many paths through each pixel, above 0; with a
+  /// time limit, of those that were traced in time.
+  int samplesPerPixel = 64;
+
   /// World length to which the transfer function's opacity refers; above 0.
   double unitDistance = 1;
   /// Distance between samples in voxels, along the axis in which the voxels are densest; 1/1000 to
@@ -51,23 +63,28 @@ struct Frame
   /// to be complete. Ignored without a cache.
   double timeLimit = 0;
 
-  /// Offsets of the samples along their rays are random in (seed, frameIndex, pixel).
+  /// Offsets of the samples along their rays, and paths, are random in (seed, frameIndex, pixel).
   std::uint64_t seed = 0;
   std::uint64_t frameIndex = 0;
 };
 
-/// Whether two frames make the same picture: all but the time they may take, and the opaque depth
-/// by its values.
+/// Whether two frames make the same picture: all but the time and the samples per pixel that they
+/// may take, and the opaque depth by its values.
 bool IsSamePicture(const Frame& a, const Frame& b);
 
-/// What making a picture took.
+/// The values of a frame's opaque depth; empty when it has none.
+std::vector<float> CopyOfDepth(const Frame& frame);
+
+/// What making a picture took; of path tracing, one path through each pixel, the latest, but for
+/// the wall time.
 struct FrameStatistics
 {
   std::int64_t rays = 0;    ///< that met the volume
   std::int64_t samples = 0; ///< values of the field that were looked up or inferred
   std::int64_t missed = 0;  ///< of these, read from a coarser level than wanted
   std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
-  bool complete = true;     ///< every sample came from the level it asked for
+  bool complete = true;     ///< every sample came from the level it asked for, and all were taken
+  std::int64_t paths = 0;   ///< of path tracing: through each pixel, in the picture shown
   double seconds = 0;       ///< wall time
   double marchSeconds = 0;  ///< of these, without what was loaded into the cache in between
 };

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace inr {
 
@@ -81,12 +80,15 @@ public:
     }
   }
 
-  void write(Image& rgba) const
+  void write(Image& rgba, Image* depth) const
   {
     for (int k = 0; k < this->Place.width * this->Place.height; ++k) {
       const PathState& path = this->Paths[static_cast<std::size_t>(k)];
       const glm::vec4 color(path.radiance, path.collided ? 1.0f : 0.0f);
       std::copy_n(&color.x, 4, rgba.pixel(this->x(k), this->y(k)));
+      if (depth != nullptr) {
+        *depth->pixel(this->x(k), this->y(k)) = path.collided ? this->depthOf(k) : 0.0f;
+      }
     }
   }
 
@@ -95,6 +97,13 @@ public:
 private:
   int x(int k) const { return this->Place.x + k % this->Place.width; }
   int y(int k) const { return this->Place.y + k / this->Place.width; }
+
+  float depthOf(int k) const
+  {
+    const Ray ray = this->Scene.geometry.ray(this->x(k), this->y(k));
+    const double t = this->Paths[static_cast<std::size_t>(k)].firstCollision;
+    return static_cast<float>(this->Scene.geometry.windowDepth(ray.at(t)));
+  }
 
   void place()
   {
@@ -140,58 +149,59 @@ private:
 
 } // namespace
 
-void Accumulator::reset(int width, int height)
+void Accumulator::reset(int width, int height, int channels)
 {
   this->Width = width;
   this->Height = height;
+  this->Channels = channels;
   this->Count = 0;
-  this->Sums.assign(static_cast<std::size_t>(width) * height * 4, 0.0);
+  this->Sums.assign(static_cast<std::size_t>(width) * height * channels, 0.0);
 }
 
 void Accumulator::add(const Image& sample)
 {
-  Require(sample.width == this->Width && sample.height == this->Height && sample.channels == 4,
-          "an accumulator takes RGBA pictures of the size it was reset to");
+  Require(sample.width == this->Width && sample.height == this->Height &&
+              sample.channels == this->Channels,
+          "an accumulator takes pictures of the shape it was reset to");
   for (std::size_t k = 0; k < this->Sums.size(); ++k) {
     this->Sums[k] += sample.pixels[k];
   }
   ++this->Count;
 }
 
-void Accumulator::mean(Image& rgba) const
+void Accumulator::mean(Image& picture) const
 {
-  rgba = Image(this->Width, this->Height, 4);
+  picture = Image(this->Width, this->Height, this->Channels);
   const double weight = this->Count > 0 ? 1.0 / static_cast<double>(this->Count) : 0.0;
-  std::transform(this->Sums.begin(), this->Sums.end(), rgba.pixels.begin(),
+  std::transform(this->Sums.begin(), this->Sums.end(), picture.pixels.begin(),
                  [weight](double sum) { return static_cast<float>(sum * weight); });
 }
 
 PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
-                       const Majorants& majorants, const ColorLookup& colors,
-                       const PathOptions& options, std::vector<Light> lights, int levels)
-    : Lights(std::move(lights)),
-      Inner(frame, geometry, dims), Scene{frame,
+                       const Majorants& majorants, const ColorLookup& colors, int levels)
+    : Inner(frame, geometry, dims), Scene{frame,
                                           geometry,
                                           this->Inner,
                                           majorants,
                                           colors,
-                                          this->Lights.data(),
-                                          static_cast<int>(this->Lights.size()),
-                                          options,
+                                          frame.lights.data(),
+                                          static_cast<int>(frame.lights.size()),
+                                          frame.paths,
                                           glm::dvec3(dims),
                                           geometry.worldPerUnit() / frame.unitDistance,
                                           levels}
 {
-  Check(options);
-  std::for_each(this->Lights.begin(), this->Lights.end(), [](const Light& light) { Check(light); });
+  Check(frame.paths);
+  std::for_each(frame.lights.begin(), frame.lights.end(), [](const Light& light) { Check(light); });
   Require(levels >= 1, "a field has at least one level");
 }
 
-FrameStatistics PathTracer::trace(const Tile& tile, FieldSampler& sampler, Image& rgba) const
+FrameStatistics PathTracer::trace(const Tile& tile, FieldSampler& sampler, Image& rgba,
+                                  Image* depth) const
 {
   TileOfPaths paths(this->Scene, tile);
   paths.trace(sampler);
-  paths.write(rgba);
+  paths.write(rgba, depth);
   return paths.statistics();
 }
 

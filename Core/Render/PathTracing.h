@@ -13,6 +13,7 @@
 #include "Core/Render/CellWalker.h"
 #include "Core/Render/LevelOfDetail.h"
 #include "Core/Render/Lights.h"
+#include "Core/Render/PathOptions.h"
 #include "Core/Render/PathTracingField.h"
 #include "Core/Render/PathTracingGeometry.h"
 #include "Core/Render/PathTracingPhase.h"
@@ -22,20 +23,6 @@
 #include <cstdint>
 
 namespace inr {
-
-/// What a medium does with light, apart from its transfer function.
-struct PathOptions
-{
-  int maximumBounces = 16;      ///< scatterings of a path, not negative
-  float scatteringAlbedo = 1;   ///< in [0, 1]; multiplies the transfer function's colour
-  double anisotropy = 0;        ///< mean cosine of a scattering, in (-1, 1)
-  glm::vec3 ambientLight{0.0f}; ///< radiance from everywhere outside; never the backdrop
-  /// The medium shines with the transfer function's colour and scatters nothing: the picture that
-  /// ray marching makes.
-  bool emissionOnly = false;
-  /// Scatterings after which a path ends at random, by how little light it still carries.
-  int rouletteAfter = 4;
-};
 
 /// What the stages share within a frame. All read-only.
 struct PathScene
@@ -47,7 +34,7 @@ struct PathScene
   const ColorLookup& colors;
   const Light* lights;
   int lightCount;
-  PathOptions options;
+  const PathOptions& options;
   glm::dvec3 dims;  ///< voxels per axis
   double unitsPerT; ///< opacity unit distances per unit of t
   int levels;       ///< that a point may be asked at, at least 1
@@ -70,6 +57,7 @@ struct PathState
   glm::dvec3 vertex{0.0};     ///< point index of the last scattering
   glm::vec3 throughput{1.0f}; ///< from the camera to here
   glm::vec3 radiance{0.0f};   ///< gathered
+  double firstCollision = 0;  ///< t on the pixel's ray, once collided
   glm::vec3 fromLight{0.0f};  ///< on its way to be gathered, if nothing absorbs it
   float passed = 1;           ///< of it, so far
   double footprint = 0;       ///< of the pixel at the vertex
@@ -272,7 +260,10 @@ INR_HOST_DEVICE inline bool Collide(const PathScene& scene, PathState& path, flo
   if (Draw(path) >= share) {
     return true;
   }
-  path.collided = true;
+  if (!path.collided) {
+    path.collided = true;
+    path.firstCollision = path.t;
+  }
   const glm::vec3 color(entry);
   if (scene.options.emissionOnly) {
     path.radiance += path.throughput * color;

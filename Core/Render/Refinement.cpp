@@ -5,15 +5,6 @@ namespace inr {
 
 namespace {
 
-std::vector<float> CopyOfDepth(const Frame& frame)
-{
-  if (frame.opaqueDepth == nullptr) {
-    return {};
-  }
-  const auto pixels = static_cast<std::ptrdiff_t>(frame.width) * frame.height;
-  return {frame.opaqueDepth, frame.opaqueDepth + pixels};
-}
-
 Frame WithDepth(Frame frame, const std::vector<float>& depth)
 {
   frame.opaqueDepth = depth.empty() ? nullptr : depth.data();

@@ -3,10 +3,11 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Core/Render/CachedPaths.h"
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/TileMarcher.h"
+#include "Core/Render/Timer.h"
 
-#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -40,6 +41,11 @@ struct Renderer::Implementation
                                  const MarchSettings& settings, const PassOutput& output,
                                  const std::function<bool()>& keepGoing) const;
 
+  FrameStatistics march(const Frame& frame, const PassOutput& output,
+                        const std::function<bool()>& keepGoing);
+  FrameStatistics tracePaths(const Frame& frame, const PassOutput& output,
+                             const std::function<bool()>& keepGoing);
+
   std::shared_ptr<const Evaluator> Field;
   VolumeInfo Volume;
   Majorants Cells;
@@ -48,6 +54,7 @@ struct Renderer::Implementation
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
   std::optional<CachedRenderer> Cached; ///< made by the first frame that needs it
+  PathPicture Paths;
   std::int64_t MajorantBuilds = 0;
 };
 
@@ -97,6 +104,7 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
   ColorTable colors(transferFunction, self.Volume); // before anything changes: it may throw
   self.Colors.emplace(std::move(colors));
   self.Function = transferFunction;
+  self.Paths.forget();
   if (self.Cached) {
     self.Cached->forgetColors();
   }
@@ -109,7 +117,7 @@ Renderer::Implementation::renderUncached(const Frame& frame, const RayGeometry& 
                                          const MarchSettings& settings, const PassOutput& output,
                                          const std::function<bool()>& keepGoing) const
 {
-  const auto start = std::chrono::steady_clock::now();
+  const Timer timer;
   const MarchScene scene{frame,        geometry, this->Cells, this->Colors->lookup(),
                          *this->Field, settings};
   const Tiling tiling(frame.width, frame.height);
@@ -119,36 +127,62 @@ Renderer::Implementation::renderUncached(const Frame& frame, const RayGeometry& 
     tiles[static_cast<std::size_t>(k)] = marcher.march(tiling.tile(k), output.rgba, output.depth);
   });
   FrameStatistics statistics = Sum(tiles);
-  statistics.marchSeconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  statistics.marchSeconds = timer.seconds();
   return statistics;
+}
+
+FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
+                                                const std::function<bool()>& keepGoing)
+{
+  const RayGeometry geometry(frame, this->Volume.dims);
+  MarchSettings settings;
+  settings.dims = glm::dvec3(this->Volume.dims);
+  settings.step = frame.sampleDistance;
+  settings.adaptive = frame.adaptiveSampling;
+  settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
+  return this->Options.cached
+             ? this->cached().render(frame, geometry, this->Cells, this->Colors->lookup(), settings,
+                                     output, keepGoing)
+             : this->renderUncached(frame, geometry, settings, output, keepGoing);
+}
+
+FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
+                                                     const std::function<bool()>& keepGoing)
+{
+  PathMedium medium{this->Volume.dims, this->Cells, this->Colors->lookup()};
+  if (!this->Options.cached) {
+    const TraceTiles trace = [&](const PathRound& round) {
+      return TraceWithNetwork(round, *this->Field, this->Volume.dims, this->Threads, keepGoing);
+    };
+    return this->Paths.advance(frame, medium, trace, output);
+  }
+  CachedRenderer& cached = this->cached();
+  medium.levels = cached.cache().hierarchy().levels();
+  const Timer timer(frame.timeLimit);
+  const TraceTiles trace = [&](const PathRound& round) {
+    return cached.tracePaths(round, frame.timeLimit > 0 ? &timer : nullptr, keepGoing);
+  };
+  return this->Paths.advance(frame, medium, trace, output);
 }
 
 FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
                                  const std::function<bool()>& keepGoing)
 {
-  const auto start = std::chrono::steady_clock::now();
+  const Timer timer;
   Implementation& self = *this->Self;
   if (!self.Colors) {
     throw Error(ErrorCode::InvalidArgument, "set a transfer function before rendering");
   }
-  const RayGeometry geometry(frame, self.Volume.dims);
-  MarchSettings settings;
-  settings.dims = glm::dvec3(self.Volume.dims);
-  settings.step = frame.sampleDistance;
-  settings.adaptive = frame.adaptiveSampling;
-  settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
+  RayGeometry(frame, self.Volume.dims); // throws for what is out of range
   rgba = Image(frame.width, frame.height, 4);
   if (depth != nullptr) {
     *depth = Image(frame.width, frame.height, 1);
   }
   const PassOutput output{rgba, depth};
-  FrameStatistics statistics =
-      self.Options.cached ? self.cached().render(frame, geometry, self.Cells, self.Colors->lookup(),
-                                                 settings, output, keepGoing)
-                          : self.renderUncached(frame, geometry, settings, output, keepGoing);
-  statistics.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  FrameStatistics statistics = frame.mode == RenderMode::PathTracing
+                                   ? self.tracePaths(frame, output, keepGoing)
+                                   : self.march(frame, output, keepGoing);
+  statistics.seconds = timer.seconds();
   return statistics;
 }
 

@@ -28,10 +28,13 @@ struct RendererOptions
   }
 };
 
-/// Ray-marches an INR, through a cache of decoded bricks or straight from its network.
+/// Draws an INR by marching rays or tracing paths, through a cache of decoded bricks or straight
+/// from its network.
 ///
 /// A complete frame is a pure function of model, transfer function and Frame: threads, tiles and
-/// the size of the cache do not change a pixel. Not for use from two threads at once.
+/// the size of the cache do not change a pixel. The exception are paths whose bricks the cache
+/// cannot hold: part of what they meet is then free of interpolation error. Not for use from two
+/// threads at once.
 class Renderer
 {
 public:
@@ -60,7 +63,9 @@ public:
 
   /// Renders into `rgba`: premultiplied RGBA, resized to the frame. `depth`, when given, receives
   /// the window-space depth where accumulated opacity first reaches one half, 1 where it never
-  /// does. `keepGoing` is asked between tiles, from any thread; returning false throws
+  /// does; of path tracing, the mean depth of the first collisions where at least half of the paths
+  /// had one. A path-traced picture that a time limit cut short goes on when the same frame is
+  /// asked for again. `keepGoing` is asked between tiles, from any thread; returning false throws
   /// Error(Cancelled). Throws Error(InvalidArgument) for a frame outside its documented ranges,
   /// singular matrices or a missing transfer function.
   FrameStatistics render(const Frame& frame, Image& rgba, Image* depth = nullptr,

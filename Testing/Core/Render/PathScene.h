@@ -42,7 +42,7 @@ struct PathTest
     this->frame.frameIndex = frameIndex;
     const inr::RayGeometry geometry(this->frame, this->dims);
     const inr::PathTracer tracer(this->frame, geometry, this->dims, this->majorants,
-                                 this->colors.lookup(), this->options, this->lights);
+                                 this->colors.lookup());
     inr::Image rgba(this->frame.width, this->frame.height, 4);
     const int columns = (rgba.width + edge - 1) / edge;
     const int rows = (rgba.height + edge - 1) / edge;
@@ -80,14 +80,17 @@ struct PathTest
     return {mean, std::sqrt((squares / count - mean * mean) / count)};
   }
 
+  PathTest(const PathTest&) = delete;
+  PathTest& operator=(const PathTest&) = delete;
+
   glm::i64vec3 dims;
   FieldEvaluator field;
   inr::ColorTable colors;
   inr::Arena arena{2};
   inr::Majorants majorants;
   inr::Frame frame = ParallelFrame(32, {4, 4}, {12, 12}, -10, 50);
-  inr::PathOptions options;
-  std::vector<inr::Light> lights;
+  inr::PathOptions& options = frame.paths;
+  std::vector<inr::Light>& lights = frame.lights;
   inr::FrameStatistics statistics; ///< of the last picture
 };
 

@@ -146,9 +146,9 @@ TEST(PathTracing, EmissionAndAbsorptionMakeTheMarchersPicture)
   inr::Renderer renderer = FieldRenderer(dims, Cloud);
   renderer.setTransferFunction(medium);
   PathTest test(dims, Cloud, medium);
+  test.frame = ParallelFrame(12, {-2, -2}, {34, 34}, -10, 80);
   test.options.emissionOnly = true;
   test.options.ambientLight = glm::vec3(1.0f); // which must not show
-  test.frame = ParallelFrame(12, {-2, -2}, {34, 34}, -10, 80);
   test.frame.clipToWorld = glm::rotate(glm::dmat4(1.0), 0.3, glm::dvec3(0, 1, 0.2)) *
                            test.frame.clipToWorld; // across the cells
   test.frame.sampleDistance = 0.05;
@@ -216,7 +216,7 @@ TEST(PathTracing, PointsAreInsideAndAtThePixelsLevel)
   const inr::RayGeometry geometry(test.frame, test.dims);
   for (const int levels : {1, 4}) {
     const inr::PathTracer tracer(test.frame, geometry, test.dims, test.majorants,
-                                 test.colors.lookup(), test.options, {}, levels);
+                                 test.colors.lookup(), levels);
     RecordingSampler sampler;
     inr::Image rgba(4, 4, 4);
     const inr::FrameStatistics statistics = tracer.trace({0, 0, 4, 4}, sampler, rgba);

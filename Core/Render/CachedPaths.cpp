@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/CachedPaths.h"
+
+#include "Core/Render/TileLoop.h"
+#include "Core/Render/Timer.h"
+
+#include <algorithm>
+
+namespace inr {
+
+namespace {
+
+glm::dvec3 IndexOf(const FieldPoint& point)
+{
+  return glm::dvec3(point.voxel) + glm::dvec3(point.fraction);
+}
+
+float Between(float a, float b, float weight) { return a + (b - a) * weight; }
+
+} // namespace
+
+CachedSampler::CachedSampler(const BrickCache& cache, const Evaluator& field, OnPathMiss onMiss)
+    : Cache(cache), Missing(onMiss), Network(field, cache.hierarchy().dims()),
+      StrideY(cache.hierarchy().brickDims().x),
+      StrideZ(this->StrideY * cache.hierarchy().brickDims().y),
+      LastCell(cache.hierarchy().brickDims() - 2)
+{}
+
+CachedSampler::Cell CachedSampler::cellIn(std::int32_t slot, const glm::dvec3& local) const
+{
+  const glm::ivec3 corner = glm::min(glm::ivec3(local), this->LastCell);
+  this->Cache.touch(slot);
+  return {this->Cache.view(slot), corner.x + this->StrideY * corner.y + this->StrideZ * corner.z,
+          glm::vec3(local - glm::dvec3(corner))};
+}
+
+bool CachedSampler::find(const FieldPoint& point, Cell& cell)
+{
+  const Hierarchy::Location at = this->Cache.hierarchy().locate(point.level, IndexOf(point));
+  const BrickKey key = KeyOf(at.brick);
+  const std::int32_t slot = this->Cache.find(key);
+  if (slot != PageTable::Unmapped) {
+    cell = this->cellIn(slot, at.local);
+    return true;
+  }
+  if (this->Missing != OnPathMiss::Approach) {
+    this->Wishes.push_back(key);
+  }
+  return false;
+}
+
+void CachedSampler::findCoarser(const FieldPoint& point, Cell& cell)
+{
+  const Hierarchy& hierarchy = this->Cache.hierarchy();
+  const glm::dvec3 index = IndexOf(point);
+  BrickKey finer = KeyOf(hierarchy.brickAt(point.level, index));
+  for (int level = point.level + 1; level < hierarchy.levels(); ++level) {
+    const Hierarchy::Location at = hierarchy.locate(level, index);
+    const BrickKey key = KeyOf(at.brick);
+    const std::int32_t slot = this->Cache.find(key);
+    if (slot != PageTable::Unmapped) {
+      cell = this->cellIn(slot, at.local);
+      break;
+    }
+    finer = key;
+  }
+  if (this->Missing == OnPathMiss::Approach) {
+    this->Wishes.push_back(finer);
+  }
+  ++this->Missed;
+}
+
+void CachedSampler::infer(const FieldPoint* points, float* values)
+{
+  this->AbsentPoints.clear();
+  for (const std::int64_t k : this->Absent) {
+    this->AbsentPoints.push_back(points[k]);
+  }
+  this->AbsentValues.resize(this->Absent.size());
+  this->Network.sample(this->AbsentPoints.data(), static_cast<std::int64_t>(this->Absent.size()),
+                       this->AbsentValues.data());
+  for (std::size_t i = 0; i < this->Absent.size(); ++i) {
+    values[this->Absent[i]] = this->AbsentValues[i];
+  }
+}
+
+template <typename Voxel> void CachedSampler::interpolate(float* values) const
+{
+  for (std::size_t k = 0; k < this->Cells.size(); ++k) {
+    const Cell& cell = this->Cells[k];
+    const Voxel* near = static_cast<const Voxel*>(cell.brick.voxels) + cell.first;
+    float layers[2];
+    for (float& layer : layers) {
+      const Voxel* next = near + this->StrideY;
+      const float row = Between(near[0], near[1], cell.weight.x);
+      layer = Between(row, Between(next[0], next[1], cell.weight.x), cell.weight.y);
+      near += this->StrideZ;
+    }
+    values[k] = cell.brick.low + cell.brick.step * Between(layers[0], layers[1], cell.weight.z);
+  }
+}
+
+void CachedSampler::sample(const FieldPoint* points, std::int64_t count, float* values)
+{
+  // What is absent reads some voxels in its turn until it is replaced.
+  const std::int32_t anywhere = this->Cache.find(this->Cache.hierarchy().coarsest());
+  this->Cells.resize(static_cast<std::size_t>(count));
+  this->Absent.clear();
+  for (std::int64_t k = 0; k < count; ++k) {
+    Cell& cell = this->Cells[static_cast<std::size_t>(k)];
+    if (this->find(points[k], cell)) {
+      continue;
+    }
+    if (this->Missing == OnPathMiss::Infer) {
+      cell = this->cellIn(anywhere, glm::dvec3(0.0));
+      this->Absent.push_back(k);
+    } else {
+      this->findCoarser(points[k], cell);
+    }
+  }
+  switch (this->Cache.precision()) {
+  case CachePrecision::Float32:
+    this->interpolate<float>(values);
+    break;
+  case CachePrecision::Bits16:
+    this->interpolate<std::uint16_t>(values);
+    break;
+  case CachePrecision::Bits8:
+    this->interpolate<std::uint8_t>(values);
+    break;
+  }
+  if (!this->Absent.empty()) {
+    this->infer(points, values);
+  }
+}
+
+RequestList CachedSampler::requests() const
+{
+  std::vector<BrickKey> keys = this->Wishes;
+  std::sort(keys.begin(), keys.end());
+  RequestList list;
+  for (auto first = keys.begin(); first != keys.end();) {
+    const auto end = std::upper_bound(first, keys.end(), *first);
+    const auto samples = static_cast<std::uint32_t>(end - first);
+    list.add(*first, samples, static_cast<float>(samples));
+    first = end;
+  }
+  return list;
+}
+
+TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
+                              const Evaluator& field, OnPathMiss onMiss, const Arena& arena,
+                              const std::function<bool()>& keepGoing, RequestRanking& requests)
+{
+  const Timer timer;
+  const Tiling tiling(round.output.rgba.width, round.output.rgba.height);
+  TracedTiles traced;
+  traced.tiles.resize(round.tiles.size());
+  std::vector<RequestList> lists(round.tiles.size());
+  ForEachTile(arena, static_cast<std::int64_t>(round.tiles.size()), keepGoing, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    CachedSampler sampler(cache, field, onMiss);
+    const Tile tile = tiling.tile(round.tiles[k]);
+    traced.tiles[k] = round.tracer.trace(tile, sampler, round.output.rgba, round.output.depth);
+    traced.tiles[k].missed = sampler.missed();
+    lists[k] = sampler.requests();
+  });
+  for (const RequestList& list : lists) {
+    requests.add(list);
+  }
+  traced.seconds = timer.seconds();
+  return traced;
+}
+
+TracedTiles TraceWithNetwork(const PathRound& round, const Evaluator& field,
+                             const glm::i64vec3& dims, const Arena& arena,
+                             const std::function<bool()>& keepGoing)
+{
+  const Timer timer;
+  const Tiling tiling(round.output.rgba.width, round.output.rgba.height);
+  TracedTiles traced;
+  traced.tiles.resize(round.tiles.size());
+  ForEachTile(arena, static_cast<std::int64_t>(round.tiles.size()), keepGoing, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    EvaluatorSampler sampler(field, dims);
+    const Tile tile = tiling.tile(round.tiles[k]);
+    traced.tiles[k] = round.tracer.trace(tile, sampler, round.output.rgba, round.output.depth);
+  });
+  traced.seconds = timer.seconds();
+  return traced;
+}
+
+} // namespace inr

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/BrickCache.h"
+#include "Core/Cache/Requests.h"
+#include "Core/Render/PathPicture.h"
+#include "Core/Render/PathTracingField.h"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace inr {
+
+class Arena;
+
+/// What a path gets where the brick it wants is not there.
+enum class OnPathMiss {
+  UseCoarser, ///< the nearest coarser level that is, and a wish for the wanted one
+  Approach,   ///< the same, but a wish for the level after the coarser one
+  Infer       ///< what the network says at the point, and a wish
+};
+
+/// The field as a cache of bricks has it: trilinear between the voxels of the level asked for. The
+/// coarsest level must be mapped.
+class CachedSampler : public FieldSampler
+{
+public:
+  /// `field` is for misses. The references must outlive the sampler.
+  CachedSampler(const BrickCache& cache, const Evaluator& field, OnPathMiss onMiss);
+
+  void sample(const FieldPoint* points, std::int64_t count, float* values) override;
+
+  /// Points served from a coarser level so far.
+  std::int64_t missed() const { return this->Missed; }
+  /// The bricks wished for so far, each as often as it was, by their keys.
+  RequestList requests() const;
+
+private:
+  /// The voxels around a point: those of its brick, and where among them.
+  struct Cell
+  {
+    BrickView brick;
+    std::int64_t first; ///< voxel
+    glm::vec3 weight;   ///< of the far neighbours
+  };
+
+  bool find(const FieldPoint& point, Cell& cell);
+  void findCoarser(const FieldPoint& point, Cell& cell);
+  Cell cellIn(std::int32_t slot, const glm::dvec3& local) const;
+  void infer(const FieldPoint* points, float* values);
+  template <typename Voxel> void interpolate(float* values) const;
+
+  const BrickCache& Cache;
+  OnPathMiss Missing;
+  EvaluatorSampler Network;
+  std::int64_t StrideY; ///< voxels
+  std::int64_t StrideZ;
+  glm::ivec3 LastCell;
+  std::int64_t Missed = 0;
+  std::vector<BrickKey> Wishes;
+
+  std::vector<Cell> Cells; ///< of a batch
+  std::vector<std::int64_t> Absent;
+  std::vector<FieldPoint> AbsentPoints;
+  std::vector<float> AbsentValues;
+};
+
+/// Traces a round's tiles with what is in the cache. What was missing is added to `requests` in the
+/// order of the tiles. Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
+TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
+                              const Evaluator& field, OnPathMiss onMiss, const Arena& arena,
+                              const std::function<bool()>& keepGoing, RequestRanking& requests);
+
+/// Traces a round's tiles with the field itself.
+TracedTiles TraceWithNetwork(const PathRound& round, const Evaluator& field,
+                             const glm::i64vec3& dims, const Arena& arena,
+                             const std::function<bool()>& keepGoing);
+
+} // namespace inr
