@@ -67,6 +67,9 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.clippingPlanes.insert(frame.clippingPlanes.end(), piece.begin(), piece.end());
   frame.lights = SceneLights(renderer);
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
+  frame.mode = settings.mode;
+  frame.paths = settings.paths;
+  frame.samplesPerPixel = settings.samplesPerPixel;
   frame.sampleDistance = settings.sampleDistance;
   frame.adaptiveSampling = settings.adaptiveSampling;
   frame.levelOfDetailScale = settings.levelOfDetailScale;

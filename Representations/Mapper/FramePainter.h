@@ -35,6 +35,9 @@ MapperInput FindInput(vtkVolumeMapper* mapper);
 /// The mapper's own properties.
 struct PaintSettings
 {
+  RenderMode mode = RenderMode::RayMarching;
+  PathOptions paths;
+  int samplesPerPixel = 64;
   double sampleDistance = 1; ///< voxels
   bool adaptiveSampling = true;
   double levelOfDetailScale = 1;

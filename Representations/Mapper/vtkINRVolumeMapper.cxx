@@ -88,6 +88,13 @@ double* vtkINRVolumeMapper::GetBounds()
 inr::PaintSettings vtkINRVolumeMapper::Settings() const
 {
   inr::PaintSettings settings;
+  settings.mode = static_cast<inr::RenderMode>(this->RenderMode);
+  settings.samplesPerPixel = this->SamplesPerPixel;
+  settings.paths.maximumBounces = this->MaximumBounces;
+  settings.paths.scatteringAlbedo = static_cast<float>(this->ScatteringAlbedo);
+  settings.paths.anisotropy = this->Anisotropy;
+  settings.paths.ambientLight =
+      glm::dvec3(this->AmbientLight[0], this->AmbientLight[1], this->AmbientLight[2]);
   settings.sampleDistance = this->SampleDistance;
   settings.adaptiveSampling = this->AdaptiveSampling;
   settings.levelOfDetailScale = this->LevelOfDetailScale;
@@ -158,7 +165,14 @@ void vtkINRVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "SampleDistance: " << this->SampleDistance << "\n"
+  os << indent << "RenderMode: " << this->RenderMode << "\n"
+     << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n"
+     << indent << "ScatteringAlbedo: " << this->ScatteringAlbedo << "\n"
+     << indent << "Anisotropy: " << this->Anisotropy << "\n"
+     << indent << "MaximumBounces: " << this->MaximumBounces << "\n"
+     << indent << "AmbientLight: " << this->AmbientLight[0] << " " << this->AmbientLight[1] << " "
+     << this->AmbientLight[2] << "\n"
+     << indent << "SampleDistance: " << this->SampleDistance << "\n"
      << indent << "AdaptiveSampling: " << this->AdaptiveSampling << "\n"
      << indent << "LevelOfDetailScale: " << this->LevelOfDetailScale << "\n"
      << indent << "CacheMode: " << this->CacheMode << "\n"

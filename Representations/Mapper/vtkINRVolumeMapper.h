@@ -25,6 +25,14 @@
  * missing, and decodes more in the time that is left; and if even that is too slow, the picture is
  * computed at a half, a quarter or an eighth of the window's resolution and stretched. Hardware
  * selection does not see the volume.
+ *
+ * Drawn by path tracing, the same medium scatters light: that of the renderer's lights
+ * (directional, positional, spots, headlights and camera lights, with colour, intensity and
+ * attenuation) and AmbientLight. A collision keeps the transfer function's colour times
+ * ScatteringAlbedo of the light. The picture is the mean of SamplesPerPixel paths through each
+ * pixel. Its alpha is the opacity along the pixel's ray up to the nearest opaque geometry, which
+ * hides what is behind it but throws no shadow. A process that has a piece of the grid lights that
+ * piece alone.
  */
 #ifndef vtkINRVolumeMapper_h
 #define vtkINRVolumeMapper_h
@@ -45,6 +53,59 @@ public:
   static vtkINRVolumeMapper* New();
   vtkTypeMacro(vtkINRVolumeMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum RenderModes { RAY_MARCHING = 0, PATH_TRACING = 1 };
+  ///@{
+  /** One of RenderModes. Default RAY_MARCHING. */
+  vtkSetClampMacro(RenderMode, int, RAY_MARCHING, PATH_TRACING);
+  vtkGetMacro(RenderMode, int);
+  ///@}
+
+  ///@{
+  /**
+   * Of path tracing: paths through each pixel of a converged picture; the noise falls with their
+   * square root. More go on from what is there. Default 64.
+   */
+  vtkSetClampMacro(SamplesPerPixel, int, 1, VTK_INT_MAX);
+  vtkGetMacro(SamplesPerPixel, int);
+  ///@}
+
+  ///@{
+  /**
+   * Of path tracing: what a collision with white leaves of the light; the rest is absorbed. 0 is
+   * soot, 1 a cloud. Default 1.
+   */
+  vtkSetClampMacro(ScatteringAlbedo, double, 0.0, 1.0);
+  vtkGetMacro(ScatteringAlbedo, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of path tracing: mean cosine of the angle by which a collision turns light, after Henyey and
+   * Greenstein; 0 scatters evenly, above 0 forward, below 0 back. Default 0.
+   */
+  vtkSetClampMacro(Anisotropy, double, -0.99, 0.99);
+  vtkGetMacro(Anisotropy, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of path tracing: collisions after which a path is given up. 1 is single scattering; dense white
+   * media need many. Default 16.
+   */
+  vtkSetClampMacro(MaximumBounces, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MaximumBounces, int);
+  ///@}
+
+  ///@{
+  /**
+   * Of path tracing: red, green and blue light that comes from everywhere outside the volume, none
+   * of them negative. It is never seen directly: the background is the renderer's. Default 0.5
+   * each.
+   */
+  vtkSetVector3Macro(AmbientLight, double);
+  vtkGetVector3Macro(AmbientLight, double);
+  ///@}
 
   ///@{
   /**
@@ -154,7 +215,7 @@ public:
   ///@}
 
   ///@{
-  /** Seed of the samples' random offsets along their rays. Default 0. */
+  /** Seed of the samples' random offsets along their rays, and of paths. Default 0. */
   vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
   vtkGetMacro(Seed, int);
   ///@}
@@ -173,8 +234,9 @@ public:
 
   ///@{
   /**
-   * About the last frame and the cache: whether every sample came from the level it asked for, the
-   * part of the samples that did (0 to 1), and the memory in use in MiB.
+   * About the last frame and the cache: whether every sample came from the level it asked for and,
+   * of path tracing, SamplesPerPixel were taken; the part of the samples that did (0 to 1), and the
+   * memory in use in MiB.
    */
   bool GetConverged() const;
   double GetCacheHitRate() const;
@@ -215,6 +277,12 @@ private:
 
   inr::PaintSettings Settings() const;
 
+  int RenderMode = RAY_MARCHING;
+  int SamplesPerPixel = 64;
+  double ScatteringAlbedo = 1.0;
+  double Anisotropy = 0.0;
+  int MaximumBounces = 16;
+  double AmbientLight[3] = {0.5, 0.5, 0.5};
   double SampleDistance = 1.0;
   bool AdaptiveSampling = true;
   double LevelOfDetailScale = 1.0;

@@ -59,6 +59,33 @@ vtkINRVolumeMapper* vtkINRVolumeRepresentation::GetMapper()
   return static_cast<vtkINRVolumeMapper*>(this->VolumeMapper.Get());
 }
 
+void vtkINRVolumeRepresentation::SetRenderMode(int mode) { this->GetMapper()->SetRenderMode(mode); }
+
+void vtkINRVolumeRepresentation::SetSamplesPerPixel(int paths)
+{
+  this->GetMapper()->SetSamplesPerPixel(paths);
+}
+
+void vtkINRVolumeRepresentation::SetScatteringAlbedo(double albedo)
+{
+  this->GetMapper()->SetScatteringAlbedo(albedo);
+}
+
+void vtkINRVolumeRepresentation::SetAnisotropy(double meanCosine)
+{
+  this->GetMapper()->SetAnisotropy(meanCosine);
+}
+
+void vtkINRVolumeRepresentation::SetMaximumBounces(int bounces)
+{
+  this->GetMapper()->SetMaximumBounces(bounces);
+}
+
+void vtkINRVolumeRepresentation::SetAmbientLight(double red, double green, double blue)
+{
+  this->GetMapper()->SetAmbientLight(red, green, blue);
+}
+
 void vtkINRVolumeRepresentation::SetSampleDistance(double voxels)
 {
   this->GetMapper()->SetSampleDistance(voxels);

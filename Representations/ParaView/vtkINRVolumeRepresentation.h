@@ -28,6 +28,12 @@ public:
 
   ///@{
   /// Forwarded to vtkINRVolumeMapper, where they are documented.
+  void SetRenderMode(int mode);
+  void SetSamplesPerPixel(int paths);
+  void SetScatteringAlbedo(double albedo);
+  void SetAnisotropy(double meanCosine);
+  void SetMaximumBounces(int bounces);
+  void SetAmbientLight(double red, double green, double blue);
   void SetSampleDistance(double voxels);
   void SetAdaptiveSampling(bool on);
   void SetLevelOfDetailScale(double scale);
