@@ -184,9 +184,6 @@ struct Classified
   float weight[SampleBatch::Capacity];
 };
 
-/// A value off its range by less than this is the storage format's rounding, not a broken bound.
-constexpr float RoundingOfStorage = 0x1p-14f;
-
 /// -1 in the lanes of existing samples that were moved.
 Ints Moved(Floats value, Floats inside, int valid)
 {

@@ -10,6 +10,9 @@ namespace inr {
 /// Bytes of one stored voxel: float, or an integer of 16 or 8 bits.
 enum class VoxelBytes { One = 1, Two = 2, Four = 4 };
 
+/// A value off its range by less than this is the storage format's rounding, not a broken bound.
+constexpr float RoundingOfStorage = 0x1p-14f;
+
 /// What all bricks of a cache have in common. Plain data.
 struct BrickFormat
 {

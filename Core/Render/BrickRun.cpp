@@ -55,6 +55,7 @@ void BrickRun::open(int level, const BrickSpan& wanted, const BrickSpan& served,
   this->Exit = std::min(wanted.exit, served.exit);
   this->Reference = served.enter;
   this->Exact = wanted.key == served.key;
+  this->Served = served.key;
   this->Wish = wanted.key;
   this->Count = 0;
   this->Path.voxels = view.voxels;

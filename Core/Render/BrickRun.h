@@ -55,6 +55,7 @@ public:
 
   int level() const { return this->Level; }
   bool exact() const { return this->Exact; } ///< served == wanted
+  BrickKey served() const { return this->Served; }
   /// The brick to load, which is the wanted one unless said otherwise.
   BrickKey wish() const { return this->Wish; }
   void wishFor(BrickKey brick) { this->Wish = brick; }
@@ -68,6 +69,7 @@ private:
   BrickPath Path{};
   int Place = 0;
   bool Exact = false;
+  BrickKey Served = 0;
   BrickKey Wish = 0;
   int Count = 0;
 };

@@ -32,6 +32,15 @@ CachedRay::CachedRay(const CachedScene& scene, int x, int y)
       stream(PixelStream(scene.frame, x, y)), jitter(JitterOf(this->stream))
 {}
 
+CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
+    : Scene(scene), Missing(onMiss)
+{
+  if (scene.shading != nullptr) {
+    this->Shader.emplace(*scene.shading, scene.colors,
+                         BrickGradients(scene.cache, scene.format, scene.kernel));
+  }
+}
+
 CachedRay CachedMarcher::begin(int x, int y)
 {
   CachedRay ray(this->Scene, x, y);
@@ -44,9 +53,13 @@ bool CachedMarcher::march(CachedRay& state)
   this->Ended = false;
   this->Waiting = false;
   while (!this->Ended && !this->Waiting) {
-    this->place(state);
-    this->Scene.kernel.sample(this->Scene.format, this->Batch, this->Count);
-    this->composite(state);
+    if (this->Shader) {
+      this->advanceShaded(state);
+    } else {
+      this->place(state);
+      this->Scene.kernel.sample(this->Scene.format, this->Batch, this->Count);
+      this->composite(state);
+    }
     this->Ended = this->Ended || state.color.transmittance <= OpaqueTransmittance;
   }
   this->close(this->Runs[0], state.color.transmittance);
@@ -194,6 +207,8 @@ int CachedMarcher::addAlike(const CachedRay& state, const Sampling& sampling, in
   }
   for (int k = 0; k < count; ++k) {
     this->T[this->Count + k] = this->placeOf(state, sampling, k);
+    this->Intervals[this->Count + k] =
+        state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
   }
   for (int k = this->Count; k < this->Count + count; ++k) {
     this->Batch.along[k] = run->along(this->T[k]);
@@ -216,6 +231,7 @@ int CachedMarcher::addDithered(const CachedRay& state, const Sampling& sampling,
       return k;
     }
     this->T[this->Count] = t;
+    this->Intervals[this->Count] = at;
     this->Batch.along[this->Count] = run->along(t);
     this->Batch.path[this->Count] = run->place();
     this->Batch.multiple[this->Count] = sampling.multiple;
@@ -263,6 +279,7 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double t)
 void CachedMarcher::enlist(BrickRun& run)
 {
   run.setPlace(this->Paths);
+  this->Bricks[this->Paths] = run.served();
   this->Batch.paths[this->Paths++] = run.path();
 }
 
@@ -318,16 +335,76 @@ void CachedMarcher::compositeLast(CachedRay& state)
   float value = this->Batch.value[this->Count];
   const ValueRange range{this->Batch.low[this->Count], this->Batch.high[this->Count]};
   ClampToRange(range, value);
-  const glm::vec4 entry = this->Scene.colors.at(value);
-  const float alpha = 1.0f - std::pow(1.0f - entry.w, this->LastLength);
+  this->compositeColor(state, this->Scene.colors.at(value), this->LastLength, this->T[this->Count]);
+}
+
+void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
+{
+  const float alpha = 1.0f - std::pow(1.0f - color.w, length);
   const float weight = state.color.transmittance * alpha;
   for (int channel = 0; channel < 3; ++channel) {
-    state.color.rgb[channel] += entry[channel] * weight;
+    state.color.rgb[channel] += color[channel] * weight;
   }
   state.color.transmittance -= weight;
   if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
-    state.halfOpaqueAt = this->T[this->Count];
+    state.halfOpaqueAt = t;
   }
+}
+
+void CachedMarcher::advanceShaded(CachedRay& state)
+{
+  const CachedRay before = state; // gradients may ask for bricks that are not there
+  this->place(state);
+  this->Scene.kernel.sample(this->Scene.format, this->Batch, this->Count);
+  this->clampToRanges();
+  const bool stops = this->Missing == OnMiss::Stop;
+  const SampleShader::Request request{
+      state.ray, stops ? BrickGradients::Missing::Stop : BrickGradients::Missing::OneSided,
+      state.color.transmittance};
+  const std::size_t asked = this->Requests.entries().size();
+  glm::vec4 colors[SampleBatch::Capacity];
+  const int known = this->Shader->shade(this->Batch, this->Bricks, this->T, this->Count, request,
+                                        this->Requests, colors);
+  if (!stops) {
+    this->Statistics.missed += static_cast<std::int64_t>(this->Requests.entries().size() - asked);
+  }
+  this->compositeShaded(state, colors, known);
+  if (known < this->Count && state.color.transmittance > OpaqueTransmittance) {
+    this->goBackTo(known, before, state);
+  }
+}
+
+void CachedMarcher::clampToRanges()
+{
+  for (int k = 0; k < this->Count; ++k) {
+    const float value = this->Batch.value[k];
+    ClampToRange({this->Batch.low[k], this->Batch.high[k]}, this->Batch.value[k]);
+    const float moved = std::abs(value - this->Batch.value[k]);
+    this->Statistics.clamped += moved > RoundingOfStorage ? 1 : 0;
+  }
+}
+
+void CachedMarcher::compositeShaded(CachedRay& state, const glm::vec4* colors, int count)
+{
+  const double step = this->Scene.settings.step * this->Scene.settings.unitsPerT;
+  for (int k = 0; k < count && state.color.transmittance > OpaqueTransmittance; ++k) {
+    const bool isLast = this->LastLength > 0 && k + 1 == this->Count;
+    const float length =
+        isLast ? this->LastLength : static_cast<float>(Doubled(step, this->Batch.multiple[k]));
+    if (colors[k].w > 0.0f) {
+      this->compositeColor(state, colors[k], length, this->T[k]);
+    }
+  }
+}
+
+void CachedMarcher::goBackTo(int k, const CachedRay& before, CachedRay& state)
+{
+  state.next = this->Intervals[k];
+  state.walker = before.walker;
+  state.detail = before.detail;
+  this->Statistics.samples -= this->Count - k; // they will be counted again
+  this->Waiting = true;
+  this->Ended = false;
 }
 
 } // namespace inr

@@ -6,8 +6,10 @@
 #include "Core/Render/CellWalker.h"
 #include "Core/Render/LevelOfDetail.h"
 #include "Core/Render/RayMarching.h"
+#include "Core/Render/SampleShader.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace inr {
 
@@ -23,6 +25,7 @@ struct CachedScene
   const BrickKernel& kernel;
   BrickFormat format; ///< of the cache's bricks
   MarchSettings settings;
+  const Shading* shading; ///< null: colours as the transfer function gives them
 };
 
 /// Where a ray stands. Its samples sit on a lattice of its own, t = (k + jitter) * step.
@@ -52,7 +55,7 @@ enum class OnMiss {
 class CachedMarcher
 {
 public:
-  CachedMarcher(const CachedScene& scene, OnMiss onMiss) : Scene(scene), Missing(onMiss) {}
+  CachedMarcher(const CachedScene& scene, OnMiss onMiss);
 
   /// The ray through the centre of pixel (x, y), at its start.
   CachedRay begin(int x, int y);
@@ -96,6 +99,12 @@ private:
   void enlist(BrickRun& run);
   void composite(CachedRay& state);
   void compositeLast(CachedRay& state);
+  void advanceShaded(CachedRay& state);
+  void compositeShaded(CachedRay& state, const glm::vec4* colors, int count);
+  void compositeColor(CachedRay& state, const glm::vec4& color, float length, double t);
+  void clampToRanges();
+  /// Puts the ray back to before sample k of the batch, which began at `before`.
+  void goBackTo(int k, const CachedRay& before, CachedRay& state);
   void takeLogarithms();
 
   const CachedScene& Scene;
@@ -106,11 +115,14 @@ private:
   BrickRun Runs[2]; ///< of even and of odd levels: dithering alternates between two neighbours
   SampleBatch Batch{};
   double T[SampleBatch::Capacity];
+  std::int64_t Intervals[SampleBatch::Capacity]; ///< lattice interval at which a sample begins
+  BrickKey Bricks[SampleBatch::Capacity + 2];    ///< of the batch's paths
   int Count = 0;
   int Paths = 0;        ///< in Batch
   float LastLength = 0; ///< of the ray's last sample, if it is shorter than a step; else 0
   bool Waiting = false;
   bool Ended = false;
+  std::optional<SampleShader> Shader;
 };
 
 } // namespace inr

@@ -9,9 +9,6 @@ namespace inr {
 
 namespace {
 
-/// Tiles at hand at once: some ten megabytes of waiting rays at most.
-constexpr std::size_t WindowTiles = 192;
-
 void Add(const FrameStatistics& part, FrameStatistics& sum)
 {
   sum.rays += part.rays;
@@ -81,8 +78,11 @@ void CompletePass::start(ActiveTile& at, CachedMarcher& marcher, const PassOutpu
 
 void CompletePass::resume(ActiveTile& tile, CachedMarcher& marcher, const PassOutput& output) const
 {
+  bool first = true;
   const auto done = [&](WaitingRay& waiting) {
-    if (!marcher.march(waiting.ray)) {
+    const bool mayMarch = first || !this->Alone;
+    first = false;
+    if (!mayMarch || !marcher.march(waiting.ray)) {
       return false;
     }
     WritePixel(this->Scene, waiting.ray, waiting.x, waiting.y, output);
@@ -95,12 +95,13 @@ void CompletePass::resume(ActiveTile& tile, CachedMarcher& marcher, const PassOu
 void CompletePass::advance(const Arena& arena, const std::function<bool()>& keepGoing,
                            const PassOutput& output, RequestRanking& requests)
 {
-  while (this->Active.size() < WindowTiles && this->Next < this->Tiles.count()) {
+  while (this->Active.size() < this->Window && this->Next < this->Tiles.count()) {
     this->Active.push_back({this->Next++, false, {}});
   }
-  std::vector<FrameStatistics> statistics(this->Active.size());
-  std::vector<RequestList> lists(this->Active.size());
-  const auto count = static_cast<std::int64_t>(this->Active.size());
+  const std::size_t most = this->Alone ? 1 : this->Window;
+  const auto count = static_cast<std::int64_t>(std::min(this->Active.size(), most));
+  std::vector<FrameStatistics> statistics(static_cast<std::size_t>(count));
+  std::vector<RequestList> lists(static_cast<std::size_t>(count));
   ForEachTile(arena, count, keepGoing, [&](std::int64_t k) {
     const auto index = static_cast<std::size_t>(k);
     ActiveTile& tile = this->Active[index];
@@ -117,9 +118,18 @@ void CompletePass::advance(const Arena& arena, const std::function<bool()>& keep
     Add(statistics[k], this->Statistics);
     requests.add(lists[k]);
   }
+  this->Alone = false;
   const auto finished = [](const ActiveTile& tile) { return tile.waiting.empty(); };
   this->Active.erase(std::remove_if(this->Active.begin(), this->Active.end(), finished),
                      this->Active.end());
+}
+
+void CompletePass::crowd(std::int64_t loaded)
+{
+  this->Alone = loaded == 0;
+  if (4 * loaded < this->Scene.cache.capacity()) {
+    this->Window = std::max<std::size_t>(this->Window / 2, 1);
+  }
 }
 
 } // namespace inr

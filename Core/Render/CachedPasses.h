@@ -27,8 +27,8 @@ FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& 
 
 /// Marches the picture with every sample at the level it asks for, whatever the size of the cache:
 /// tiles in a fixed order, as many at a time as their waiting rays fit memory; a ray that misses a
-/// brick waits until the brick is there and goes on, so that no brick is needed twice by a ray and
-/// none has to stay for another.
+/// brick waits until the brick is there and goes on. A sample needs one brick, and one more for
+/// each axis along which its gradient reaches into a neighbour.
 class CompletePass
 {
 public:
@@ -38,6 +38,9 @@ public:
   /// that rays wait for come out of `requests`, in the order of their tiles.
   void advance(const Arena& arena, const std::function<bool()>& keepGoing, const PassOutput& output,
                RequestRanking& requests);
+  /// Says that only `loaded` of the latest requests fitted, for the rest of the cache holds what
+  /// rays that wait have used. Few: fewer tiles go on. None: the first ray does, alone.
+  void crowd(std::int64_t loaded);
   bool done() const { return this->Active.empty() && this->Next == this->Tiles.count(); }
   const FrameStatistics& statistics() const { return this->Statistics; }
 
@@ -63,6 +66,9 @@ private:
   std::int64_t Next = 0; ///< first tile that was not yet at hand
   std::vector<ActiveTile> Active;
   FrameStatistics Statistics;
+  /// Tiles at work at once: some ten megabytes of waiting rays at most.
+  std::size_t Window = 192;
+  bool Alone = false; ///< only the first ray goes on
 };
 
 } // namespace inr

@@ -68,7 +68,8 @@ void CachedRenderer::forgetColors()
 
 FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& geometry,
                                        const Majorants& majorants, const ColorLookup& colors,
-                                       const MarchSettings& settings, const PassOutput& output,
+                                       const MarchSettings& settings, const Shading* shading,
+                                       const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
 {
   if (this->Unfinished && frame.timeLimit > 0 && this->Unfinished->continues(frame)) {
@@ -76,33 +77,33 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
   }
   this->Unfinished.reset(); // before the table that it reads may change
   const StepLookup& steps = this->stepsFor(colors, settings.step * settings.unitsPerT);
-  const CachedScene scene{frame,   geometry,    majorants,    colors,
-                          steps,   this->Cache, this->Kernel, FormatOf(this->Cache),
-                          settings};
+  const CachedScene scene{frame,    geometry,    majorants,    colors,
+                          steps,    this->Cache, this->Kernel, FormatOf(this->Cache),
+                          settings, shading};
   return frame.timeLimit > 0 ? this->renderInTime(scene, output, keepGoing)
                              : this->renderComplete(scene, output, keepGoing);
 }
 
-std::int64_t CachedRenderer::load(const std::vector<BrickKey>& keys,
-                                  const std::function<bool()>& keepGoing)
+CachedRenderer::Loaded CachedRenderer::load(const std::vector<BrickKey>& keys,
+                                            const std::function<bool()>& keepGoing)
 {
   const std::int64_t voxels = this->Cache.hierarchy().voxelsPerBrick();
   const auto count = static_cast<std::int64_t>(keys.size());
   std::vector<float> values(static_cast<std::size_t>(BricksAtOnce * voxels));
   for (std::int64_t first = 0; first < count; first += BricksAtOnce) {
     if (first > 0 && keepGoing && !keepGoing()) { // never without progress
-      return first;
+      return {first, false};
     }
     const std::int64_t batch = std::min(BricksAtOnce, count - first);
     this->Source->infer(keys.data() + first, batch, values.data(), this->Threads);
     for (std::int64_t k = 0; k < batch; ++k) {
       if (!this->Cache.insert(keys[static_cast<std::size_t>(first + k)],
                               values.data() + k * voxels)) {
-        return first + k;
+        return {first + k, true};
       }
     }
   }
-  return count;
+  return {count, false};
 }
 
 FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const PassOutput& output,
@@ -122,7 +123,10 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
     // Room for what waits now must not be taken from what was loaded a moment ago for the same
     // rays.
     const std::int64_t most = this->Cache.capacity() - 1;
-    this->load(requests.ranked(most, false), keepGoing);
+    const Loaded loaded = this->load(requests.ranked(most, false), keepGoing);
+    if (loaded.full) {
+      pass.crowd(loaded.bricks);
+    }
     if (keepGoing && !keepGoing()) {
       throw Error(ErrorCode::Cancelled, "rendering stopped on request");
     }
@@ -169,7 +173,12 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
     RequestRanking requests;
     this->Unfinished->advance(this->Threads, keepGoing, requests);
     marching += march.seconds();
-    this->load(requests.ranked(this->Cache.capacity(), false), [&] { return timer.left() > 0; });
+    const auto inTime = [&] { return timer.left() > 0; };
+    const std::int64_t most = this->Cache.capacity();
+    const Loaded loaded = this->load(requests.ranked(most, false), inTime);
+    if (loaded.full) {
+      this->Unfinished->crowd(loaded.bricks);
+    }
   } while (!this->Unfinished->done() && timer.left() > 0);
   this->Unfinished->copyTo(output);
   FrameStatistics statistics = this->Unfinished->statistics();

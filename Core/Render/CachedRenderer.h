@@ -49,8 +49,8 @@ public:
   /// See Renderer::render. The references are for the call only.
   FrameStatistics render(const Frame& frame, const RayGeometry& geometry,
                          const Majorants& majorants, const ColorLookup& colors,
-                         const MarchSettings& settings, const PassOutput& output,
-                         const std::function<bool()>& keepGoing);
+                         const MarchSettings& settings, const Shading* shading,
+                         const PassOutput& output, const std::function<bool()>& keepGoing);
   /// Traces a round of a path-traced picture and brings what its paths missed: in the time that
   /// `timer` has left or, without one, all of it. Where the cache has no room for what the picture
   /// wants, the rest is inferred at the paths' points instead.
@@ -71,7 +71,12 @@ private:
                          const std::function<bool()>& keepGoing);
   void loadForPaths(const RequestRanking& requests, const Timer* timer,
                     const std::function<bool()>& keepGoing);
-  std::int64_t load(const std::vector<BrickKey>& keys, const std::function<bool()>& keepGoing);
+  struct Loaded
+  {
+    std::int64_t bricks;
+    bool full; ///< there were more than fitted beside what the latest frame used
+  };
+  Loaded load(const std::vector<BrickKey>& keys, const std::function<bool()>& keepGoing);
 
   CacheOptions Options;
   const BrickKernel& Kernel;

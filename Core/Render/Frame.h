@@ -8,9 +8,25 @@
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace inr {
+
+/// How a volume answers light; see Shading. As vtkVolumeProperty has them.
+struct Material
+{
+  float ambient = 0.1f;
+  float diffuse = 0.7f;
+  float specular = 0.2f;
+  float specularPower = 10.0f;
+
+  bool operator==(const Material& other) const
+  {
+    return this->ambient == other.ambient && this->diffuse == other.diffuse &&
+           this->specular == other.specular && this->specularPower == other.specularPower;
+  }
+};
 
 enum class RenderMode : std::uint8_t {
   RayMarching, ///< the medium emits and absorbs
@@ -36,6 +52,9 @@ struct Frame
   /// World-space half spaces; a point p is kept where dot(plane, (p, 1)) >= 0 for all of them.
   std::vector<glm::dvec4> clippingPlanes;
 
+  /// How the field's gradients are lit by `lights` in ray marching; none: colours are as the
+  /// transfer function has them.
+  std::optional<Material> shading;
   /// The scene's, for what is lit: none of them shines on a medium that only emits and absorbs.
   std::vector<Light> lights;
 

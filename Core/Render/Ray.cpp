@@ -39,6 +39,17 @@ bool IsFinite(const glm::dmat4& matrix)
   return true;
 }
 
+bool IsValid(const Material& material)
+{
+  for (const float part :
+       {material.ambient, material.diffuse, material.specular, material.specularPower}) {
+    if (!(part >= 0) || !std::isfinite(part)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 glm::dmat4 Inverse(const glm::dmat4& matrix, const char* message)
 {
   const glm::dmat4 inverse = glm::inverse(matrix);
@@ -79,6 +90,8 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture
           "the sample distance must be between 1/1000 and 1,000,000 voxels");
   Require(frame.levelOfDetailScale >= 0 && std::isfinite(frame.levelOfDetailScale),
           "the level-of-detail scale must be finite and not negative");
+  Require(!frame.shading || IsValid(*frame.shading),
+          "ambient, diffuse, specular and specular power must be finite and not negative");
   Require(frame.timeLimit >= 0, "the time limit must not be negative");
   Require(std::isfinite(frame.unitDistance) && frame.unitDistance > 0,
           "the opacity unit distance must be above 0");

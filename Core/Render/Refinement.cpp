@@ -15,9 +15,12 @@ Frame WithDepth(Frame frame, const std::vector<float>& depth)
 
 Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
     : OpaqueDepth(CopyOfDepth(scene.frame)), Picture(WithDepth(scene.frame, this->OpaqueDepth)),
-      Geometry(this->Picture, scene.cache.hierarchy().dims()),
-      Scene{this->Picture, this->Geometry, scene.majorants, scene.colors,  scene.steps,
-            scene.cache,   scene.kernel,   scene.format,    scene.settings},
+      Geometry(this->Picture, scene.cache.hierarchy().dims()), Lighting(ShadingOf(this->Picture)),
+      Scene{this->Picture,   this->Geometry,
+            scene.majorants, scene.colors,
+            scene.steps,     scene.cache,
+            scene.kernel,    scene.format,
+            scene.settings,  this->Lighting ? &*this->Lighting : nullptr},
       Pass(this->Scene), Rgba(soFar.rgba),
       Depth(soFar.depth != nullptr ? *soFar.depth : Image(soFar.rgba.width, soFar.rgba.height, 1))
 {}

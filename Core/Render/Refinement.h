@@ -4,6 +4,7 @@
 #include "Core/Image/Image.h"
 #include "Core/Render/CachedPasses.h"
 
+#include <optional>
 #include <vector>
 
 namespace inr {
@@ -25,6 +26,8 @@ public:
   /// One round of the complete pass; the bricks that it waits for come out of `requests`.
   void advance(const Arena& arena, const std::function<bool()>& keepGoing,
                RequestRanking& requests);
+  /// See CompletePass::crowd.
+  void crowd(std::int64_t loaded) { this->Pass.crowd(loaded); }
   bool done() const { return this->Pass.done(); }
   void copyTo(const PassOutput& output) const;
   const FrameStatistics& statistics() const { return this->Pass.statistics(); }
@@ -33,6 +36,7 @@ private:
   std::vector<float> OpaqueDepth;
   Frame Picture; ///< with its depth there
   RayGeometry Geometry;
+  std::optional<Shading> Lighting;
   CachedScene Scene;
   CompletePass Pass;
   Image Rgba;

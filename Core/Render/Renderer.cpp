@@ -38,7 +38,8 @@ struct Renderer::Implementation
 
   CachedRenderer& cached();
   FrameStatistics renderUncached(const Frame& frame, const RayGeometry& geometry,
-                                 const MarchSettings& settings, const PassOutput& output,
+                                 const MarchSettings& settings, const Shading* shading,
+                                 const PassOutput& output,
                                  const std::function<bool()>& keepGoing) const;
 
   FrameStatistics march(const Frame& frame, const PassOutput& output,
@@ -112,14 +113,13 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
   ++self.MajorantBuilds;
 }
 
-FrameStatistics
-Renderer::Implementation::renderUncached(const Frame& frame, const RayGeometry& geometry,
-                                         const MarchSettings& settings, const PassOutput& output,
-                                         const std::function<bool()>& keepGoing) const
+FrameStatistics Renderer::Implementation::renderUncached(
+    const Frame& frame, const RayGeometry& geometry, const MarchSettings& settings,
+    const Shading* shading, const PassOutput& output, const std::function<bool()>& keepGoing) const
 {
   const Timer timer;
   const MarchScene scene{frame,        geometry, this->Cells, this->Colors->lookup(),
-                         *this->Field, settings};
+                         *this->Field, settings, shading};
   const Tiling tiling(frame.width, frame.height);
   std::vector<FrameStatistics> tiles(static_cast<std::size_t>(tiling.count()));
   ForEachTile(this->Threads, tiling.count(), keepGoing, [&](std::int64_t k) {
@@ -140,10 +140,12 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   settings.step = frame.sampleDistance;
   settings.adaptive = frame.adaptiveSampling;
   settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
+  const std::optional<Shading> shading = ShadingOf(frame);
+  const Shading* lit = shading ? &*shading : nullptr;
   return this->Options.cached
              ? this->cached().render(frame, geometry, this->Cells, this->Colors->lookup(), settings,
-                                     output, keepGoing)
-             : this->renderUncached(frame, geometry, settings, output, keepGoing);
+                                     lit, output, keepGoing)
+             : this->renderUncached(frame, geometry, settings, lit, output, keepGoing);
 }
 
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,

@@ -12,6 +12,10 @@ FrameStatistics TileMarcher::march(const Tile& tile, Image& rgba, Image* depth)
   while (!this->Live.empty()) {
     this->placeSamples();
     this->inferValues();
+    if (this->Scene.shading != nullptr) {
+      this->inferGradients();
+      this->shade();
+    }
     this->composite();
   }
   this->writePixels(tile, rgba, depth);
@@ -61,6 +65,61 @@ void TileMarcher::inferValues()
   this->Statistics.samples += count;
 }
 
+void TileMarcher::inferGradients()
+{
+  const glm::vec3 voxel(1.0 / this->Scene.settings.dims);
+  const glm::vec3 low = 0.5f * voxel;
+  this->Lit.resize(this->Samples.size());
+  this->Visible.clear();
+  this->Positions.clear();
+  for (std::size_t k = 0; k < this->Samples.size(); ++k) {
+    float value = this->Values[k];
+    ClampToRange(this->Samples[k].range, value); // counted when it is composited
+    this->Lit[k] = this->Scene.colors.at(value);
+    if (this->Lit[k].w > 0.0f) {
+      this->Visible.push_back(k);
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0f, 1.0f}) {
+          glm::vec3 position = this->Samples[k].position;
+          position[axis] =
+              glm::clamp(position[axis] + side * voxel[axis], low[axis], 1.0f - low[axis]);
+          this->Positions.push_back(position);
+        }
+      }
+    }
+  }
+  const auto count = static_cast<std::int64_t>(this->Positions.size());
+  this->Neighbors.resize(this->Positions.size());
+  this->Scene.evaluator.evaluate(this->Positions.data(), count, this->Neighbors.data());
+  this->Statistics.samples += count;
+}
+
+void TileMarcher::shade()
+{
+  const glm::vec3 dims(this->Scene.settings.dims);
+  std::size_t live = 0;
+  for (std::size_t k = 0; k < this->Visible.size(); ++k) {
+    glm::vec3 gradient(0.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t lower = 6 * k + 2 * static_cast<std::size_t>(axis);
+      const float length =
+          (this->Positions[lower + 1][axis] - this->Positions[lower][axis]) * dims[axis];
+      const float difference = this->Neighbors[lower + 1] - this->Neighbors[lower];
+      gradient[axis] = length > 0.0f ? difference / length : 0.0f;
+    }
+    const std::size_t sample = this->Visible[k];
+    while (sample >= static_cast<std::size_t>(this->SampleEnds[live])) {
+      ++live;
+    }
+    const Ray& ray = this->Rays[static_cast<std::size_t>(this->Live[live])].ray;
+    glm::vec4& color = this->Lit[sample];
+    const glm::vec3 lit =
+        this->Scene.shading->shade(glm::vec3(color), this->Scene.shading->viewAlong(ray),
+                                   ray.at(this->Samples[sample].t), gradient);
+    color = glm::vec4(lit, color.w);
+  }
+}
+
 void TileMarcher::composite()
 {
   std::size_t alive = 0;
@@ -72,7 +131,9 @@ void TileMarcher::composite()
     for (; sample < end && state.color.w < OpaqueEnough; ++sample) {
       float value = this->Values[sample];
       this->Statistics.clamped += ClampToRange(this->Samples[sample].range, value) ? 1 : 0;
-      Composite(this->Scene.colors.at(value), this->Samples[sample], state);
+      const glm::vec4 color =
+          this->Scene.shading != nullptr ? this->Lit[sample] : this->Scene.colors.at(value);
+      Composite(color, this->Samples[sample], state);
     }
     sample = end;
     if (!exhausted && state.color.w < OpaqueEnough) {

@@ -4,6 +4,7 @@
 #include "Core/Image/Image.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Render/RayMarching.h"
+#include "Core/Render/Shading.h"
 #include "Core/Render/Tiling.h"
 
 #include <vector>
@@ -19,6 +20,7 @@ struct MarchScene
   const ColorLookup& colors;
   const Evaluator& evaluator;
   MarchSettings settings;
+  const Shading* shading; ///< null: colours as the transfer function gives them
 };
 
 /// Marches the rays of one tile together: place samples, infer them in one batch, composite, drop
@@ -39,6 +41,8 @@ private:
   void generateRays(const Tile& tile);
   void placeSamples();
   void inferValues();
+  void inferGradients();
+  void shade();
   void composite();
   void writePixels(const Tile& tile, Image& rgba, Image* depth) const;
 
@@ -50,6 +54,9 @@ private:
   std::vector<MarchSample> Samples;
   std::vector<glm::vec3> Positions;
   std::vector<float> Values;
+  std::vector<std::size_t> Visible; ///< samples that need a gradient
+  std::vector<float> Neighbors;     ///< below and above each of them along x, y and z
+  std::vector<glm::vec4> Lit;       ///< straight RGB and opacity of each sample
 };
 
 } // namespace inr

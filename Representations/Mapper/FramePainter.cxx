@@ -66,6 +66,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   const auto piece = PiecePlanes(grid, frame.worldToIndex);
   frame.clippingPlanes.insert(frame.clippingPlanes.end(), piece.begin(), piece.end());
   frame.lights = SceneLights(renderer);
+  frame.shading = SurfaceOf(volume->GetProperty());
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
   frame.mode = settings.mode;
   frame.paths = settings.paths;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/SampleShader.h"
+
+namespace inr {
+
+int SampleShader::shade(const SampleBatch& batch, const BrickKey* bricks, const double* t,
+                        int count, const Request& request, RequestList& requests, glm::vec4* colors)
+{
+  int visible[SampleBatch::Capacity];
+  int seen = 0;
+  for (int k = 0; k < count; ++k) {
+    colors[k] = this->Colors.at(batch.value[k]);
+    if (colors[k].w > 0.0f) {
+      visible[seen++] = k;
+    }
+  }
+  if (seen == 0) {
+    return count;
+  }
+  glm::vec3 gradients[SampleBatch::Capacity];
+  const int found = this->Gradients.find(batch, bricks, visible, seen, request.missing,
+                                         request.transmittance, requests, gradients);
+  const Shading::View view = this->Lighting.viewAlong(request.ray);
+  for (int k = 0; k < found; ++k) {
+    glm::vec4& color = colors[visible[k]];
+    const glm::vec3 lit =
+        this->Lighting.shade(glm::vec3(color), view, request.ray.at(t[visible[k]]), gradients[k]);
+    color = glm::vec4(lit, color.w);
+  }
+  return found < seen ? visible[found] : count;
+}
+
+} // namespace inr

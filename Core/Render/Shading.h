@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Render/Frame.h"
+#include "Core/Render/Ray.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace inr {
+
+/// Gradient shading as VTK's volume renderers do it: with n the direction of the field's gradient,
+/// l the one to a light, v the one to the eye and r = 2 (n.l) n - l,
+///
+///   colour * ambient + sum over lights of (colour * diffuse * |n.l| + specular * (r.v)^power) * I
+///
+/// where both sides of a surface are lit and a sample without a gradient gets the ambient part
+/// only (vtkVolumeShaderComposer.h, two-sided lighting). I is the light's colour at the place.
+class Shading
+{
+public:
+  /// Of `frame`, which must say how to shade and have been checked by a RayGeometry.
+  explicit Shading(const Frame& frame);
+
+  /// What shading needs to know about a ray.
+  struct View
+  {
+    glm::dvec3 toEye; ///< world unit vector
+  };
+  View viewAlong(const Ray& ray) const;
+
+  /// Straight RGB of a sample at point indices `index` where the field changes by `gradient` per
+  /// voxel of level 0.
+  glm::vec3 shade(const glm::vec3& color, const View& view, const glm::dvec3& index,
+                  const glm::vec3& gradient) const;
+
+private:
+  Material Surface;
+  std::vector<Light> Lights;
+  std::vector<Illumination> Constant; ///< of the directional lights, which come first
+  glm::dmat4 ToWorld;
+  glm::dmat3 GradientToWorld;
+};
+
+/// None when `frame` is not shaded.
+inline std::optional<Shading> ShadingOf(const Frame& frame)
+{
+  return frame.shading ? std::optional<Shading>(frame) : std::nullopt;
+}
+
+} // namespace inr
