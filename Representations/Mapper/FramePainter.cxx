@@ -66,7 +66,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   const auto piece = PiecePlanes(grid, frame.worldToIndex);
   frame.clippingPlanes.insert(frame.clippingPlanes.end(), piece.begin(), piece.end());
   frame.lights = SceneLights(renderer);
-  frame.shading = SurfaceOf(volume->GetProperty());
+  frame.shading = MaterialOf(volume->GetProperty());
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
   frame.mode = settings.mode;
   frame.paths = settings.paths;
@@ -102,30 +102,30 @@ MapperInput FindInput(vtkVolumeMapper* mapper)
   return result;
 }
 
-PaintMessages FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
-                                  const PaintSettings& settings)
+std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                                const PaintSettings& settings)
 {
   const auto start = Clock::now();
   this->Last = {};
   const MapperInput input = FindInput(mapper);
   if (!input.array) {
-    return {input.problem, {}};
+    return input.problem;
   }
   vtkVolumeProperty* property = volume->GetProperty();
-  PaintMessages messages{WhyRefused(mapper, property, input.grid.image), WhatIsLeftOut(property)};
-  if (!messages.error.empty()) {
-    return messages;
+  std::string problem = WhyRefused(mapper, property, input.grid.image);
+  if (!problem.empty()) {
+    return problem;
   }
   this->makeRenderer(input.array->GetModel(), settings.renderer);
   this->Caster->setTransferFunction(this->TransferFunctions.get(property));
   Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
   frame.timeLimit = this->timeLimit(renderer->GetRenderWindow(), settings.stillTimeLimit);
   if (!this->draw(frame, renderer)) {
-    messages.error = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
-                     "float textures.";
+    problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
+              "float textures.";
   }
   this->Last.seconds = SecondsSince(start);
-  return messages;
+  return problem;
 }
 
 void FramePainter::makeRenderer(const ModelPointer& model, const RendererOptions& options)

@@ -46,13 +46,6 @@ struct PaintSettings
   RendererOptions renderer;
 };
 
-/// What the user has to be told; empty strings mean nothing.
-struct PaintMessages
-{
-  std::string error;
-  std::string warning;
-};
-
 /// The last picture made and what it took; without pixels when nothing was drawn.
 struct PaintedFrame
 {
@@ -70,10 +63,10 @@ struct PaintedFrame
 class FramePainter
 {
 public:
-  /// Draws one frame; with an error message nothing is drawn. A frame aborted by the render window
-  /// is not drawn and not an error. Throws what Renderer throws.
-  PaintMessages paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
-                      const PaintSettings& settings);
+  /// Draws one frame and returns an empty text, or draws nothing and returns why. A frame aborted
+  /// by the render window is not drawn and not an error. Throws what Renderer throws.
+  std::string paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                    const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Last; }
   void release(vtkWindow* window)
   {

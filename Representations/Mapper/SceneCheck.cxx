@@ -53,12 +53,4 @@ std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property, vtk
   return {};
 }
 
-std::string WhatIsLeftOut(vtkVolumeProperty* property)
-{
-  if (property->GetShade()) {
-    return "Shading is on, but an INR is drawn unshaded; turn shading off to silence this.";
-  }
-  return {};
-}
-
 } // namespace inr

@@ -14,7 +14,4 @@ namespace inr {
 /// What this mapper lacks is refused, never drawn as if it had not been asked for.
 std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property, vtkImageData* image);
 
-/// What will look different from what was asked for, although it is drawn; usually empty.
-std::string WhatIsLeftOut(vtkVolumeProperty* property);
-
 } // namespace inr

@@ -4,6 +4,7 @@
 #include <vtkLight.h>
 #include <vtkLightCollection.h>
 #include <vtkRenderer.h>
+#include <vtkVolumeProperty.h>
 
 #include <glm/common.hpp>
 
@@ -62,6 +63,17 @@ std::vector<Light> SceneLights(vtkRenderer* renderer)
     }
   }
   return result;
+}
+
+std::optional<Material> MaterialOf(vtkVolumeProperty* property)
+{
+  if (!property->GetShade()) {
+    return std::nullopt;
+  }
+  return Material{static_cast<float>(property->GetAmbient()),
+                  static_cast<float>(property->GetDiffuse()),
+                  static_cast<float>(property->GetSpecular()),
+                  static_cast<float>(property->GetSpecularPower())};
 }
 
 } // namespace inr

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Lights.h"
+#include "Core/Render/Frame.h"
 
+#include <optional>
 #include <vector>
 
 class vtkRenderer;
+class vtkVolumeProperty;
 
 namespace inr {
 
@@ -13,5 +15,8 @@ namespace inr {
 /// lights where the camera has taken them. Colour is VTK's diffuse colour times intensity; spots of
 /// 90 degrees and more are points, as everywhere in VTK.
 std::vector<Light> SceneLights(vtkRenderer* renderer);
+
+/// How a volume answers light; none unless shading is on.
+std::optional<Material> MaterialOf(vtkVolumeProperty* property);
 
 } // namespace inr

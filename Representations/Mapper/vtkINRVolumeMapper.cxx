@@ -21,7 +21,6 @@ struct vtkINRVolumeMapper::Internals
 {
   inr::FramePainter Painter;
   std::string LastError;
-  std::string LastWarning;
 };
 
 vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>()) {}
@@ -117,26 +116,22 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   if (renderer->GetSelector()) {
     return; // a selection buffer holds identities, not colours
   }
-  inr::PaintMessages messages;
+  std::string problem;
   try {
-    messages = this->Self->Painter.paint(this, renderer, volume, this->Settings());
-  } catch (const std::exception& problem) {
-    messages.error = problem.what();
+    problem = this->Self->Painter.paint(this, renderer, volume, this->Settings());
+  } catch (const std::exception& exception) {
+    problem = exception.what();
   }
   this->TimeToDraw = this->Self->Painter.last().seconds;
-  this->ReportOnce(messages.error, messages.warning);
+  this->ReportOnce(problem);
 }
 
-void vtkINRVolumeMapper::ReportOnce(const std::string& error, const std::string& warning)
+void vtkINRVolumeMapper::ReportOnce(const std::string& problem)
 {
-  if (!error.empty() && error != this->Self->LastError) {
-    vtkErrorMacro(<< error);
+  if (!problem.empty() && problem != this->Self->LastError) {
+    vtkErrorMacro(<< problem);
   }
-  if (!warning.empty() && warning != this->Self->LastWarning) {
-    vtkWarningMacro(<< warning);
-  }
-  this->Self->LastError = error;
-  this->Self->LastWarning = warning;
+  this->Self->LastError = problem;
 }
 
 bool vtkINRVolumeMapper::WriteEXR(const char* fileName)

@@ -10,13 +10,14 @@
  * Honoured: every camera (perspective, parallel, stereo, off-axis), tiles and viewports, the
  * volume's matrix, the image's origin, spacing and direction, opaque geometry (its depth buffer is
  * read only when a visible prop has opaque geometry), the mapper's clipping planes, and from
- * vtkVolumeProperty the colour and scalar opacity functions of component 0 and the
- * ScalarOpacityUnitDistance, a length in world space. Interpolation type has no meaning here: an
- * INR is continuous.
+ * vtkVolumeProperty the colour and scalar opacity functions of component 0, the
+ * ScalarOpacityUnitDistance, a length in world space, and shading: ambient, diffuse, specular and
+ * specular power by the renderer's lights. Interpolation type has no meaning here: an INR is
+ * continuous.
  *
  * Refused with an error and not drawn: blend modes other than composite, cropping, gradient
- * opacity, 2D transfer functions, masks, scalars that are not an INR. Shading draws a warning. A
- * message comes once, not at every frame.
+ * opacity, 2D transfer functions, masks, scalars that are not an INR. A message comes once, not at
+ * every frame.
  *
  * What rays meet is decoded brick by brick, at the level of resolution that the picture's pixels
  * deserve, and kept in a cache from frame to frame. A still frame waits until every sample is
@@ -273,7 +274,7 @@ private:
   vtkINRVolumeMapper(const vtkINRVolumeMapper&) = delete;
   void operator=(const vtkINRVolumeMapper&) = delete;
 
-  void ReportOnce(const std::string& error, const std::string& warning);
+  void ReportOnce(const std::string& problem);
 
   inr::PaintSettings Settings() const;
 

@@ -153,15 +153,6 @@ TEST_F(Refusals, ATransformThatFlattens)
   EXPECT_TRUE(this->draws());
 }
 
-TEST_F(Refusals, ShadingIsOnlyAWarning)
-{
-  this->property->ShadeOn();
-  EXPECT_TRUE(this->draws());
-  EXPECT_TRUE(this->draws());
-  EXPECT_EQ(this->messages.warnings, 1);
-  EXPECT_EQ(this->messages.errors, 0);
-}
-
 TEST_F(Refusals, ComeAgainAfterTheSceneWasFine)
 {
   this->mapper->CroppingOn();

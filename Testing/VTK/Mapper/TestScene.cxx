@@ -10,13 +10,16 @@
 #include <vtkColorTransferFunction.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkImageData.h>
+#include <vtkLight.h>
 #include <vtkPNGReader.h>
 #include <vtkPNGWriter.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkPlane.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
+#include <vtkRendererCollection.h>
 #include <vtkSphereSource.h>
+#include <vtkVolumeCollection.h>
 #include <vtkVolumeProperty.h>
 #include <vtkWindowToImageFilter.h>
 
@@ -64,6 +67,14 @@ void Transformed(Scene& scene, const MapperFactory& mapper)
   volume->RotateZ(40);
   volume->SetPosition(7, -3, 11);
   Scene::look(renderer);
+}
+
+vtkVolume* FirstVolume(Scene& scene)
+{
+  vtkRenderer* renderer = scene.window->GetRenderers()->GetFirstRenderer();
+  vtkVolumeCollection* volumes = renderer->GetVolumes();
+  volumes->InitTraversal();
+  return volumes->GetNextVolume();
 }
 
 void OpaqueInside(Scene& scene, const MapperFactory& mapper)
@@ -117,6 +128,40 @@ void Stereo(Scene& scene, const MapperFactory& mapper)
   scene.window->SetStereoTypeToRight();
 }
 
+void Shaded(Scene& scene, const MapperFactory& mapper)
+{
+  Perspective(scene, mapper);
+  vtkVolume* volume = FirstVolume(scene);
+  volume->GetProperty()->ShadeOn();
+  volume->GetProperty()->SetSpecular(0.5);
+}
+
+/// Without ambient and specular parts: with more than a headlight VTK's mapper has an error in
+/// each.
+void Lights(Scene& scene, const MapperFactory& mapper)
+{
+  Perspective(scene, mapper);
+  vtkVolume* volume = FirstVolume(scene);
+  volume->GetProperty()->ShadeOn();
+  volume->GetProperty()->SetAmbient(0);
+  volume->GetProperty()->SetDiffuse(0.9);
+  volume->GetProperty()->SetSpecular(0);
+  vtkRenderer* renderer = scene.window->GetRenderers()->GetFirstRenderer();
+  const double* center = volume->GetCenter();
+  vtkNew<vtkLight> sun;
+  sun->SetPosition(center[0] + 100, center[1] + 300, center[2] - 100);
+  sun->SetFocalPoint(center[0], center[1], center[2]);
+  sun->SetDiffuseColor(1.0, 0.6, 0.2);
+  renderer->AddLight(sun);
+  vtkNew<vtkLight> lamp;
+  lamp->SetPositional(true);
+  lamp->SetConeAngle(180);
+  lamp->SetPosition(center[0] - 60, center[1], center[2] + 70);
+  lamp->SetFocalPoint(center[0], center[1], center[2]);
+  lamp->SetDiffuseColor(0.2, 0.4, 1.0);
+  renderer->AddLight(lamp);
+}
+
 } // namespace
 
 std::vector<SceneCase> SceneCases()
@@ -130,7 +175,9 @@ std::vector<SceneCase> SceneCases()
           {"TwoViewports", TwoViewports, false, false},
           {"ClippingPlane", ClippingPlane},
           {"Stereo", Stereo, false, false},
-          {"Oblique", Perspective, true}};
+          {"Oblique", Perspective, true},
+          {"Shaded", Shaded},
+          {"Lights", Lights}};
 }
 
 Scene::Scene()
