@@ -104,9 +104,19 @@ float ColorTable::maximumExtinction(const ValueRange& range) const
   if (end < -1.0f || begin > top + 1.0f) {
     return maximum;
   }
-  const int first = static_cast<int>(std::clamp(std::floor(begin), 0.0f, top));
-  const int last = static_cast<int>(std::clamp(std::ceil(end), 0.0f, top));
+  const int first = static_cast<int>(std::clamp(begin, 0.0f, top));
+  const float inside = std::clamp(end, 0.0f, top);
+  const int before = static_cast<int>(inside);
+  const int last = static_cast<float>(before) < inside ? before + 1 : before;
   return std::max(maximum, this->maximumOverNodes(first, last));
+}
+
+void ColorTable::maximumExtinctions(const ValueRange* ranges, std::int64_t count,
+                                    float* extinctions) const
+{
+  for (std::int64_t k = 0; k < count; ++k) {
+    extinctions[k] = this->maximumExtinction(ranges[k]);
+  }
 }
 
 } // namespace inr

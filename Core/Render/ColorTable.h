@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace inr {
@@ -64,6 +65,8 @@ public:
   /// Largest extinction, -ln(1 - opacity), over the normalised values [low, high]; 0 for an empty
   /// range.
   float maximumExtinction(const ValueRange& range) const;
+  /// Those of `count` ranges.
+  void maximumExtinctions(const ValueRange* ranges, std::int64_t count, float* extinctions) const;
 
 private:
   float maximumOverNodes(int first, int last) const;
