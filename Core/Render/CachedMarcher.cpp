@@ -28,7 +28,8 @@ double Doubled(double value, int power)
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
     : ray(scene.geometry.ray(x, y)),
       detail(this->ray, scene.frame.levelOfDetailScale, scene.cache.hierarchy().levels()),
-      walker(scene.majorants, scene.settings.dims, this->ray),
+      walker(scene.majorants, scene.settings.dims, this->ray, scene.frame.levelOfDetailScale,
+             scene.cache.hierarchy().levels()),
       stream(PixelStream(scene.frame, x, y)), jitter(JitterOf(this->stream))
 {}
 
@@ -102,14 +103,13 @@ CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
   const MarchSettings& settings = this->Scene.settings;
   const int adaptive =
       settings.adaptive ? 2 : 0; // at most 4 times as long where little can be seen
-  const ValueRange& range = state.walker.range();
   const double depth = state.walker.extinction() * settings.unitsPerT * settings.step;
   state.detail.moveTo(state.walker.enter());
   int longest = state.detail.coarsest();
   for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= faint; ++k) {
     ++longest;
   }
-  return {state.walker.exit(), range.low, range.high, longest};
+  return {state.walker.exit(), longest};
 }
 
 CachedMarcher::Sampling CachedMarcher::samplingAt(const CachedRay& state, const Segment& segment,
@@ -132,7 +132,6 @@ void CachedMarcher::fill(CachedRay& state, const Segment& segment)
   const double step = this->Scene.settings.step;
   const double end = state.ray.length;
   const std::int64_t first = state.next;
-  const int begun = this->Count;
   while (this->Count < SampleBatch::Capacity) {
     const Sampling sampling = this->samplingAt(state, segment, state.next);
     const double begin = static_cast<double>(state.next) * step;
@@ -154,8 +153,6 @@ void CachedMarcher::fill(CachedRay& state, const Segment& segment)
       break;
     }
   }
-  std::fill(this->Batch.low + begun, this->Batch.low + this->Count, segment.low);
-  std::fill(this->Batch.high + begun, this->Batch.high + this->Count, segment.high);
 }
 
 int CachedMarcher::likeSamples(const CachedRay& state, const Segment& segment,
@@ -210,13 +207,8 @@ int CachedMarcher::addAlike(const CachedRay& state, const Sampling& sampling, in
     this->Intervals[this->Count + k] =
         state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
   }
-  for (int k = this->Count; k < this->Count + count; ++k) {
-    this->Batch.along[k] = run->along(this->T[k]);
-    this->Batch.path[k] = run->place();
-    this->Batch.multiple[k] = sampling.multiple;
-  }
+  this->fillIn(state, *run, sampling.multiple, count);
   run->count(count);
-  this->Count += count;
   return count;
 }
 
@@ -232,13 +224,24 @@ int CachedMarcher::addDithered(const CachedRay& state, const Sampling& sampling,
     }
     this->T[this->Count] = t;
     this->Intervals[this->Count] = at;
-    this->Batch.along[this->Count] = run->along(t);
-    this->Batch.path[this->Count] = run->place();
-    this->Batch.multiple[this->Count] = sampling.multiple;
+    this->fillIn(state, *run, sampling.multiple, 1);
     run->count(1);
-    ++this->Count;
   }
   return most;
+}
+
+void CachedMarcher::fillIn(const CachedRay& state, const BrickRun& run, int multiple, int count)
+{
+  const ValueRange range =
+      run.exact() ? state.walker.range() : state.walker.range(IdOf(run.served()).level);
+  for (int k = this->Count; k < this->Count + count; ++k) {
+    this->Batch.along[k] = run.along(this->T[k]);
+    this->Batch.path[k] = run.place();
+    this->Batch.multiple[k] = multiple;
+    this->Batch.low[k] = range.low;
+    this->Batch.high[k] = range.high;
+  }
+  this->Count += count;
 }
 
 BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double t)

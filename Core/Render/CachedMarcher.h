@@ -71,8 +71,6 @@ private:
   struct Segment
   {
     double exit;
-    float low; ///< value range
-    float high;
     int longest; ///< log2 of the most steps a sample may stand for
   };
 
@@ -94,6 +92,8 @@ private:
   int addAlike(const CachedRay& state, const Sampling& sampling, int most);
   int addDithered(const CachedRay& state, const Sampling& sampling, int most);
   BrickRun* runFor(const CachedRay& state, int level, double t);
+  /// Puts down what `count` samples on the way through the run's brick have in common.
+  void fillIn(const CachedRay& state, const BrickRun& run, int multiple, int count);
   bool open(BrickRun& run, const Ray& ray, int level, double t);
   void close(BrickRun& run, float transmittance);
   void enlist(BrickRun& run);

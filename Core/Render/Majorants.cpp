@@ -1,28 +1,79 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Majorants.h"
 
-#include "Core/Parallel.h"
+#include "Core/Render/RangeGrids.h"
+
+#include <limits>
+#include <utility>
 
 namespace inr {
 
+namespace {
+
+constexpr int EveryLevel = std::numeric_limits<int>::max();
+
+MacroCells WithoutHoles(const MacroCells& cells)
+{
+  return cells.empty() ? MacroCells{glm::i64vec3(1), glm::dvec3(1.0), {}, {{0.0f, 1.0f}}} : cells;
+}
+
+/// The coarsest level whose samples in a cell show nothing beyond the neighbouring cells; below 0
+/// where even those of level 0 do.
+int CoarsestLevelIn(const MacroCells& cells, const glm::i64vec3& volumeDims)
+{
+  constexpr double reach = 1.5; // in voxels of the level, which are at most 2^level native ones
+  int coarsest = EveryLevel;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cells.dims[axis] > 1) {
+      const double edge = cells.spacing[axis] * static_cast<double>(volumeDims[axis]);
+      coarsest = glm::min(coarsest, static_cast<int>(std::floor(std::log2(edge / reach))));
+    }
+  }
+  return coarsest;
+}
+
+} // namespace
+
 Majorants::Majorants(const MacroCells& cells)
-    : Dims(cells.empty() ? glm::i64vec3(1) : cells.dims),
-      Spacing(cells.empty() ? glm::dvec3(1.0) : cells.spacing),
-      Ranges(cells.empty() ? std::vector<ValueRange>{{0.0f, 1.0f}} : cells.ranges),
-      Extinctions(this->Ranges.size(), 0.0f), Empty(this->Dims)
-{}
+{
+  this->Grids.push_back({MajorantGrid(WithoutHoles(cells)), 0, EveryLevel});
+}
+
+Majorants::Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, const Arena& arena)
+    : Majorants(cells)
+{
+  if (cells.empty()) {
+    return;
+  }
+  this->Grids.front().coarsestLevel = 0;
+  MacroCells ranges = cells;
+  int size = 0;
+  while (this->Grids.back().coarsestLevel != EveryLevel) {
+    const int coarsest = CoarsestLevelIn(ranges, volumeDims);
+    if (coarsest > this->Grids.back().coarsestLevel) {
+      this->Grids.push_back({MajorantGrid(Dilated(ranges, arena)), size, coarsest});
+    }
+    ranges = Joined(ranges, arena);
+    ++size;
+  }
+}
 
 void Majorants::update(const ColorTable& colors, const Arena& arena)
 {
-  constexpr std::int64_t cellsPerTask = 4096;
-  const auto count = static_cast<std::int64_t>(this->Ranges.size());
-  arena.forEachBlock(count, cellsPerTask, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t k = begin; k < end; ++k) {
-      const auto cell = static_cast<std::size_t>(k);
-      this->Extinctions[cell] = colors.maximumExtinction(this->Ranges[cell]);
-    }
-  });
-  this->Empty.update(this->Extinctions, arena);
+  for (Grid& grid : this->Grids) {
+    grid.cells.update(colors, arena);
+  }
+}
+
+const ValueRange& Majorants::rangeAround(int grid, const glm::i64vec3& cell, int level) const
+{
+  const int size = this->at(grid).size;
+  while (this->coarsestLevel(grid) < level) {
+    ++grid;
+  }
+  const Grid& around = this->at(grid);
+  const glm::i64vec3 at = cell >> std::int64_t{around.size - size};
+  return around.cells.range(around.cells.index(at));
 }
 
 } // namespace inr

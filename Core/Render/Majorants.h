@@ -1,55 +1,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Model/MacroCells.h"
-#include "Core/Render/ColorTable.h"
-#include "Core/Render/EmptySpace.h"
+#include "Core/Render/MajorantGrid.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace inr {
 
-class Arena;
-
-/// Value ranges joined with a transfer function. Space without a range table (files that lack one)
-/// is one cell that may hold anything.
+/// Value ranges joined with a transfer function, for samples of every cache level.
+///
+/// A sample of level l shows what is within 1.5 voxels of that level: between it and the centre of
+/// the furthest voxel that it is interpolated from lies one, half a voxel further reaches the box
+/// that this voxel is the mean of. Samples of level 0 go by the model's own cells (grid 0), which
+/// hold that apron already. Those of coarser levels go by grids whose cells, of a power of two
+/// times that size, are at least so large and bound all that their neighbours do too.
 class Majorants
 {
 public:
+  /// For samples of level 0 only. Space without a range table (files that lack one) is one cell
+  /// that may hold anything.
   explicit Majorants(const MacroCells& cells);
+  /// For all levels, in time proportional to the cells.
+  Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, const Arena& arena);
 
   /// Recomputes every cell's extinction.
   void update(const ColorTable& colors, const Arena& arena);
 
-  const glm::i64vec3& dims() const { return this->Dims; }
-  const glm::dvec3& spacing() const { return this->Spacing; }
-  /// Cells are numbered x fastest.
-  std::int64_t index(const glm::i64vec3& at) const
-  {
-    return at.x + this->Dims.x * (at.y + this->Dims.y * at.z);
-  }
-  const ValueRange& range(std::int64_t cell) const
-  {
-    return this->Ranges[static_cast<std::size_t>(cell)];
-  }
-  /// -ln(1 - a) for the largest opacity a (per unit distance) of any value in the cell's range; 0 =
-  /// invisible.
-  float extinction(std::int64_t cell) const
-  {
-    return this->Extinctions[static_cast<std::size_t>(cell)];
-  }
-
-  /// The largest aligned block of invisible cells around a cell has 2^k cells per axis; -1 = the
-  /// cell is visible.
-  int emptyBlock(std::int64_t cell) const { return this->Empty.block(cell); }
+  int grids() const { return static_cast<int>(this->Grids.size()); }
+  const MajorantGrid& grid(int number) const { return this->at(number).cells; }
+  /// The coarsest level that a grid bounds; it bounds all finer ones too. The last grid bounds all.
+  int coarsestLevel(int grid) const { return this->at(grid).coarsestLevel; }
+  /// Bounds samples of `level` in a cell of a grid.
+  const ValueRange& rangeAround(int grid, const glm::i64vec3& cell, int level) const;
 
 private:
-  glm::i64vec3 Dims;
-  glm::dvec3 Spacing;
-  std::vector<ValueRange> Ranges;
-  std::vector<float> Extinctions; ///< apart: empty space is left by looking at nothing else
-  EmptySpace Empty;
+  struct Grid
+  {
+    MajorantGrid cells;
+    int size; ///< log2 of a cell's edge over that of grid 0
+    int coarsestLevel;
+  };
+  const Grid& at(int number) const { return this->Grids[static_cast<std::size_t>(number)]; }
+
+  std::vector<Grid> Grids;
 };
 
 } // namespace inr

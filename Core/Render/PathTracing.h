@@ -40,11 +40,16 @@ struct PathScene
   int levels;       ///< that a point may be asked at, at least 1
 };
 
+INR_HOST_DEVICE inline CellWalker WalkerFor(const PathScene& scene, const Ray& ray)
+{
+  return {scene.majorants, scene.dims, ray, scene.frame.levelOfDetailScale, scene.levels};
+}
+
 /// Where a path stands: on its way, or between a scattering and a light.
 struct PathState
 {
   INR_HOST_DEVICE PathState(const PathScene& scene, const Ray& pixelRay, std::uint64_t pixelStream)
-      : ray(pixelRay), walker(scene.majorants, scene.dims, pixelRay), stream(pixelStream)
+      : ray(pixelRay), walker(WalkerFor(scene, pixelRay)), stream(pixelStream)
   {}
 
   Ray ray; ///< the one that is being followed now
@@ -100,7 +105,7 @@ INR_HOST_DEVICE inline void Follow(const PathScene& scene, PathState& path, cons
 {
   path.ray = ray;
   path.ray.footprint = path.footprint;
-  path.walker = CellWalker(scene.majorants, scene.dims, path.ray);
+  path.walker = WalkerFor(scene, path.ray);
   path.t = 0;
 }
 
@@ -199,7 +204,7 @@ INR_HOST_DEVICE inline bool PlaceSample(const PathScene& scene, PathState& path,
     }
   }
   LevelOfDetail detail(path.ray, scene.frame.levelOfDetailScale, scene.levels);
-  detail.moveTo(path.t);
+  detail.moveTo(path.walker.enter());
   const int level = detail.isDithered()
                         ? detail.dithered(path.stream, static_cast<std::int64_t>(path.drawn++))
                         : detail.level();

@@ -5,7 +5,7 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Random.h"
-#include "Core/Render/Majorants.h"
+#include "Core/Render/MajorantGrid.h"
 #include "Core/Render/Ray.h"
 
 #include <glm/vec3.hpp>
@@ -65,12 +65,12 @@ constexpr float OpaqueEnough = 0.999f;
 /// The macro-cell of a point in the unit cube, and where the ray leaves it.
 struct CellVisit
 {
-  float extinction; ///< see Majorants
+  float extinction; ///< see MajorantGrid
   ValueRange range;
   double exit; ///< t, above the t of the visit
 };
 
-INR_HOST_DEVICE inline CellVisit VisitCell(const Majorants& majorants,
+INR_HOST_DEVICE inline CellVisit VisitCell(const MajorantGrid& majorants,
                                            const MarchSettings& settings, const Ray& ray, double t)
 {
   const glm::dvec3 u = (ray.at(t) + 0.5) / settings.dims;
@@ -122,8 +122,9 @@ INR_HOST_DEVICE inline int StepsAtOnce(const MarchSettings& settings, std::int64
 }
 
 /// Places up to `most` samples of a ray, skipping what cannot be seen; fewer only at the ray's end.
-INR_HOST_DEVICE inline int PlaceSamples(const Majorants& majorants, const MarchSettings& settings,
-                                        MarchState& state, int most, MarchSample* samples)
+INR_HOST_DEVICE inline int PlaceSamples(const MajorantGrid& majorants,
+                                        const MarchSettings& settings, MarchState& state, int most,
+                                        MarchSample* samples)
 {
   const Ray& ray = state.ray;
   int count = 0;

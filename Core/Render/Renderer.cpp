@@ -32,8 +32,10 @@ struct Renderer::Implementation
 {
   Implementation(std::shared_ptr<const Evaluator> field, VolumeInfo volume, const MacroCells& cells,
                  RendererOptions options)
-      : Field(std::move(field)), Volume(std::move(volume)), Cells(cells),
-        Options(std::move(options)), Threads(this->Options.threads)
+      : Field(std::move(field)), Volume(std::move(volume)), Options(std::move(options)),
+        Threads(this->Options.threads),
+        Cells(this->Options.cached ? Majorants(cells, this->Volume.dims, this->Threads)
+                                   : Majorants(cells))
   {}
 
   CachedRenderer& cached();
@@ -49,9 +51,9 @@ struct Renderer::Implementation
 
   std::shared_ptr<const Evaluator> Field;
   VolumeInfo Volume;
-  Majorants Cells;
   RendererOptions Options;
   Arena Threads;
+  Majorants Cells;
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
   std::optional<CachedRenderer> Cached; ///< made by the first frame that needs it
@@ -118,8 +120,9 @@ FrameStatistics Renderer::Implementation::renderUncached(
     const Shading* shading, const PassOutput& output, const std::function<bool()>& keepGoing) const
 {
   const Timer timer;
-  const MarchScene scene{frame,        geometry, this->Cells, this->Colors->lookup(),
-                         *this->Field, settings, shading};
+  const MarchScene scene{
+      frame,    geometry, this->Cells.grid(0), this->Colors->lookup(), *this->Field,
+      settings, shading};
   const Tiling tiling(frame.width, frame.height);
   std::vector<FrameStatistics> tiles(static_cast<std::size_t>(tiling.count()));
   ForEachTile(this->Threads, tiling.count(), keepGoing, [&](std::int64_t k) {

@@ -16,7 +16,7 @@ struct MarchScene
 {
   const Frame& frame;
   const RayGeometry& geometry;
-  const Majorants& majorants;
+  const MajorantGrid& majorants;
   const ColorLookup& colors;
   const Evaluator& evaluator;
   MarchSettings settings;

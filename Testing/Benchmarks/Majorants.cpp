@@ -12,7 +12,7 @@
 namespace {
 
 /// Cells of 1/edge with narrow ranges anywhere in [0, 1].
-inr::Majorants RandomMajorants(std::int64_t edge)
+inr::MacroCells RandomCells(std::int64_t edge)
 {
   inr::MacroCells cells;
   cells.dims = glm::i64vec3(edge);
@@ -21,7 +21,7 @@ inr::Majorants RandomMajorants(std::int64_t edge)
     const auto low = static_cast<float>(inr::RandomUnit(3, static_cast<std::uint64_t>(k)));
     cells.ranges.push_back({low, std::min(1.0f, low + 0.05f)});
   }
-  return inr::Majorants(cells);
+  return cells;
 }
 
 /// Opacity rises from 0 at `first`.
@@ -39,15 +39,15 @@ inr::ColorTable Ramp(double first)
 
 void Change(benchmark::State& state)
 {
-  inr::Majorants majorants = RandomMajorants(state.range(0));
   const inr::Arena arena(static_cast<int>(state.range(1)));
+  const inr::MacroCells cells = RandomCells(state.range(0));
+  inr::Majorants majorants(cells, std::int64_t{16} * cells.dims, arena);
   const inr::ColorTable colors = Ramp(0.5);
   for (auto _ : state) {
     majorants.update(colors, arena);
     benchmark::ClobberMemory();
   }
-  const glm::i64vec3& dims = majorants.dims();
-  state.SetItemsProcessed(state.iterations() * dims.x * dims.y * dims.z);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(cells.ranges.size()));
 }
 BENCHMARK(Change)
     ->ArgNames({"edge", "threads"})
@@ -59,7 +59,7 @@ BENCHMARK(Change)
 void Leave(benchmark::State& state)
 {
   const std::int64_t edge = state.range(0);
-  inr::Majorants majorants = RandomMajorants(edge);
+  inr::MajorantGrid majorants(RandomCells(edge));
   majorants.update(Ramp(1.0 - 0x1p-20), inr::Arena());
   const auto length = static_cast<double>(edge);
   std::uint64_t number = 0;
@@ -70,7 +70,7 @@ void Leave(benchmark::State& state)
     ray.direction = glm::normalize(glm::dvec3(random() - 0.5, random() - 0.5, 1.0));
     ray.inverse = 1.0 / ray.direction;
     ray.length = length;
-    inr::CellWalker walker(majorants, glm::dvec3(length), ray);
+    inr::GridWalker walker(majorants, glm::dvec3(length), ray);
     walker.moveTo(0);
     benchmark::DoNotOptimize(walker.moveToVisible(ray.length));
   }

@@ -3,7 +3,7 @@
 // The walk through macro-cells against stepping densely along the ray.
 #include "Core/Parallel.h"
 #include "Core/Random.h"
-#include "Core/Render/CellWalker.h"
+#include "Core/Render/GridWalker.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 struct Cells
 {
   glm::dvec3 dims;
-  inr::Majorants majorants;
+  inr::MajorantGrid majorants;
 };
 
 /// Cells of a volume of `dims` voxels, as our files and upstream's have them; one in `rarity`
@@ -32,7 +32,7 @@ Cells MakeCells(const glm::i64vec3& dims, const glm::dvec3& spacing, std::uint64
   }
   inr::TransferFunction function;
   function.table = {{0, 0, 0, 0}, {0, 0, 0, 0}, {1, 1, 1, 0.5f}};
-  inr::Majorants majorants(cells);
+  inr::MajorantGrid majorants(cells);
   majorants.update(inr::ColorTable(function, inr::VolumeInfo{}), inr::Arena(1));
   return {glm::dvec3(dims), majorants};
 }
@@ -89,11 +89,11 @@ std::vector<Cells> AllCells()
           MakeCells({40, 40, 1}, {0.4, 0.4, 1.0}), MakeCells({100000, 9, 9}, {0.00016, 1, 1})};
 }
 
-TEST(CellWalker, IsWhereItShouldBe)
+TEST(GridWalker, IsWhereItShouldBe)
 {
   for (const Cells& cells : AllCells()) {
     for (const inr::Ray& ray : Rays(cells)) {
-      inr::CellWalker walker(cells.majorants, cells.dims, ray);
+      inr::GridWalker walker(cells.majorants, cells.dims, ray);
       const double step = ray.length / 997;
       for (int k = 0; k < 997; ++k) {
         const double t = k * step;
@@ -110,14 +110,14 @@ TEST(CellWalker, IsWhereItShouldBe)
   }
 }
 
-TEST(CellWalker, StartsAnywhereWithTheSameCell)
+TEST(GridWalker, StartsAnywhereWithTheSameCell)
 {
   for (const Cells& cells : AllCells()) {
     for (const inr::Ray& ray : Rays(cells)) {
-      inr::CellWalker steady(cells.majorants, cells.dims, ray);
+      inr::GridWalker steady(cells.majorants, cells.dims, ray);
       for (int k = 0; k < 300; ++k) {
         const double t = k * ray.length / 300;
-        inr::CellWalker fresh(cells.majorants, cells.dims, ray);
+        inr::GridWalker fresh(cells.majorants, cells.dims, ray);
         steady.moveTo(t);
         fresh.moveTo(t);
         ASSERT_EQ(fresh.enter(), steady.enter());
@@ -127,11 +127,11 @@ TEST(CellWalker, StartsAnywhereWithTheSameCell)
   }
 }
 
-TEST(CellWalker, SkipsNothingThatCanBeSeen)
+TEST(GridWalker, SkipsNothingThatCanBeSeen)
 {
   for (const Cells& cells : AllCells()) {
     for (const inr::Ray& ray : Rays(cells)) {
-      inr::CellWalker walker(cells.majorants, cells.dims, ray);
+      inr::GridWalker walker(cells.majorants, cells.dims, ray);
       walker.moveTo(0);
       double t = 0;
       while (t < ray.length) {
@@ -170,7 +170,7 @@ struct Stretch
 std::vector<Stretch> SeenCellByCell(const Cells& cells, const inr::Ray& ray, double from)
 {
   std::vector<Stretch> seen;
-  inr::CellWalker walker(cells.majorants, cells.dims, ray);
+  inr::GridWalker walker(cells.majorants, cells.dims, ray);
   for (double t = from; t < ray.length; t = walker.exit()) {
     walker.moveTo(t);
     if (walker.extinction() > 0.0f) {
@@ -184,7 +184,7 @@ std::vector<Stretch> SeenCellByCell(const Cells& cells, const inr::Ray& ray, dou
 std::vector<Stretch> SeenWithLeaps(const Cells& cells, const inr::Ray& ray, double from)
 {
   std::vector<Stretch> seen;
-  inr::CellWalker walker(cells.majorants, cells.dims, ray);
+  inr::GridWalker walker(cells.majorants, cells.dims, ray);
   walker.moveTo(from);
   while (walker.moveToVisible(ray.length)) {
     if (walker.exit() > walker.enter()) { // not just a corner
@@ -198,7 +198,7 @@ std::vector<Stretch> SeenWithLeaps(const Cells& cells, const inr::Ray& ray, doub
   return seen;
 }
 
-TEST(CellWalker, LeapsToTheVeryCellsThatStepsComeTo)
+TEST(GridWalker, LeapsToTheVeryCellsThatStepsComeTo)
 {
   std::size_t seen = 0;
   for (const std::uint64_t rarity : {20, 300, 4000, 1000000}) {
