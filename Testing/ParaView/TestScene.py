@@ -78,3 +78,20 @@ simple.Hide(wavelet, view)
 # The session goes on.
 simple.Show(reader, view)
 check(psnr(picture(view, "scene-again"), alone) > 60, "the volume does not come back")
+
+# Shaded by the view's headlight, as stock volume rendering shades the same voxels.
+voxels = simple.INRDecode(Input=reader)
+stock = simple.Show(voxels, view)
+stock.SetRepresentationType("Volume")
+simple.ColorBy(stock, ("POINTS", display.ColorArrayName[1]))
+pictures = {}
+for shade in (0, 1):
+    display.Shade = stock.Shade = shade
+    simple.Hide(voxels, view)
+    simple.Show(reader, view)
+    pictures[shade] = picture(view, f"scene-shade-{shade}")
+    simple.Hide(reader, view)
+    simple.Show(voxels, view)
+    other = picture(view, f"scene-shade-{shade}-stock")
+    check(psnr(pictures[shade], other) > 35, "shade", shade, psnr(pictures[shade], other), "dB")
+check(psnr(pictures[0], pictures[1]) < 30, "shading changes nothing", psnr(*pictures.values()))
