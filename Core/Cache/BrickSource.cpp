@@ -28,26 +28,15 @@ class FieldBricks : public BrickSource
 {
 public:
   FieldBricks(std::shared_ptr<const Evaluator> field, const Hierarchy& hierarchy)
-      : Field(std::move(field)), Levels(hierarchy)
+      : BrickSource(hierarchy), Field(std::move(field))
   {}
 
-  void infer(const BrickKey* keys, std::int64_t count, float* values,
-             const Arena& arena) const override
+  void inferLayer(BrickKey key, std::int64_t z, float* values) const override
   {
-    const std::int64_t layers = this->Levels.brickDims().z;
-    const std::int64_t layer = this->Levels.voxelsPerBrick() / layers;
-    arena.forEachBlock(count * layers, 1, [&](std::int64_t k, std::int64_t) {
-      this->inferLayer(IdOf(keys[k / layers]), k % layers, values + k * layer);
-    });
-  }
-
-private:
-  /// One layer of voxels, z of them into the brick.
-  void inferLayer(const BrickId& id, std::int64_t z, float* values) const
-  {
-    const BrickBox box = BoxOf(this->Levels, id);
+    const BrickId id = IdOf(key);
+    const BrickBox box = BoxOf(this->hierarchy(), id);
     const std::vector<float> inside = this->layerInside(id, box, glm::min(z, box.count.z - 1));
-    const glm::i64vec3 dims(this->Levels.brickDims());
+    const glm::i64vec3 dims(this->hierarchy().brickDims());
     for (std::int64_t y = 0; y < dims.y; ++y) {
       const std::int64_t row = glm::min(y, box.count.y - 1) * box.count.x;
       for (std::int64_t x = 0; x < dims.x; ++x) {
@@ -57,6 +46,7 @@ private:
     }
   }
 
+private:
   std::vector<float> layerInside(const BrickId& id, const BrickBox& box, std::int64_t z) const
   {
     const std::int64_t points = id.level == 0 ? 1 : 2; // of each voxel, along an axis
@@ -64,7 +54,7 @@ private:
     const glm::i64vec3 count(box.count.x, box.count.y, 1);
     std::vector<float> axes[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const auto size = static_cast<double>(this->Levels.size(id.level)[axis]);
+      const auto size = static_cast<double>(this->hierarchy().size(id.level)[axis]);
       for (std::int64_t k = 0; k < count[axis] * points; ++k) {
         const double within = (static_cast<double>(k) + 0.5) / static_cast<double>(points);
         const double u = (static_cast<double>(begin[axis]) + within) / size;
@@ -106,10 +96,19 @@ private:
   }
 
   std::shared_ptr<const Evaluator> Field;
-  Hierarchy Levels;
 };
 
 } // namespace
+
+void BrickSource::infer(const BrickKey* keys, std::int64_t count, float* values,
+                        const Arena& arena) const
+{
+  const std::int64_t layers = this->Levels.brickDims().z;
+  const std::int64_t layer = this->Levels.voxelsPerBrick() / layers;
+  arena.forEachBlock(count * layers, 1, [&](std::int64_t k, std::int64_t) {
+    this->inferLayer(keys[k / layers], k % layers, values + k * layer);
+  });
+}
 
 std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const Evaluator> field,
                                                    const Hierarchy& hierarchy)

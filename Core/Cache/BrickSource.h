@@ -12,12 +12,20 @@ namespace inr {
 class BrickSource
 {
 public:
+  explicit BrickSource(const Hierarchy& hierarchy) : Levels(hierarchy) {}
   virtual ~BrickSource() = default;
 
-  /// Normalised values in [0, 1], Hierarchy::voxelsPerBrick() for each of `count` bricks. Voxels
-  /// beyond the level's last one repeat it.
-  virtual void infer(const BrickKey* keys, std::int64_t count, float* values,
-                     const Arena& arena) const = 0;
+  const Hierarchy& hierarchy() const { return this->Levels; }
+
+  /// One layer of a brick's voxels, the `z`-th of brickDims().z: normalised values in [0, 1], x
+  /// fastest. Voxels beyond the level's last one repeat it.
+  virtual void inferLayer(BrickKey key, std::int64_t z, float* values) const = 0;
+
+  /// All layers of `count` bricks, one brick after the other.
+  void infer(const BrickKey* keys, std::int64_t count, float* values, const Arena& arena) const;
+
+private:
+  Hierarchy Levels;
 };
 
 /// Bricks of any field over the unit cube: level 0 holds its values at the voxels, a coarser level

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Cache/BrickLoader.h"
+
+#include <algorithm>
+#include <chrono>
+#include <system_error>
+#include <utility>
+
+#ifdef __linux__
+#include <sched.h>
+#endif
+
+namespace inr {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Of the calling thread: it never takes the processor from one that wakes up, as those do that
+/// draw windows, but has its share of a busy machine.
+void LowerPriority()
+{
+#ifdef __linux__
+  const sched_param none{};
+  sched_setscheduler(0, SCHED_BATCH, &none);
+#endif
+}
+
+} // namespace
+
+BrickLoader::BrickLoader(std::shared_ptr<const BrickSource> source, int threads, std::int64_t room)
+    : Source(std::move(source)), Layers(this->Source->hierarchy().brickDims().z), Room(room),
+      ThreadCount(threads)
+{}
+
+BrickLoader::~BrickLoader()
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Ended = true;
+  }
+  this->Wake.notify_all();
+  for (std::thread& thread : this->Threads) {
+    thread.join();
+  }
+}
+
+std::int64_t BrickLoader::bytesFor(const Hierarchy& hierarchy, std::int64_t room)
+{
+  return room * hierarchy.voxelsPerBrick() * static_cast<std::int64_t>(sizeof(float));
+}
+
+void BrickLoader::start()
+{
+  try {
+    while (static_cast<int>(this->Threads.size()) < this->ThreadCount) {
+      this->Threads.emplace_back([this] { this->work(); });
+    }
+  } catch (const std::system_error&) { // no more threads to be had
+  }
+}
+
+void BrickLoader::work()
+{
+  LowerPriority();
+  std::unique_lock<std::mutex> lock(this->Mutex);
+  while (!this->Ended) {
+    if (this->Paused || !this->inferOne(lock)) {
+      this->Wake.wait(lock);
+    }
+  }
+}
+
+/// False when there is nothing to begin.
+bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
+{
+  Brick* brick = this->claim();
+  if (brick == nullptr) {
+    return false;
+  }
+  const std::int64_t z = brick->begun++;
+  this->inferLayer(*brick, z, lock);
+  if (++brick->done == this->Layers) {
+    this->finish(*brick);
+  }
+  return true;
+}
+
+/// The first brick of which a layer is left.
+BrickLoader::Brick* BrickLoader::claim()
+{
+  for (const std::unique_ptr<Brick>& brick : this->InWork) {
+    if (brick->begun < this->Layers) {
+      return brick.get();
+    }
+  }
+  const std::size_t held = this->InWork.size() + this->Finished.size() + this->HandingOver;
+  if (this->Wanted.empty() || static_cast<std::int64_t>(held) >= this->Room) {
+    return nullptr;
+  }
+  auto brick = std::make_unique<Brick>();
+  brick->key = this->Wanted.front();
+  this->Wanted.pop_front();
+  if (!this->Spare.empty()) {
+    brick->values = std::move(this->Spare.back());
+    this->Spare.pop_back();
+  }
+  this->InWork.push_back(std::move(brick));
+  return this->InWork.back().get();
+}
+
+void BrickLoader::inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock)
+{
+  const std::int64_t voxels = this->Source->hierarchy().voxelsPerBrick();
+  try {
+    brick.values.resize(static_cast<std::size_t>(voxels));
+    float* const layer = brick.values.data() + z * (voxels / this->Layers);
+    lock.unlock();
+    this->Source->inferLayer(brick.key, z, layer);
+    lock.lock();
+  } catch (...) {
+    if (!lock.owns_lock()) {
+      lock.lock();
+    }
+    brick.failed = true;
+    this->Failure = std::current_exception();
+  }
+}
+
+void BrickLoader::finish(Brick& brick)
+{
+  const auto place = std::find_if(this->InWork.begin(), this->InWork.end(),
+                                  [&](const auto& other) { return other.get() == &brick; });
+  if (!brick.failed) {
+    this->Finished.push_back(std::move(*place));
+  }
+  this->InWork.erase(place);
+  this->Ready.notify_all();
+}
+
+bool BrickLoader::isAtHand(BrickKey key) const
+{
+  const auto isIt = [&](const std::unique_ptr<Brick>& brick) { return brick->key == key; };
+  return std::any_of(this->InWork.begin(), this->InWork.end(), isIt) ||
+         std::any_of(this->Finished.begin(), this->Finished.end(), isIt);
+}
+
+void BrickLoader::request(const std::vector<BrickKey>& keys)
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Wanted.clear();
+    std::copy_if(keys.begin(), keys.end(), std::back_inserter(this->Wanted),
+                 [this](BrickKey key) { return !this->isAtHand(key); });
+  }
+  this->Wake.notify_all();
+  if (!keys.empty() && this->Threads.empty()) {
+    this->start();
+  }
+}
+
+void BrickLoader::resume()
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Paused = false;
+  }
+  this->Wake.notify_all();
+}
+
+void BrickLoader::pause()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Paused = true;
+}
+
+void BrickLoader::loadFor(double seconds)
+{
+  constexpr double longest = 1e6; // what a clock can be set forward by has an end
+  const std::chrono::duration<double> time(std::min(seconds, longest));
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
+  std::unique_lock<std::mutex> lock(this->Mutex);
+  const bool wasPaused = std::exchange(this->Paused, false);
+  this->Wake.notify_all();
+  do {
+    if (!this->inferOne(lock)) {
+      if (this->InWork.empty()) {
+        break;
+      }
+      this->Ready.wait_until(lock, deadline); // the last layers are with the threads
+    }
+  } while (Clock::now() < deadline);
+  this->Paused = wasPaused;
+}
+
+void BrickLoader::handOver(const std::function<void(BrickKey, const float*)>& receive)
+{
+  std::vector<std::unique_ptr<Brick>> bricks;
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (this->Failure) {
+      std::rethrow_exception(std::exchange(this->Failure, nullptr));
+    }
+    bricks.swap(this->Finished);
+    this->HandingOver = bricks.size();
+  }
+  for (const std::unique_ptr<Brick>& brick : bricks) {
+    receive(brick->key, brick->values.data());
+  }
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    for (const std::unique_ptr<Brick>& brick : bricks) {
+      this->Spare.push_back(std::move(brick->values));
+    }
+    this->HandingOver = 0;
+  }
+  this->Wake.notify_all(); // there is room again
+}
+
+} // namespace inr

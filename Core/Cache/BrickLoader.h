@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/BrickSource.h"
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace inr {
+
+/// Infers bricks on threads of its own while the application does something else.
+///
+/// Its threads work layer by layer, all of them on the first bricks that were asked for, at a low
+/// priority, and not at all while it is paused: so pausing and ending it take the time of one layer
+/// at most. It is made paused. Its functions are for one thread at a time.
+class BrickLoader
+{
+public:
+  /// At most `room` bricks, at least 1, are begun and not yet handed over. The threads start with
+  /// the first request; where none can be started, loadFor alone loads.
+  BrickLoader(std::shared_ptr<const BrickSource> source, int threads, std::int64_t room);
+  ~BrickLoader();
+  BrickLoader(const BrickLoader&) = delete;
+  BrickLoader& operator=(const BrickLoader&) = delete;
+
+  static std::int64_t bytesFor(const Hierarchy& hierarchy, std::int64_t room);
+  std::int64_t bytes() const { return bytesFor(this->Source->hierarchy(), this->Room); }
+
+  /// These bricks, in this order, in place of what earlier requests wanted and nobody has begun.
+  void request(const std::vector<BrickKey>& keys);
+  void resume();
+  void pause();
+  /// Works on the requests for so many seconds, paused or not and together with the calling thread;
+  /// for one layer at least, and no longer than there is something to do.
+  void loadFor(double seconds);
+
+  /// Hands over all bricks that are finished, voxelsPerBrick() values each, to what must not throw.
+  /// Throws what inferring threw since the last time.
+  void handOver(const std::function<void(BrickKey key, const float* values)>& receive);
+
+private:
+  using Values = std::vector<float>;
+
+  struct Brick
+  {
+    BrickKey key;
+    Values values;
+    std::int64_t begun = 0; ///< layers
+    std::int64_t done = 0;
+    bool failed = false;
+  };
+
+  void start();
+  void work();
+  bool inferOne(std::unique_lock<std::mutex>& lock);
+  Brick* claim();
+  void inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock);
+  void finish(Brick& brick);
+  bool isAtHand(BrickKey key) const;
+
+  const std::shared_ptr<const BrickSource> Source;
+  const std::int64_t Layers; ///< of a brick
+  const std::int64_t Room;
+  const int ThreadCount;
+
+  std::mutex Mutex;              ///< guards what follows, except the threads
+  std::condition_variable Wake;  ///< for the threads: there may be something to do
+  std::condition_variable Ready; ///< a brick is finished
+  bool Paused = true;
+  bool Ended = false;
+  std::deque<BrickKey> Wanted;
+  std::vector<std::unique_ptr<Brick>> InWork;
+  std::vector<std::unique_ptr<Brick>> Finished;
+  std::size_t HandingOver = 0; ///< bricks
+  std::vector<Values> Spare;   ///< of bricks that were handed over
+  std::exception_ptr Failure;
+
+  std::vector<std::thread> Threads;
+};
+
+} // namespace inr

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Cache/BrickLoader.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <stdexcept>
+#include <thread>
+
+namespace {
+
+/// Layers of values that tell brick and layer; as slow as is wanted, and able to fail.
+class CountingSource : public inr::BrickSource
+{
+public:
+  CountingSource() : BrickSource(inr::Hierarchy({1000, 40, 40}, 8)) {}
+
+  void inferLayer(inr::BrickKey key, std::int64_t z, float* values) const override
+  {
+    if (this->failing) {
+      throw std::runtime_error("no such brick");
+    }
+    std::this_thread::sleep_for(this->delay);
+    const std::int64_t layer = this->hierarchy().voxelsPerBrick() / 8;
+    for (std::int64_t k = 0; k < layer; ++k) {
+      values[k] = ValueOf(key, z * layer + k);
+    }
+    ++this->layers;
+  }
+
+  static float ValueOf(inr::BrickKey key, std::int64_t voxel)
+  {
+    return static_cast<float>(key % 1000) + 0.001f * static_cast<float>(voxel);
+  }
+
+  mutable std::atomic<int> layers{0};
+  std::chrono::milliseconds delay{0};
+  std::atomic<bool> failing{false};
+};
+
+std::vector<inr::BrickKey> Bricks(std::int64_t first, std::int64_t count)
+{
+  std::vector<inr::BrickKey> keys;
+  for (std::int64_t k = 0; k < count; ++k) {
+    keys.push_back(inr::KeyOf({0, {first + k, 0, 0}}));
+  }
+  return keys;
+}
+
+/// What comes in, in that order; every value is checked.
+std::vector<inr::BrickKey> Receive(inr::BrickLoader& loader)
+{
+  std::vector<inr::BrickKey> keys;
+  loader.handOver([&](inr::BrickKey key, const float* values) {
+    keys.push_back(key);
+    for (std::int64_t k = 0; k < 512; ++k) {
+      ASSERT_EQ(values[k], CountingSource::ValueOf(key, k));
+    }
+  });
+  return keys;
+}
+
+constexpr double Forever = 1e9;
+
+class BrickLoaderTest : public testing::TestWithParam<int>
+{
+protected:
+  std::shared_ptr<CountingSource> Source = std::make_shared<CountingSource>();
+};
+INSTANTIATE_TEST_SUITE_P(Threads, BrickLoaderTest, testing::Values(0, 1, 3));
+
+TEST_P(BrickLoaderTest, LoadsWhatIsRequested)
+{
+  inr::BrickLoader loader(this->Source, GetParam(), 100);
+  loader.request(Bricks(5, 20));
+  loader.loadFor(Forever);
+  std::vector<inr::BrickKey> keys = Receive(loader);
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(keys, Bricks(5, 20));
+  EXPECT_EQ(this->Source->layers, 20 * 8);
+  EXPECT_TRUE(Receive(loader).empty());
+}
+
+TEST_P(BrickLoaderTest, WorksALayerAtLeastAndNoLongerThanItMay)
+{
+  this->Source->delay = std::chrono::milliseconds(2);
+  inr::BrickLoader loader(this->Source, GetParam(), 100);
+  loader.request(Bricks(0, 50));
+  loader.loadFor(0);
+  EXPECT_GE(this->Source->layers, 1);
+  EXPECT_LE(this->Source->layers, 8);
+  loader.loadFor(0.03);
+  EXPECT_LT(this->Source->layers, 50 * 8);
+}
+
+TEST_P(BrickLoaderTest, HoldsNoMoreThanItHasRoomFor)
+{
+  inr::BrickLoader loader(this->Source, GetParam(), 3);
+  EXPECT_EQ(loader.bytes(), 3 * 512 * 4);
+  loader.request(Bricks(0, 10));
+  std::size_t received = 0;
+  for (int round = 0; round < 4; ++round) {
+    loader.loadFor(Forever);
+    const std::vector<inr::BrickKey> keys = Receive(loader);
+    EXPECT_EQ(keys.size(), round < 3 ? 3U : 1U);
+    received += keys.size();
+  }
+  EXPECT_EQ(received, 10U);
+}
+
+TEST_P(BrickLoaderTest, FinishesWhatIsBegunAndForgetsTheRest)
+{
+  this->Source->delay = std::chrono::milliseconds(1);
+  inr::BrickLoader loader(this->Source, GetParam(), 100);
+  loader.request(Bricks(0, 30));
+  loader.loadFor(0);
+  std::vector<inr::BrickKey> wanted = Bricks(0, 1);
+  wanted.push_back(inr::KeyOf({1, {0, 0, 0}}));
+  loader.request(wanted);
+  loader.loadFor(Forever);
+  std::map<inr::BrickKey, int> received;
+  for (const inr::BrickKey key : Receive(loader)) {
+    ++received[key];
+  }
+  EXPECT_LT(received.size(), 30U);
+  EXPECT_EQ(received[wanted[0]], 1); // not twice
+  EXPECT_EQ(received[wanted[1]], 1);
+}
+
+TEST_P(BrickLoaderTest, SaysWhatWentWrongAndGoesOn)
+{
+  inr::BrickLoader loader(this->Source, GetParam(), 100);
+  this->Source->failing = true;
+  loader.request(Bricks(0, 3));
+  loader.loadFor(Forever);
+  EXPECT_THROW(Receive(loader), std::runtime_error);
+  this->Source->failing = false;
+  loader.request(Bricks(0, 3));
+  loader.loadFor(Forever);
+  EXPECT_EQ(Receive(loader).size(), 3U);
+}
+
+/// Whether it comes true within a time that even a busy machine keeps.
+template <typename Condition> bool Soon(const Condition& condition)
+{
+  for (int k = 0; k < 6000 && !condition(); ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return condition();
+}
+
+TEST_F(BrickLoaderTest, WorksOnlyBetweenResumeAndPause)
+{
+  inr::BrickLoader loader(this->Source, 2, 5);
+  loader.request(Bricks(0, 40));
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(this->Source->layers, 0);
+  loader.resume();
+  EXPECT_TRUE(Soon([&] { return this->Source->layers == 5 * 8; })); // as many as there is room for
+  std::size_t received = 0;
+  EXPECT_TRUE(Soon([&] { // handing over makes room
+    received += Receive(loader).size();
+    return received == 40;
+  }));
+  loader.pause();
+  loader.request(Bricks(60, 5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(this->Source->layers, 40 * 8);
+}
+
+TEST_F(BrickLoaderTest, EndsAfterTheLayersAtHand)
+{
+  this->Source->delay = std::chrono::milliseconds(5);
+  int layers = 0;
+  {
+    inr::BrickLoader loader(this->Source, 2, 100);
+    loader.request(Bricks(0, 100)); // 2 s
+    loader.resume();
+    EXPECT_TRUE(Soon([&] { return this->Source->layers > 0; }));
+    layers = this->Source->layers;
+  }
+  EXPECT_LT(this->Source->layers, layers + 100);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(this->Source.use_count(), 1);
+}
+
+} // namespace
