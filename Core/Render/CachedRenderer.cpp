@@ -12,9 +12,6 @@ namespace inr {
 
 namespace {
 
-/// Bricks inferred in one go: they share the threads, and time and abort are looked at in between.
-constexpr std::int64_t BricksAtOnce = 2;
-
 /// log2 of the longest sample in steps: the coarsest level's, four times as long where it is faint.
 int StepMultiples(int levels) { return levels + 2; }
 
@@ -25,6 +22,16 @@ const CacheOptions& Checked(const CacheOptions& options)
                 "a cache needs a size that is not negative and at least one request at a time");
   }
   return options;
+}
+
+std::shared_ptr<BrickStore> MakeStore(const std::shared_ptr<const Evaluator>& field,
+                                      const glm::i64vec3& dims, const CacheOptions& options,
+                                      const Arena& arena)
+{
+  auto source = MakeBrickSource(field, Hierarchy(dims, options.brickSize));
+  const std::int64_t bytes = options.bytes > 0 ? options.bytes : DefaultCacheBytes();
+  return std::make_shared<BrickStore>(std::move(source), options.precision, bytes,
+                                      options.background, arena);
 }
 
 } // namespace
@@ -41,19 +48,12 @@ CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field, const glm
                                const CacheOptions& options, const BrickKernel& kernel,
                                const Arena& arena)
     : Options(Checked(options)), Kernel(kernel), Threads(arena), Field(std::move(field)),
-      Cache(Hierarchy(dims, options.brickSize), options.precision,
-            options.bytes > 0 ? options.bytes : DefaultCacheBytes()),
-      Source(MakeBrickSource(this->Field, this->Cache.hierarchy()))
-{
-  // There is always something to fall back on.
-  const BrickKey coarsest = this->Cache.hierarchy().coarsest();
-  this->load({coarsest}, {});
-  this->Cache.pin(coarsest);
-}
+      Store(MakeStore(this->Field, dims, options, arena))
+{}
 
 const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double stepLength)
 {
-  const int multiples = StepMultiples(this->Cache.hierarchy().levels());
+  const int multiples = StepMultiples(this->Store->cache().hierarchy().levels());
   if (!this->Steps || !this->Steps->fits(stepLength, multiples)) {
     this->Steps.emplace(colors, stepLength, multiples);
   }
@@ -72,38 +72,17 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
                                        const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
 {
+  const BrickStore::Call call(*this->Store);
   if (this->Unfinished && frame.timeLimit > 0 && this->Unfinished->continues(frame)) {
     return this->refine(frame.timeLimit, output, keepGoing);
   }
   this->Unfinished.reset(); // before the table that it reads may change
   const StepLookup& steps = this->stepsFor(colors, settings.step * settings.unitsPerT);
-  const CachedScene scene{frame,    geometry,    majorants,    colors,
-                          steps,    this->Cache, this->Kernel, FormatOf(this->Cache),
-                          settings, shading};
+  const BrickCache& cache = this->Store->cache();
+  const CachedScene scene{frame, geometry,     majorants,       colors,   steps,
+                          cache, this->Kernel, FormatOf(cache), settings, shading};
   return frame.timeLimit > 0 ? this->renderInTime(scene, output, keepGoing)
                              : this->renderComplete(scene, output, keepGoing);
-}
-
-CachedRenderer::Loaded CachedRenderer::load(const std::vector<BrickKey>& keys,
-                                            const std::function<bool()>& keepGoing)
-{
-  const std::int64_t voxels = this->Cache.hierarchy().voxelsPerBrick();
-  const auto count = static_cast<std::int64_t>(keys.size());
-  std::vector<float> values(static_cast<std::size_t>(BricksAtOnce * voxels));
-  for (std::int64_t first = 0; first < count; first += BricksAtOnce) {
-    if (first > 0 && keepGoing && !keepGoing()) { // never without progress
-      return {first, false};
-    }
-    const std::int64_t batch = std::min(BricksAtOnce, count - first);
-    this->Source->infer(keys.data() + first, batch, values.data(), this->Threads);
-    for (std::int64_t k = 0; k < batch; ++k) {
-      if (!this->Cache.insert(keys[static_cast<std::size_t>(first + k)],
-                              values.data() + k * voxels)) {
-        return {first + k, true};
-      }
-    }
-  }
-  return {count, false};
 }
 
 FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const PassOutput& output,
@@ -113,7 +92,7 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
   double marching = 0;
   while (true) {
     const Timer march;
-    this->Cache.beginFrame();
+    this->Store->beginFrame();
     RequestRanking requests;
     pass.advance(this->Threads, keepGoing, output, requests);
     marching += march.seconds();
@@ -122,8 +101,9 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
     }
     // Room for what waits now must not be taken from what was loaded a moment ago for the same
     // rays.
-    const std::int64_t most = this->Cache.capacity() - 1;
-    const Loaded loaded = this->load(requests.ranked(most, false), keepGoing);
+    const std::int64_t most = this->Store->cache().capacity() - 1;
+    const BrickStore::Loaded loaded =
+        this->Store->load(requests.ranked(most, false), this->Threads, keepGoing);
     if (loaded.full) {
       pass.crowd(loaded.bricks);
     }
@@ -144,18 +124,20 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Pas
   const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
   while (true) {
     const Timer march;
-    this->Cache.beginFrame();
+    this->Store->beginFrame();
     RequestRanking requests;
     FrameStatistics statistics =
         MarchOnce(scene, onMiss, this->Threads, keepGoing, output, requests);
     statistics.marchSeconds = march.seconds();
     statistics.complete = requests.empty();
-    const bool fits = this->Cache.usedInFrame() + requests.count() <= this->Cache.capacity();
+    const bool fits =
+        this->Store->cache().usedInFrame() + requests.count() <= this->Store->cache().capacity();
     if (!fits) { // should the same be asked for again
       this->Unfinished.emplace(scene, output);
     }
-    this->load(requests.ranked(this->Options.maximumRequests, this->Options.ranking),
-               [&] { return timer.left() > 0; });
+    this->Store->loadFor(timer.leftForLoading(),
+                         requests.ranked(this->Options.maximumRequests, this->Options.ranking),
+                         this->Threads);
     if (statistics.complete || !fits || timer.left() < statistics.marchSeconds) {
       return statistics;
     }
@@ -169,13 +151,14 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
   double marching = 0;
   do {
     const Timer march;
-    this->Cache.beginFrame();
+    this->Store->beginFrame();
     RequestRanking requests;
     this->Unfinished->advance(this->Threads, keepGoing, requests);
     marching += march.seconds();
     const auto inTime = [&] { return timer.left() > 0; };
-    const std::int64_t most = this->Cache.capacity();
-    const Loaded loaded = this->load(requests.ranked(most, false), inTime);
+    const std::int64_t most = this->Store->cache().capacity();
+    const BrickStore::Loaded loaded =
+        this->Store->load(requests.ranked(most, false), this->Threads, inTime);
     if (loaded.full) {
       this->Unfinished->crowd(loaded.bricks);
     }
@@ -190,19 +173,20 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
 TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* timer,
                                        const std::function<bool()>& keepGoing)
 {
+  const BrickStore::Call call(*this->Store);
   if (round.first) {
     this->InferMisses = false;
   }
   if (round.whole) {
-    this->Cache.beginFrame();
+    this->Store->beginFrame();
   }
   const bool approach = timer != nullptr && this->Options.preloading;
   const OnPathMiss onMiss = this->InferMisses ? OnPathMiss::Infer
                             : approach        ? OnPathMiss::Approach
                                               : OnPathMiss::UseCoarser;
   RequestRanking requests;
-  TracedTiles traced = TraceThroughCache(round, this->Cache, *this->Field, onMiss, this->Threads,
-                                         keepGoing, requests);
+  TracedTiles traced = TraceThroughCache(round, this->Store->cache(), *this->Field, onMiss,
+                                         this->Threads, keepGoing, requests);
   this->loadForPaths(requests, timer, keepGoing);
   return traced;
 }
@@ -210,12 +194,16 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* time
 void CachedRenderer::loadForPaths(const RequestRanking& requests, const Timer* timer,
                                   const std::function<bool()>& keepGoing)
 {
-  const std::int64_t room = this->Cache.capacity() - this->Cache.usedInFrame();
+  const BrickCache& cache = this->Store->cache();
+  const std::int64_t room = cache.capacity() - cache.usedInFrame();
   const bool some = timer != nullptr || this->InferMisses;
   const std::int64_t most = std::min(room, some ? this->Options.maximumRequests : room);
-  this->load(requests.ranked(most, this->Options.ranking), [&] {
-    return (timer == nullptr || timer->left() > 0) && (!keepGoing || keepGoing());
-  });
+  const std::vector<BrickKey> keys = requests.ranked(most, this->Options.ranking);
+  if (timer != nullptr) {
+    this->Store->loadFor(timer->leftForLoading(), keys, this->Threads);
+  } else {
+    this->Store->load(keys, this->Threads, keepGoing);
+  }
   // What does not fit is not worth loading for one path: paths come back to it from everywhere.
   this->InferMisses = this->InferMisses || requests.count() > room;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Cache/BrickSource.h"
+#include "Core/Cache/BrickStore.h"
 #include "Core/Parallel.h"
 #include "Core/Render/PathPicture.h"
 #include "Core/Render/Refinement.h"
@@ -25,12 +25,14 @@ struct CacheOptions
   int maximumRequests = 40; ///< bricks inferred between two looks at what is wanted; above 0
   bool ranking = true;      ///< what contributes most first; else in the order of the tiles
   bool preloading = true;   ///< level by level from coarse to fine; else the wanted level at once
+  bool background = true;   ///< bricks for frames in a limited time come in between frames, too
 
   bool operator==(const CacheOptions& other) const
   {
     return this->bytes == other.bytes && this->precision == other.precision &&
            this->brickSize == other.brickSize && this->maximumRequests == other.maximumRequests &&
-           this->ranking == other.ranking && this->preloading == other.preloading;
+           this->ranking == other.ranking && this->preloading == other.preloading &&
+           this->background == other.background;
   }
 };
 
@@ -59,7 +61,7 @@ public:
   /// Forgets what was made of the colours; for when they change.
   void forgetColors();
 
-  const BrickCache& cache() const { return this->Cache; }
+  const BrickStore& store() const { return *this->Store; }
 
 private:
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
@@ -71,19 +73,12 @@ private:
                          const std::function<bool()>& keepGoing);
   void loadForPaths(const RequestRanking& requests, const Timer* timer,
                     const std::function<bool()>& keepGoing);
-  struct Loaded
-  {
-    std::int64_t bricks;
-    bool full; ///< there were more than fitted beside what the latest frame used
-  };
-  Loaded load(const std::vector<BrickKey>& keys, const std::function<bool()>& keepGoing);
 
   CacheOptions Options;
   const BrickKernel& Kernel;
   const Arena& Threads;
   std::shared_ptr<const Evaluator> Field;
-  BrickCache Cache;
-  std::shared_ptr<const BrickSource> Source;
+  std::shared_ptr<BrickStore> Store;
   std::optional<StepTable> Steps;
   /// Of the latest frame, when the cache cannot hold what it wants.
   std::optional<Refinement> Unfinished;

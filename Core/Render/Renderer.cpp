@@ -88,12 +88,12 @@ std::int64_t Renderer::majorantBuilds() const { return this->Self->MajorantBuild
 
 std::int64_t Renderer::cacheBytes() const
 {
-  return this->Self->Cached ? this->Self->Cached->cache().bytes() : 0;
+  return this->Self->Cached ? this->Self->Cached->store().bytes() : 0;
 }
 
 std::int64_t Renderer::cachedBricks() const
 {
-  return this->Self->Cached ? this->Self->Cached->cache().mapped() : 0;
+  return this->Self->Cached ? this->Self->Cached->store().cache().mapped() : 0;
 }
 
 std::string Renderer::kernel() const { return this->Self->Field->kernel(); }
@@ -162,7 +162,7 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
     return this->Paths.advance(frame, medium, trace, output);
   }
   CachedRenderer& cached = this->cached();
-  medium.levels = cached.cache().hierarchy().levels();
+  medium.levels = cached.store().cache().hierarchy().levels();
   const Timer timer(frame.timeLimit);
   const TraceTiles trace = [&](const PathRound& round) {
     return cached.tracePaths(round, frame.timeLimit > 0 ? &timer : nullptr, keepGoing);

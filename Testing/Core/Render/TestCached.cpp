@@ -67,7 +67,8 @@ TEST(Cached, FramesInALimitedTimeEndWithTheCompletePicture)
 {
   const glm::i64vec3 dims(90, 70, 80);
   inr::Frame frame = Oblique(glm::dvec3(dims));
-  const inr::CacheOptions options = Options(inr::CachePrecision::Bits16, 16);
+  inr::CacheOptions options = Options(inr::CachePrecision::Bits16, 16);
+  options.background = false;
   inr::Renderer complete = CachedRenderer(dims, Waves, options);
   const inr::Image truth = Render(complete, frame);
 

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Bricks that come in between frames: what may change is when a picture is complete, never the
+// complete picture.
+#include "Testing/Core/Render/Scene.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace {
+
+const glm::i64vec3 Dims(90, 70, 80);
+
+inr::TransferFunction Colours(float opaqueFrom)
+{
+  inr::TransferFunction function;
+  for (int k = 0; k < 64; ++k) {
+    const float x = static_cast<float>(k) / 63;
+    function.table.emplace_back(x, 1 - x, 0.5f, x > opaqueFrom ? 0.3f * (x - opaqueFrom) : 0.0f);
+  }
+  return function;
+}
+
+inr::Frame View(double degrees)
+{
+  inr::Frame frame;
+  frame.width = 40;
+  frame.height = 33;
+  const glm::dvec3 dims(Dims);
+  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), glm::radians(degrees), glm::dvec3(0, 1, 0));
+  const glm::dvec3 eye = 0.5 * dims + glm::dvec3(turn * glm::dvec4(25, 45, 190, 0));
+  frame.clipToWorld = glm::inverse(glm::perspective(glm::radians(40.0), 1.2, 50.0, 1000.0) *
+                                   glm::lookAt(eye, 0.5 * dims, glm::dvec3(0, 1, 0)));
+  frame.levelOfDetailScale = 0;
+  return frame;
+}
+
+/// Waves, and how many values of them were asked for.
+class Field
+{
+public:
+  std::shared_ptr<const inr::Evaluator> evaluator() const
+  {
+    return std::make_shared<FieldEvaluator>([asked = this->Asked](const glm::vec3& u) {
+      ++*asked;
+      return 0.5f + 0.5f * std::sin(9.0f * u.x + 4.0f * u.y) * std::cos(7.0f * u.z);
+    });
+  }
+  std::int64_t asked() const { return *this->Asked; }
+
+  inr::Renderer renderer(bool background, std::int64_t bytes = 64 << 20) const
+  {
+    inr::RendererOptions options;
+    options.threads = 2;
+    options.cache.brickSize = 16;
+    options.cache.bytes = bytes;
+    options.cache.background = background;
+    inr::Renderer renderer(this->evaluator(), VolumeOf(Dims), {}, options);
+    renderer.setTransferFunction(Colours(0.5f));
+    return renderer;
+  }
+
+private:
+  std::shared_ptr<std::atomic<std::int64_t>> Asked = std::make_shared<std::atomic<std::int64_t>>(0);
+};
+
+/// Renders until the picture is complete; how many frames that took.
+int Finish(inr::Renderer& renderer, inr::Frame frame, double timeLimit, inr::Image& image)
+{
+  frame.timeLimit = timeLimit;
+  for (int frames = 1; frames < 20000; ++frames) {
+    if (renderer.render(frame, image).complete) {
+      return frames;
+    }
+  }
+  ADD_FAILURE() << "never complete";
+  return 0;
+}
+
+TEST(Background, FramesInALimitedTimeEndWithTheCompletePicture)
+{
+  const Field field;
+  inr::Renderer complete = field.renderer(false);
+  const inr::Image truth = Render(complete, View(0));
+  for (const double timeLimit : {1e-9, 0.002, 0.05}) {
+    inr::Renderer hurried = field.renderer(true);
+    inr::Image image;
+    EXPECT_GT(Finish(hurried, View(0), timeLimit, image), timeLimit < 1e-6 ? 1 : 0);
+    EXPECT_EQ(image.pixels, truth.pixels) << timeLimit;
+  }
+}
+
+TEST(Background, CompleteFramesAreTheSameWhateverIsOnItsWay)
+{
+  const Field field;
+  inr::Renderer synchronous = field.renderer(false);
+  inr::Renderer busy = field.renderer(true);
+  inr::Image image;
+  for (const double degrees : {0.0, 20.0, 40.0}) {
+    inr::Frame frame = View(degrees + 90);
+    frame.timeLimit = 0.001;
+    busy.render(frame, image);
+    EXPECT_EQ(Render(busy, View(degrees)).pixels, Render(synchronous, View(degrees)).pixels);
+  }
+}
+
+/// Whether more is asked of `field` within a time that even a busy machine keeps.
+bool GoesOn(const Field& field)
+{
+  const std::int64_t asked = field.asked();
+  for (int k = 0; k < 6000 && field.asked() < asked + 20000; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return field.asked() >= asked + 20000;
+}
+
+TEST(Background, BricksComeInBetweenFrames)
+{
+  const Field field;
+  inr::Frame frame = View(0);
+  frame.timeLimit = 1e-9;
+  inr::Image image;
+  inr::Renderer renderer = field.renderer(true);
+  renderer.render(frame, image);
+  const std::int64_t before = renderer.cachedBricks();
+  EXPECT_TRUE(GoesOn(field));
+  renderer.render(frame, image);
+  EXPECT_GE(renderer.cachedBricks(), before + 20000 / (16 * 16 * 16 * 8));
+
+  const std::int64_t asked = field.asked();
+  inr::Renderer synchronous = field.renderer(false);
+  synchronous.render(frame, image);
+  const std::int64_t after = field.asked();
+  EXPECT_GT(after, asked);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  renderer = std::move(synchronous); // what was on its way goes with its renderer
+  const std::int64_t rest = field.asked();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(field.asked(), rest);
+}
+
+TEST(Background, QueueAndCacheKeepTheBudgetTogether)
+{
+  const Field field;
+  for (const std::int64_t bytes : {100000, 400000}) {
+    inr::Renderer renderer = field.renderer(true, bytes);
+    inr::Image image;
+    Finish(renderer, View(0), 0.01, image);
+    EXPECT_LE(renderer.cacheBytes(), bytes);
+    EXPECT_GT(renderer.cacheBytes(), bytes / 2);
+  }
+}
+
+// What ThreadSanitizer is to watch.
+TEST(Background, CameraAndColoursMayChangeWhileBricksLoad)
+{
+  const Field field;
+  inr::Image image;
+  for (const std::int64_t bytes : {400000, 64 << 20}) {
+    inr::Renderer renderer = field.renderer(true, bytes);
+    for (int k = 0; k < 30; ++k) {
+      inr::Frame frame = View(7.0 * k);
+      frame.timeLimit = k % 3 == 0 ? 1e-9 : 0.002;
+      frame.levelOfDetailScale = k % 4;
+      if (k % 5 == 0) {
+        renderer.setTransferFunction(Colours(0.3f + 0.01f * static_cast<float>(k % 7)));
+      }
+      const inr::FrameStatistics statistics = renderer.render(frame, image);
+      EXPECT_GT(statistics.samples, 0);
+      if (k % 5 == 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(3));
+      }
+      if (k % 10 == 9) {
+        renderer = field.renderer(true, bytes); // while bricks are on their way
+      }
+    }
+    renderer.setTransferFunction(Colours(0.5f));
+    Finish(renderer, View(0), 0.01, image);
+    inr::Renderer synchronous = field.renderer(false);
+    EXPECT_EQ(image.pixels, Render(synchronous, View(0)).pixels);
+  }
+}
+
+} // namespace
