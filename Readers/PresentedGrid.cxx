@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PresentedGrid.h"
 
+#include "Core/Error.h"
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace {
 
@@ -38,12 +41,18 @@ glm::i64vec3 FinestDims(const glm::i64vec3& native, double maximumPoints)
 
 PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoints)
 {
-  const bool bounded =
-      maximumPoints > 0 && CountPoints(volume.dims) > static_cast<double>(maximumPoints);
-  const glm::i64vec3 dims =
-      bounded ? FinestDims(volume.dims, static_cast<double>(maximumPoints)) : volume.dims;
+  if (maximumPoints < 0) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument,
+                     "MaximumGridPoints is " + std::to_string(maximumPoints) +
+                         "; set a number of points, or 0 for the native grid");
+  }
+  const double native = CountPoints(volume.dims);
+  const double wanted = maximumPoints > 0 ? static_cast<double>(maximumPoints) : native;
+  const double limit = std::min(wanted, static_cast<double>(LargestPresentedGrid));
+  const glm::i64vec3 dims = native > limit ? FinestDims(volume.dims, limit) : volume.dims;
 
   PresentedGrid grid;
+  grid.limited = std::min(wanted, native) > limit;
   grid.dims = glm::ivec3(dims);
   grid.spacing = volume.spacing;
   for (int axis = 0; axis < 3; ++axis) {

@@ -14,8 +14,15 @@ struct PresentedGrid
 {
   glm::ivec3 dims{1};
   glm::dvec3 spacing{1.0};
+  /// Coarser than what was asked for, which has more than LargestPresentedGrid points.
+  bool limited = false;
 };
 
+/// Points of the largest grid that is presented, and values that its array hands out as a copy:
+/// many a stock filter takes a pointer to all values and crashes where it gets none.
+constexpr std::int64_t LargestPresentedGrid = std::int64_t{1} << 28;
+
 /// The finest such grid with at most `maximumPoints` points (but at least two on every axis that
-/// has two); 0 asks for the native grid. A valid model's grid is never too large for VTK's numbers.
+/// has two); 0 asks for the native grid. Never more than LargestPresentedGrid. Throws
+/// inr::Error(InvalidArgument) for a negative number.
 PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoints);

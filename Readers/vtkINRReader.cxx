@@ -151,6 +151,7 @@ void vtkINRReader::ReadInformation(vtkInformation* outInfo)
   const inr::VolumeInfo& volume = this->Internal->Source.Header().volume;
   this->Internal->Grid = PresentGrid(volume, this->MaximumGridPoints);
   this->Describe();
+  this->WarnIfLimited();
 
   int extent[6];
   WholeExtent(this->Internal->Grid.dims, extent);
@@ -161,6 +162,20 @@ void vtkINRReader::ReadInformation(vtkInformation* outInfo)
   outInfo->Set(vtkDataObject::ORIGIN(), &volume.origin.x, 3);
   outInfo->Set(vtkDataObject::DIRECTION(), direction, 9);
   vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VtkTypeOf(volume.type), 1);
+}
+
+void vtkINRReader::WarnIfLimited()
+{
+  const PresentedGrid& grid = this->Internal->Grid;
+  if (grid.limited) {
+    vtkWarningMacro("'" << this->FileName << "' has a native grid of " << this->NativeDimensions[0]
+                        << " x " << this->NativeDimensions[1] << " x " << this->NativeDimensions[2]
+                        << " points; filters are shown " << grid.dims.x << " x " << grid.dims.y
+                        << " x " << grid.dims.z << ", since many cannot cope with more than "
+                        << LargestPresentedGrid
+                        << ". INRDecode computes native voxels of a part, and the INR Volume "
+                           "representation shows them all.");
+  }
 }
 
 void vtkINRReader::Describe()

@@ -49,8 +49,10 @@ public:
 
   ///@{
   /// The output is the finest grid of at most this many points that has exactly the native point
-  /// bounds. Default 2^24; 0 = the native grid.
-  vtkSetClampMacro(MaximumGridPoints, vtkIdType, 0, VTK_ID_MAX);
+  /// bounds. Default 2^24; 0 = the native grid. More than 2^28 points are never presented, since
+  /// stock filters would crash on them: then that many are, with a warning. A negative number is an
+  /// error.
+  vtkSetMacro(MaximumGridPoints, vtkIdType);
   vtkGetMacro(MaximumGridPoints, vtkIdType);
   ///@}
 
@@ -101,6 +103,7 @@ private:
   void ReadInformation(vtkInformation* outInfo);
   void ReadData(vtkInformation* outInfo);
   void Describe();
+  void WarnIfLimited();
   void AddFieldData(vtkDataObject* output);
 
   char* FileName = nullptr;

@@ -10,6 +10,7 @@
 #define vtkINRTypedArray_h
 
 #include "BrickCache.h"
+#include "PresentedGrid.h"
 #include "VTKCompat.h"
 #include "vtkINRDataArray.h"
 
@@ -34,7 +35,7 @@ public:
   using typename GenericArray::ValueType;
 
   /// GetVoidPointer hands out a decoded copy of at most this many values.
-  static constexpr vtkIdType MaximumCopiedValues = vtkIdType{1} << 28;
+  static constexpr vtkIdType MaximumCopiedValues = LargestPresentedGrid;
 
   void Initialize(std::shared_ptr<const GridDecoder> decoder, const GridPart& part)
   {

@@ -192,7 +192,7 @@ TEST_F(Reader, TakesNameRangeAndDimensionsFromTheUser)
 TEST_F(Reader, OpensFarMoreThanMemoryHoldsWithoutEvaluating)
 {
   const std::string path = this->write(*MakeModel({131072, 131072, 4096}));
-  for (const vtkIdType limit : {vtkIdType{0}, vtkIdType{1} << 24}) {
+  for (const vtkIdType limit : {vtkIdType{1} << 28, vtkIdType{1} << 24}) {
     this->Algorithm->SetMaximumGridPoints(limit);
     vtkImageData* image = this->open(path);
     vtkINRDataArray* array = vtkINRDataArray::SafeDownCast(this->scalars());
@@ -204,6 +204,34 @@ TEST_F(Reader, OpensFarMoreThanMemoryHoldsWithoutEvaluating)
     EXPECT_GT(array->GetNumberOfEvaluations(), 0);
     EXPECT_LE(array->GetNumberOfEvaluations(), 16 * 16 * 16); // the brick of that value
   }
+}
+
+// Stock filters take a pointer to all values and crash when the array refuses it.
+TEST_F(Reader, NeverPresentsMoreThanFiltersCanTake)
+{
+  const std::string path = this->write(*MakeModel({700, 700, 700}));
+  double native[6];
+  this->open(path)->GetBounds(native);
+  for (const vtkIdType limit : {vtkIdType{0}, vtkIdType{700} * 700 * 700, VTK_ID_MAX}) {
+    SCOPED_TRACE(limit);
+    const MessageCapture messages;
+    this->Algorithm->SetMaximumGridPoints(limit);
+    vtkImageData* image = this->open(path);
+    EXPECT_EQ(image->GetDimensions()[0], 645); // 645^3 < 2^28 < 646^3
+    EXPECT_EQ(image->GetBounds()[5], native[5]);
+    ASSERT_EQ(messages.warnings().size(), 1u);
+    EXPECT_NE(messages.warnings()[0].find("700 x 700 x 700"), std::string::npos);
+    EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  }
+}
+
+TEST_F(Reader, RefusesANegativeNumberOfPoints)
+{
+  const std::string path = this->write(*MakeModel(Dims));
+  const MessageCapture messages;
+  this->Algorithm->SetMaximumGridPoints(-1);
+  EXPECT_EQ(this->open(path)->GetNumberOfPoints(), 0);
+  EXPECT_TRUE(messages.onlyError("MaximumGridPoints is -1")) << messages.text();
 }
 
 TEST_F(Reader, ServesEachProcessItsPiece)
