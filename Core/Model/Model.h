@@ -63,7 +63,7 @@ inline double ValueOf(const VolumeInfo& info, float y)
 struct Quality
 {
   double psnr = 0;     ///< dB, peak = high - low; infinity when every voxel is exact
-  double ssim = 0;     ///< mean 3D SSIM, 7^3 window; NaN for a volume with an axis under 7 voxels
+  double ssim = 0;     ///< mean 3D SSIM, 7^3 window; NaN where no window of finite voxels was seen
   double maxError = 0; ///< in data units
 };
 

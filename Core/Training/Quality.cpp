@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace inr {
 
@@ -36,13 +37,13 @@ public:
     const glm::i64vec3 dims = this->Volume.dims;
     EvaluateLattice(this->Source, this->Threads, VoxelLattice(dims, {0, 0, z}, {dims.x, dims.y, 1}),
                     this->Raw.data());
-    const double scale = 1.0 / (this->Info.high - this->Info.low);
+    const double range = this->Info.high - this->Info.low; // its inverse may be infinite
     const auto count = static_cast<std::int64_t>(this->SliceSize);
     VisitScalars(this->Volume, [&](const auto* values) {
       const auto* slice = values + z * count * this->Volume.stride;
       for (std::int64_t k = 0; k < count; ++k) {
         const auto value = static_cast<double>(slice[k * this->Volume.stride]);
-        this->Reference[k] = (value - this->Info.low) * scale;
+        this->Reference[k] = (value - this->Info.low) / range;
         this->Raw[k] = NormalisedOutput(this->Raw[k]);
         this->Decoded[k] = this->Raw[k];
       }
@@ -153,10 +154,11 @@ DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volum
     ssim.addSlice(slice.reference().data(), slice.decoded().data());
     ExtendCells(report.macroCells, slice.raw(), dims, macroCellSize, z, arena);
   }
-  const double meanSquare = all.finite > 0 ? all.squared / static_cast<double>(all.finite) : 0.0;
-  report.quality.psnr = -10.0 * std::log10(meanSquare);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const double voxels = static_cast<double>(all.finite);
+  report.quality.psnr = all.finite > 0 ? -10.0 * std::log10(all.squared / voxels) : unknown;
   report.quality.ssim = ssim.mean();
-  report.quality.maxError = all.largest * (info.high - info.low);
+  report.quality.maxError = all.finite > 0 ? all.largest * (info.high - info.low) : unknown;
   return report;
 }
 

@@ -58,7 +58,7 @@ glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64ve
 }
 
 InMemorySource::InMemorySource(const VolumeData& volume, double low, double high)
-    : Volume(volume), Low(low), Scale(1.0 / (high - low))
+    : Volume(volume), Low(low), Range(high - low)
 {}
 
 void InMemorySource::sample(const glm::vec3* positions, std::int64_t count, float* targets) const
@@ -71,7 +71,8 @@ void InMemorySource::sample(const glm::vec3* positions, std::int64_t count, floa
       const AxisTaps y = TapsAt(positions[k].y, dims.y, stride * dims.x);
       const AxisTaps z = TapsAt(positions[k].z, dims.z, stride * dims.x * dims.y);
       const double value = Trilinear(values, x, y, z); // inf - inf and 0 * inf make it NaN, too
-      targets[k] = std::isfinite(value) ? static_cast<float>((value - this->Low) * this->Scale)
+      // Divided, not multiplied: the inverse of a range of denormal numbers is infinite.
+      targets[k] = std::isfinite(value) ? static_cast<float>((value - this->Low) / this->Range)
                                         : std::numeric_limits<float>::quiet_NaN();
     }
   });

@@ -41,7 +41,7 @@ public:
 private:
   VolumeData Volume;
   double Low;
-  double Scale;
+  double Range;
 };
 
 } // namespace inr

@@ -50,7 +50,9 @@ ModelPointer ConstantModel(Model model, const glm::i64vec3& dims, int macroCellS
   model.macroCells = MakeMacroCells(dims, macroCellSize);
   model.macroCells.provenance = MacroCellProvenance::Decoded;
   std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(), ValueRange{0, 0});
-  const bool windowFits = std::min({dims.x, dims.y, dims.z}) >= 7;
+  // Whether there is a window without a gap is not worth a search.
+  const bool windowFits =
+      std::min({dims.x, dims.y, dims.z}) >= 7 && model.training->nonFinite == 0;
   model.quality = Quality{std::numeric_limits<double>::infinity(),
                           windowFits ? 1.0 : std::numeric_limits<double>::quiet_NaN(), 0.0};
   return std::make_shared<const Model>(std::move(model));
@@ -131,6 +133,11 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   const Arena arena(options.threads);
   const InstructionSet set = ChooseInstructionSet(options.kernel);
   const VolumeStatistics statistics = MeasureVolume(volume, arena);
+  if (statistics.nonFinite == volume.voxels()) {
+    throw Error(ErrorCode::InvalidArgument, "none of the " + std::to_string(volume.voxels()) +
+                                                " values of array '" + info.arrayName +
+                                                "' is finite");
+  }
   const int macroCellSize =
       options.macroCellSize > 0 ? options.macroCellSize : DefaultMacroCellSize(volume.dims);
 

@@ -50,7 +50,7 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 /// out of range, quality and macro-cells. A constant volume takes no step and is exact. The
 /// result's quality and macro-cells are those of the parameters as they are stored. For a given
 /// seed, step count and kernel family the result is the same whatever the number of threads. Throws
-/// Error(InvalidArgument) for an empty volume or when no limit is set.
+/// Error(InvalidArgument) for a volume without finite voxels or when no limit is set.
 ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 

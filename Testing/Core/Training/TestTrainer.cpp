@@ -154,13 +154,33 @@ TEST(Trainer, ConstantVolumesAreExact)
   EXPECT_EQ(inr::ValueOf(model->volume, value), 4.25);
 }
 
-TEST(Trainer, AVolumeOfNaNsIsZero)
+TEST(Trainer, RefusesAVolumeOfNaNs)
 {
   Field<float> field = Waves();
   std::fill(field.values.begin(), field.values.end(), NAN);
-  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(5));
-  EXPECT_EQ(model->volume.low, 0.0);
-  EXPECT_EQ(model->training->nonFinite, field.values.size());
+  EXPECT_THROW(inr::TrainModel(field.data(), {}, Steps(5)), inr::Error);
+}
+
+TEST(Trainer, ClaimsNoSsimWhereNoWindowIsKnownToBeWhole)
+{
+  Field<float> field = Waves();
+  std::fill(field.values.begin(), field.values.end(), NAN);
+  field.values[7] = 1.0f;
+  const inr::Quality quality = *inr::TrainModel(field.data(), {}, Steps(5))->quality;
+  EXPECT_EQ(quality.maxError, 0.0);
+  EXPECT_TRUE(std::isnan(quality.ssim));
+}
+
+// 1 / (high - low) is infinite there.
+TEST(Trainer, TakesADenormalRange)
+{
+  const Field<double> field =
+      Waves<double>({24, 20, 17}, inr::ScalarType::Float64, -1e-310, 1e-310);
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(150));
+  EXPECT_GT(model->quality->psnr, 20);
+  EXPECT_LT(model->quality->psnr, 100);
+  EXPECT_LT(model->quality->ssim, 1);
+  EXPECT_GT(model->quality->maxError, 0);
 }
 
 TEST(Trainer, TakesAxesOfOneVoxel)
