@@ -8,7 +8,7 @@
  * MaximumSteps or after TimeLimit, whichever comes first. With the same seed, steps and kernel
  * family the result is the same on any number of threads.
  *
- * NaNs and infinities are left out: they carry no gradient, count neither in the range nor in the
+ * NaNs and infinities are left out: they are no targets, count neither in the range nor in the
  * quality, and are reported with a warning; where they were, the file holds a smooth continuation.
  *
  * Progress events tell the truth. AbortExecute, SIGINT and SIGTERM stop the training; then, as

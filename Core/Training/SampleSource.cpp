@@ -44,6 +44,15 @@ double Trilinear(const T* values, const AxisTaps& x, const AxisTaps& y, const Ax
   return mix(plane(z.first), plane(z.second), z.weight);
 }
 
+template <class T>
+double Nearest(const T* values, const AxisTaps& x, const AxisTaps& y, const AxisTaps& z)
+{
+  const auto offset = [](const AxisTaps& axis) {
+    return axis.weight < 0.5 ? axis.first : axis.second;
+  };
+  return static_cast<double>(values[offset(x) + offset(y) + offset(z)]);
+}
+
 } // namespace
 
 glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64vec3& dims)
@@ -70,7 +79,10 @@ void InMemorySource::sample(const glm::vec3* positions, std::int64_t count, floa
       const AxisTaps x = TapsAt(positions[k].x, dims.x, stride);
       const AxisTaps y = TapsAt(positions[k].y, dims.y, stride * dims.x);
       const AxisTaps z = TapsAt(positions[k].z, dims.z, stride * dims.x * dims.y);
-      const double value = Trilinear(values, x, y, z); // inf - inf and 0 * inf make it NaN, too
+      double value = Trilinear(values, x, y, z); // inf - inf and 0 * inf make it NaN, too
+      if (!std::isfinite(value)) {
+        value = Nearest(values, x, y, z);
+      }
       // Divided, not multiplied: the inverse of a range of denormal numbers is infinite.
       targets[k] = std::isfinite(value) ? static_cast<float>((value - this->Low) / this->Range)
                                         : std::numeric_limits<float>::quiet_NaN();

@@ -19,8 +19,9 @@ public:
   virtual const glm::i64vec3& dims() const = 0;
 
   /// Normalised trilinear values at `count` positions in the unit cube: voxel i of n sits at
-  /// (i + 0.5)/n, positions beyond the outermost voxel centres are clamped to them. NaN where a
-  /// voxel of the cell is NaN or infinite.
+  /// (i + 0.5)/n, positions beyond the outermost voxel centres are clamped to them. In a cell with
+  /// a voxel that is NaN or infinite the nearest voxel's value, so that every finite voxel is a
+  /// target; NaN where that one is not finite.
   virtual void sample(const glm::vec3* positions, std::int64_t count, float* targets) const = 0;
 };
 

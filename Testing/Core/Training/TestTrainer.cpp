@@ -139,6 +139,20 @@ TEST(Trainer, LeavesOutNaNsAndInfinities)
   }
 }
 
+// Every cell of the volume holds a NaN, and still half of the voxels are known.
+TEST(Trainer, LearnsVoxelsAmongNaNs)
+{
+  Field<float> field = Waves();
+  for (std::int64_t k = 0; k < field.data().voxels(); ++k) {
+    const glm::i64vec3 at(k % field.dims.x, k / field.dims.x % field.dims.y,
+                          k / (field.dims.x * field.dims.y));
+    if ((at.x + at.y + at.z) % 2 != 0) {
+      field.values[static_cast<std::size_t>(k)] = NAN;
+    }
+  }
+  EXPECT_GT(inr::TrainModel(field.data(), {}, Steps(150))->quality->psnr, 20);
+}
+
 TEST(Trainer, ConstantVolumesAreExact)
 {
   Field<float> field = Waves();
