@@ -36,6 +36,10 @@ ModelPointer ReadModel(const std::string& path, const ModelOverrides& overrides 
 /// counts, values that are not finite or that half precision cannot hold.
 void WriteModel(const Model& model, const std::string& path);
 
+/// Throws what WriteModel would say of the model's description, volume and macro-cells, whatever
+/// its parameters are: to be asked before a long training.
+void RequireStorable(const Model& model);
+
 /// Size in bytes that WriteModel would produce; needs no parameters in `model`, only its
 /// description, macro-cells and metadata.
 std::int64_t ModelFileSize(const Model& model);

@@ -126,17 +126,7 @@ void RequireWritable(const Model& model)
                 "the model has " + std::to_string(model.parameters.size()) +
                     " parameters where its description needs " + std::to_string(count));
   }
-  RequireValidVolume(model.volume, ErrorCode::InvalidModel);
-  const MacroCells& cells = model.macroCells;
-  const auto cellCount = static_cast<std::int64_t>(cells.ranges.size());
-  if (!cells.empty() && cells.dims.x * cells.dims.y * cells.dims.z != cellCount) {
-    throw Error(ErrorCode::InvalidModel, "the number of macro-cell ranges does not fit their dims");
-  }
-  if (ModelFileSize(model) > SizeLimit) {
-    throw Error(ErrorCode::TooLarge, "the model would take " +
-                                         std::to_string(ModelFileSize(model)) +
-                                         " bytes; a model file must be smaller than 2 GiB");
-  }
+  RequireStorable(model);
 }
 
 void WriteFile(const Model& model, const std::string& path)
@@ -156,6 +146,21 @@ void WriteFile(const Model& model, const std::string& path)
 }
 
 } // namespace
+
+void RequireStorable(const Model& model)
+{
+  RequireValidVolume(model.volume, ErrorCode::InvalidModel);
+  const MacroCells& cells = model.macroCells;
+  const auto cellCount = static_cast<std::int64_t>(cells.ranges.size());
+  if (!cells.empty() && cells.dims.x * cells.dims.y * cells.dims.z != cellCount) {
+    throw Error(ErrorCode::InvalidModel, "the number of macro-cell ranges does not fit their dims");
+  }
+  if (ModelFileSize(model) > SizeLimit) {
+    throw Error(ErrorCode::TooLarge, "the model would take " +
+                                         std::to_string(ModelFileSize(model)) +
+                                         " bytes; a model file must be smaller than 2 GiB");
+  }
+}
 
 std::int64_t ModelFileSize(const Model& model) { return Frame(model, 0).total(); }
 

@@ -158,7 +158,8 @@ inline double LossGradient(const TrainBlock& block, const float* output, std::in
   double loss = 0;
   for (std::int64_t k = 0; k < samples; ++k) {
     const float residual = k < block.count ? output[k] - block.targets[k] : 0.0f;
-    const bool known = residual == residual; // a NaN target carries no gradient
+    // A NaN target carries no gradient; a NaN output makes the loss one, which ends the training.
+    const bool known = k < block.count && block.targets[k] == block.targets[k];
     loss += known ? static_cast<double>(__builtin_fabsf(residual)) : 0.0;
     const float sign = static_cast<float>(residual > 0.0f) - static_cast<float>(residual < 0.0f);
     delta[k] = sign * block.gradientScale;

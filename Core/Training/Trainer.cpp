@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/EvaluateKernel.h"
+#include "Core/Model/ModelFile.h"
 #include "Core/Training/GradientDescent.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Quality.h"
@@ -33,21 +34,24 @@ void CheckArguments(const VolumeData& volume, const TrainingOptions& options)
   }
 }
 
-/// Parameters as a file of this precision gives them back.
-void RoundAsStored(std::vector<float>& parameters, ParameterType type)
+/// Makes the parameters what the file gives back; keeps them as floats where a half cannot hold one.
+void RoundAsStored(Model& model)
 {
-  if (type == ParameterType::Half) {
-    for (float& parameter : parameters) {
+  const auto fits = [](float parameter) { return std::abs(parameter) <= HALF_MAX; };
+  if (!std::all_of(model.parameters.begin(), model.parameters.end(), fits)) {
+    model.storedAs = ParameterType::Float;
+  }
+  if (model.storedAs == ParameterType::Half) {
+    for (float& parameter : model.parameters) {
       parameter = static_cast<float>(Imath::half(parameter));
     }
   }
 }
 
 /// The model of a volume whose finite voxels are all equal: no step is needed to be exact.
-ModelPointer ConstantModel(Model model, const glm::i64vec3& dims, int macroCellSize)
+ModelPointer ConstantModel(Model model, const glm::i64vec3& dims)
 {
   model.parameters.assign(Layout(model.description).parameterCount, 0.0f);
-  model.macroCells = MakeMacroCells(dims, macroCellSize);
   model.macroCells.provenance = MacroCellProvenance::Decoded;
   std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(), ValueRange{0, 0});
   // Whether there is a window without a gap is not worth a search.
@@ -56,6 +60,16 @@ ModelPointer ConstantModel(Model model, const glm::i64vec3& dims, int macroCellS
   model.quality = Quality{std::numeric_limits<double>::infinity(),
                           windowFits ? 1.0 : std::numeric_limits<double>::quiet_NaN(), 0.0};
   return std::make_shared<const Model>(std::move(model));
+}
+
+void RequireFinite(double loss, std::uint64_t steps)
+{
+  if (!std::isfinite(loss)) {
+    throw Error(ErrorCode::InvalidModel,
+                "the training diverged in step " + std::to_string(steps) +
+                    ": the network's output is not finite; choose another activation or fewer "
+                    "layers in ModelConfig");
+  }
 }
 
 /// Steps until a limit is reached, telling the observer.
@@ -70,7 +84,7 @@ public:
   {
     PsnrEstimate estimate(source, this->Options.seed);
     while (!this->reachedLimit(descent.steps())) {
-      descent.step(source);
+      RequireFinite(descent.step(source), descent.steps());
       // At fixed steps, so that a run which ends by quality ends at the same step every time.
       if (this->Options.targetPsnr > 0 && descent.steps() % PsnrInterval == 0) {
         this->Psnr = estimate.measure(descent.view(), kernel);
@@ -152,8 +166,10 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   model.volume.high = statistics.high;
   model.training = TrainingRecord{0, options.seed, 0.0, InstructionSetName(set),
                                   static_cast<std::uint64_t>(statistics.nonFinite)};
+  model.macroCells = MakeMacroCells(volume.dims, macroCellSize);
+  RequireStorable(model);
   if (!(statistics.low < statistics.high)) {
-    return ConstantModel(std::move(model), volume.dims, macroCellSize);
+    return ConstantModel(std::move(model), volume.dims);
   }
 
   const InMemorySource source(volume, statistics.low, statistics.high);
@@ -163,7 +179,7 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   model.training->steps = descent.steps();
   model.training->seconds = loop.seconds();
   model.parameters = descent.parameters();
-  RoundAsStored(model.parameters, model.storedAs);
+  RoundAsStored(model);
 
   const std::uint64_t steps = descent.steps();
   const auto trained = std::make_shared<Model>(std::move(model));

@@ -21,7 +21,7 @@ struct TrainingOptions
   std::uint64_t seed = 1;
   int macroCellSize = 0;                  ///< voxels; 0 = DefaultMacroCellSize
   std::optional<Description> description; ///< empty = ChooseDescription
-  ParameterType storedAs = ParameterType::Half;
+  ParameterType storedAs = ParameterType::Half; ///< Float where a half cannot hold a parameter
   std::string kernel; ///< for tests; empty = the fastest
   int threads = 0;    ///< 0 = all
 };
@@ -51,7 +51,9 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 /// constant volume takes no step and is exact. The result's quality and macro-cells are those of
 /// the parameters as they are stored. For a given seed, step count and kernel family the result is
 /// the same whatever the number of threads. Throws
-/// Error(InvalidArgument) for a volume without finite voxels or when no limit is set.
+/// Error(InvalidArgument) for a volume without finite voxels or when no limit is set; before it
+/// trains what RequireStorable finds; Error(InvalidModel) when the network's output stops being
+/// finite.
 ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 

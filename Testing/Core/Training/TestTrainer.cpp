@@ -244,6 +244,45 @@ TEST(Trainer, RefusesToTrainForEverOrOnNothing)
   EXPECT_THROW(inr::TrainModel(nothing, {}, Steps(5)), inr::Error);
 }
 
+// The observer is called in the first step already.
+TEST(Trainer, FindsBeforeItTrainsWhatNoFileCanHold)
+{
+  const auto refuses = [](const auto& field, const inr::VolumeInfo& info) {
+    bool trained = false;
+    const auto observe = [&](const inr::TrainingProgress&) { return trained = true; };
+    EXPECT_THROW(inr::TrainModel(field.data(), info, Steps(2), observe), inr::Error);
+    EXPECT_FALSE(trained);
+  };
+  inr::VolumeInfo info;
+  info.origin.y = NAN;
+  refuses(Waves(), info);
+  info = {};
+  info.direction[2] = info.direction[1];
+  refuses(Waves(), info);
+  info = {};
+  info.arrayName = std::string(5000, 'x');
+  refuses(Waves(), info);
+  Field<double> wide = Waves<double>({8, 8, 8}, inr::ScalarType::Float64, 0, 1);
+  wide.values[0] = -1.7e308;
+  wide.values[1] = 1.7e308;
+  refuses(wide, {});
+}
+
+TEST(Trainer, EndsWhenItDiverges)
+{
+  inr::TrainingOptions options = Steps(1000000);
+  options.description = inr::ChooseDescription({24, 20, 17}, inr::ScalarType::Float32, 0);
+  options.description->network.activation = inr::Activation::Exponential;
+  options.description->network.outputActivation = inr::Activation::Exponential;
+  options.description->network.hiddenLayers = 5;
+  try {
+    inr::TrainModel(Waves().data(), {}, options);
+    FAIL() << "went on";
+  } catch (const inr::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("diverged"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Trainer, EveryKernelLearns)
 {
   const Field<float> field = Waves();
