@@ -98,10 +98,13 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
       Corrections(BiasCorrections()), Positions(BatchSize), Targets(BatchSize)
 {}
 
-double GradientDescent::step(const SampleSource& source)
+std::optional<double> GradientDescent::step(const SampleSource& source, const StopCheck& check)
 {
   this->drawBatch(source);
-  const double loss = this->computeGradient(this->Positions, this->Targets);
+  const std::optional<double> loss = this->computeGradient(this->Positions, this->Targets, check);
+  if (!loss) {
+    return loss;
+  }
   const float rate = this->Rate.at(this->Steps);
   ++this->Steps;
   this->updateNetwork(rate);
@@ -122,8 +125,9 @@ void GradientDescent::drawBatch(const SampleSource& source)
   });
 }
 
-double GradientDescent::computeGradient(const std::vector<glm::vec3>& positions,
-                                        const std::vector<float>& targets)
+std::optional<double> GradientDescent::computeGradient(const std::vector<glm::vec3>& positions,
+                                                       const std::vector<float>& targets,
+                                                       const StopCheck& check)
 {
   const auto count = static_cast<std::int64_t>(positions.size());
   const std::int64_t shards = (count + ShardSize - 1) / ShardSize;
@@ -134,22 +138,29 @@ double GradientDescent::computeGradient(const std::vector<glm::vec3>& positions,
   this->ShardLosses.assign(static_cast<std::size_t>(shards), 0.0);
   const float* xyz = &positions.data()->x;
   this->Threads.forEachBlock(count, ShardSize, [&](std::int64_t begin, std::int64_t end) {
-    this->backpropagateShard(begin / ShardSize, xyz, targets.data(), begin, end, count);
+    this->backpropagateShard(begin / ShardSize, xyz, targets.data(), begin, end, count, check);
   });
+  if (!check.goesOn()) {
+    return std::nullopt;
+  }
   this->sumShards();
-  this->scatter(xyz, count);
+  this->scatter(xyz, count, check);
+  if (!check.goesOn()) {
+    return std::nullopt;
+  }
   return std::accumulate(this->ShardLosses.begin(), this->ShardLosses.end(), 0.0) /
          static_cast<double>(count);
 }
 
 void GradientDescent::backpropagateShard(std::int64_t shard, const float* xyz, const float* targets,
-                                         std::int64_t begin, std::int64_t end, std::int64_t total)
+                                         std::int64_t begin, std::int64_t end, std::int64_t total,
+                                         const StopCheck& check)
 {
   const ModelView& model = this->Views.view();
   std::vector<float> workspace(static_cast<std::size_t>(this->Kernel.workspace(model)));
   std::vector<float>& weightGradient = this->ShardGradients[static_cast<std::size_t>(shard)];
   weightGradient.assign(this->Shape.gridOffset, 0.0f);
-  for (std::int64_t first = begin; first < end; first += TrainBlockSize) {
+  for (std::int64_t first = begin; first < end && check.goesOn(); first += TrainBlockSize) {
     TrainBlock block{};
     block.xyz = xyz + 3 * first;
     block.targets = targets + first;
@@ -172,7 +183,7 @@ void GradientDescent::sumShards()
   }
 }
 
-void GradientDescent::scatter(const float* xyz, std::int64_t count)
+void GradientDescent::scatter(const float* xyz, std::int64_t count, const StopCheck& check)
 {
   const ModelView& model = this->Views.view();
   float* grid = this->Gradient.data() + this->Shape.gridOffset;
@@ -181,8 +192,10 @@ void GradientDescent::scatter(const float* xyz, std::int64_t count)
   // One task per level: levels share no entry, and within a level the order stays that of the
   // samples.
   this->Threads.forEachBlock(model.levelCount, 1, [&](std::int64_t level, std::int64_t) {
-    this->Kernel.scatter(model, static_cast<int>(level), xyz, count, this->EncodedGradient.data(),
-                         grid);
+    if (check.goesOn()) {
+      this->Kernel.scatter(model, static_cast<int>(level), xyz, count, this->EncodedGradient.data(),
+                           grid);
+    }
   });
 }
 

@@ -4,9 +4,11 @@
 #include "Core/Inference/ModelView.h"
 #include "Core/Parallel.h"
 #include "Core/Training/SampleSource.h"
+#include "Core/Training/StopCheck.h"
 #include "Core/Training/TrainKernel.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace inr {
@@ -44,13 +46,16 @@ public:
   GradientDescent(const GradientDescent&) = delete;
   GradientDescent& operator=(const GradientDescent&) = delete;
 
-  /// One mini-batch; returns the mean absolute error over it, before the update.
-  double step(const SampleSource& source);
+  /// One mini-batch; returns the mean absolute error over it, before the update. Nothing when
+  /// `check` stopped it: then no parameter has changed, and the next step draws the same batch. An
+  /// update that has begun is always finished.
+  std::optional<double> step(const SampleSource& source, const StopCheck& check = StopCheck());
 
   /// Fills gradient() with d (mean |output - target|) / d parameter for `count` samples (targets
-  /// that are NaN count as fitted) and returns the mean.
-  double computeGradient(const std::vector<glm::vec3>& positions,
-                         const std::vector<float>& targets);
+  /// that are NaN count as fitted) and returns the mean; nothing when `check` stopped it.
+  std::optional<double> computeGradient(const std::vector<glm::vec3>& positions,
+                                        const std::vector<float>& targets,
+                                        const StopCheck& check = StopCheck());
 
   std::uint64_t steps() const { return this->Steps; }
   const ModelView& view() const { return this->Views.view(); }
@@ -60,9 +65,10 @@ public:
 private:
   void drawBatch(const SampleSource& source);
   void backpropagateShard(std::int64_t shard, const float* xyz, const float* targets,
-                          std::int64_t begin, std::int64_t end, std::int64_t total);
+                          std::int64_t begin, std::int64_t end, std::int64_t total,
+                          const StopCheck& check);
   void sumShards();
-  void scatter(const float* xyz, std::int64_t count);
+  void scatter(const float* xyz, std::int64_t count, const StopCheck& check);
   void updateNetwork(float learningRate);
   void updateGrid(float learningRate);
 

@@ -10,6 +10,7 @@ namespace inr {
 
 namespace {
 constexpr std::int64_t SampleCount = 1 << 15;
+constexpr std::int64_t BlockSize = 512;
 constexpr std::uint64_t EstimateStream = 3; // apart from those of GradientDescent
 } // namespace
 
@@ -23,11 +24,17 @@ PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed)
   source.sample(this->Positions.data(), SampleCount, this->Targets.data());
 }
 
-double PsnrEstimate::measure(const ModelView& model, const EvaluateKernel& kernel) const
+double PsnrEstimate::measure(const ModelView& model, const EvaluateKernel& kernel,
+                             const StopCheck& check) const
 {
   std::vector<float> values(SampleCount);
   std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(model)));
-  kernel.evaluate(model, &this->Positions.data()->x, SampleCount, values.data(), workspace.data());
+  for (std::int64_t first = 0; first < SampleCount; first += BlockSize) {
+    if (!check.goesOn()) {
+      return 0.0;
+    }
+    kernel.evaluate(model, &this->Positions[first].x, BlockSize, &values[first], workspace.data());
+  }
   double squared = 0;
   std::int64_t finite = 0;
   for (std::int64_t k = 0; k < SampleCount; ++k) {

@@ -3,6 +3,7 @@
 
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Training/SampleSource.h"
+#include "Core/Training/StopCheck.h"
 
 #include <cstdint>
 #include <vector>
@@ -15,8 +16,9 @@ class PsnrEstimate
 public:
   PsnrEstimate(const SampleSource& source, std::uint64_t seed);
 
-  /// In dB, peak 1; infinity for a perfect fit.
-  double measure(const ModelView& model, const EvaluateKernel& kernel) const;
+  /// In dB, peak 1; infinity for a perfect fit, 0 when `check` stopped it.
+  double measure(const ModelView& model, const EvaluateKernel& kernel,
+                 const StopCheck& check) const;
 
 private:
   std::vector<glm::vec3> Positions;

@@ -13,6 +13,10 @@ namespace inr {
 
 namespace {
 
+/// Voxels that are decoded before anybody is asked whether to go on; always the same, since the
+/// last bit of a position may depend on where its band begins.
+constexpr std::int64_t BandSize = 1 << 15;
+
 /// Sums over one row, added up in row order so that threads cannot change the result.
 struct RowError
 {
@@ -32,11 +36,19 @@ public:
         Decoded(this->SliceSize), Reference(this->SliceSize)
   {}
 
-  void load(std::int64_t z)
+  /// `check` receives the fraction done and throws to stop.
+  void load(std::int64_t z, const std::function<void(double)>& check)
   {
     const glm::i64vec3 dims = this->Volume.dims;
-    EvaluateLattice(this->Source, this->Threads, VoxelLattice(dims, {0, 0, z}, {dims.x, dims.y, 1}),
-                    this->Raw.data());
+    const std::int64_t rows = std::max<std::int64_t>(1, BandSize / dims.x);
+    for (std::int64_t y = 0; y < dims.y; y += rows) {
+      check((static_cast<double>(z) + static_cast<double>(y) / static_cast<double>(dims.y)) /
+            static_cast<double>(dims.z));
+      const std::int64_t height = std::min(rows, dims.y - y);
+      EvaluateLattice(this->Source, this->Threads,
+                      VoxelLattice(dims, {0, y, z}, {dims.x, height, 1}),
+                      this->Raw.data() + y * dims.x);
+    }
     const double range = this->Info.high - this->Info.low; // its inverse may be infinite
     const auto count = static_cast<std::int64_t>(this->SliceSize);
     VisitScalars(this->Volume, [&](const auto* values) {
@@ -136,11 +148,13 @@ DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volum
   SliceSsim ssim(dims.x, dims.y, arena);
   RowError all;
   std::vector<RowError> rows(static_cast<std::size_t>(dims.y));
-  for (std::int64_t z = 0; z < dims.z; ++z) {
-    if (keepGoing && !keepGoing(static_cast<double>(z) / static_cast<double>(dims.z))) {
+  const auto check = [&](double fraction) {
+    if (keepGoing && !keepGoing(fraction)) {
       throw Error(ErrorCode::Cancelled, "stopped while measuring the quality");
     }
-    slice.load(z);
+  };
+  for (std::int64_t z = 0; z < dims.z; ++z) {
+    slice.load(z, check);
     arena.forEachBlock(dims.y, 16, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t y = begin; y < end; ++y) {
         rows[static_cast<std::size_t>(y)] = slice.rowError(y);

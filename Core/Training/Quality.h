@@ -18,8 +18,9 @@ struct DecodedReport
 /// Decodes every voxel of `volume` and compares: PSNR with the range as peak; SSIM in 3D (uniform
 /// 7^3 window fully inside, K1 0.01, K2 0.03, sample covariance: scikit-image's
 /// `structural_similarity(win_size=7, data_range=1)`); the largest difference. Windows and voxels
-/// that hold a NaN or infinity are left out; where none is left, the figure is NaN. `info` gives the value range, low < high; `keepGoing`
-/// receives the fraction done and returns false to stop (Error(Cancelled)).
+/// that hold a NaN or infinity are left out; where none is left, the figure is NaN. `info` gives
+/// the value range, low < high; `keepGoing` receives the fraction done and returns false to stop
+/// (Error(Cancelled)).
 DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volume,
                              const VolumeInfo& info, int macroCellSize, const Arena& arena,
                              const std::function<bool(double)>& keepGoing);

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace inr {
 
@@ -34,7 +35,8 @@ void CheckArguments(const VolumeData& volume, const TrainingOptions& options)
   }
 }
 
-/// Makes the parameters what the file gives back; keeps them as floats where a half cannot hold one.
+/// Makes the parameters what the file gives back; keeps them as floats where a half cannot hold
+/// one.
 void RoundAsStored(Model& model)
 {
   const auto fits = [](float parameter) { return std::abs(parameter) <= HALF_MAX; };
@@ -55,8 +57,7 @@ ModelPointer ConstantModel(Model model, const glm::i64vec3& dims)
   model.macroCells.provenance = MacroCellProvenance::Decoded;
   std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(), ValueRange{0, 0});
   // Whether there is a window without a gap is not worth a search.
-  const bool windowFits =
-      std::min({dims.x, dims.y, dims.z}) >= 7 && model.training->nonFinite == 0;
+  const bool windowFits = std::min({dims.x, dims.y, dims.z}) >= 7 && model.training->nonFinite == 0;
   model.quality = Quality{std::numeric_limits<double>::infinity(),
                           windowFits ? 1.0 : std::numeric_limits<double>::quiet_NaN(), 0.0};
   return std::make_shared<const Model>(std::move(model));
@@ -82,17 +83,28 @@ public:
 
   void run(GradientDescent& descent, const SampleSource& source, const EvaluateKernel& kernel)
   {
-    PsnrEstimate estimate(source, this->Options.seed);
+    const PsnrEstimate estimate(source, this->Options.seed);
+    const StopCheck check([&] { return this->keepGoing(descent.steps()); });
     while (!this->reachedLimit(descent.steps())) {
-      RequireFinite(descent.step(source), descent.steps());
+      const std::optional<double> loss = descent.step(source, check);
+      if (!loss) { // the time is up, and the step was dropped
+        break;
+      }
+      RequireFinite(*loss, descent.steps());
       // At fixed steps, so that a run which ends by quality ends at the same step every time.
       if (this->Options.targetPsnr > 0 && descent.steps() % PsnrInterval == 0) {
-        this->Psnr = estimate.measure(descent.view(), kernel);
+        this->Psnr = estimate.measure(descent.view(), kernel, check);
         if (this->Psnr >= this->Options.targetPsnr) {
           break;
         }
       }
       this->report(descent.steps());
+    }
+    if (descent.steps() == 0) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "not one step of the training was finished within the TimeLimit of " +
+                      std::to_string(this->Options.timeLimit) +
+                      " s; raise it or choose a smaller model");
     }
   }
 
@@ -100,11 +112,26 @@ public:
 
 private:
   static constexpr std::uint64_t PsnrInterval = 50;
+  static constexpr double ReportInterval = 0.2; // seconds, within a step
+
+  bool timeIsUp() const
+  {
+    return this->Options.timeLimit > 0 && this->Clock.seconds() >= this->Options.timeLimit;
+  }
 
   bool reachedLimit(std::uint64_t steps) const
   {
     return (this->Options.maximumSteps > 0 && steps >= this->Options.maximumSteps) ||
-           (this->Options.timeLimit > 0 && this->Clock.seconds() >= this->Options.timeLimit);
+           this->timeIsUp();
+  }
+
+  /// Within a step, which may take minutes: false when the time is up, throws when the user stops.
+  bool keepGoing(std::uint64_t steps)
+  {
+    if (this->Clock.seconds() - this->LastReport >= ReportInterval) {
+      this->report(steps);
+    }
+    return !this->timeIsUp();
   }
 
   double fraction(std::uint64_t steps) const
@@ -124,6 +151,7 @@ private:
 
   void report(std::uint64_t steps)
   {
+    this->LastReport = this->Clock.seconds();
     this->Fraction = std::max(this->Fraction, TrainingShare * this->fraction(steps));
     if (this->Observer &&
         !this->Observer({TrainingPhase::Training, this->Fraction, steps, this->Psnr})) {
@@ -136,6 +164,7 @@ private:
   TrainingClock Clock;
   double Psnr = 0;
   double Fraction = 0;
+  double LastReport = 0;
 };
 
 } // namespace

@@ -17,13 +17,13 @@ struct TrainingOptions
   double targetPsnr = 0;          ///< dB; 0 = off
   double targetRatio = 0;         ///< volume bytes / file bytes; 0 = by the volume's size
   std::uint64_t maximumSteps = 0; ///< 0 = no limit
-  double timeLimit = 300;         ///< seconds of training; 0 = no limit
+  double timeLimit = 300;         ///< seconds of training; measuring comes on top; 0 = no limit
   std::uint64_t seed = 1;
-  int macroCellSize = 0;                  ///< voxels; 0 = DefaultMacroCellSize
-  std::optional<Description> description; ///< empty = ChooseDescription
+  int macroCellSize = 0;                        ///< voxels; 0 = DefaultMacroCellSize
+  std::optional<Description> description;       ///< empty = ChooseDescription
   ParameterType storedAs = ParameterType::Half; ///< Float where a half cannot hold a parameter
-  std::string kernel; ///< for tests; empty = the fastest
-  int threads = 0;    ///< 0 = all
+  std::string kernel;                           ///< for tests; empty = the fastest
+  int threads = 0;                              ///< 0 = all
 };
 
 enum class TrainingPhase { Training, Measuring };
@@ -36,7 +36,9 @@ struct TrainingProgress
   double psnr = 0; ///< latest estimate in dB; 0 while there is none
 };
 
-/// Called at least twice a second; return false to stop, which throws Error(Cancelled).
+/// Called on the thread that trains, after every step, between the blocks of a long one and between
+/// those of measuring; not while the volume is searched for its range, the model is set up or a
+/// step's result is entered into it. Return false to stop, which throws Error(Cancelled).
 using TrainingObserver = std::function<bool(const TrainingProgress&)>;
 
 /// A model size for the volume: upstream-readable, about volume bytes / `ratio`; ratio 0 lets the
@@ -52,8 +54,8 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 /// the parameters as they are stored. For a given seed, step count and kernel family the result is
 /// the same whatever the number of threads. Throws
 /// Error(InvalidArgument) for a volume without finite voxels or when no limit is set; before it
-/// trains what RequireStorable finds; Error(InvalidModel) when the network's output stops being
-/// finite.
+/// trains what RequireStorable finds; when the time limit ends the first step; Error(InvalidModel)
+/// when the network's output stops being finite.
 ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 

@@ -4,6 +4,7 @@
 #include "Core/Training/GradientDescent.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Training/Fields.h"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +35,7 @@ struct Problem
     }
   }
 
-  double loss() { return this->Descent.computeGradient(this->Positions, this->Targets); }
+  double loss() { return *this->Descent.computeGradient(this->Positions, this->Targets); }
 
   /// Central difference along `direction`.
   double slopeAlong(const std::vector<float>& direction)
@@ -148,6 +149,26 @@ TEST(Gradients, UnknownTargetsCarryNone)
   for (const float component : problem.Descent.gradient()) {
     ASSERT_EQ(component, 0.0f);
   }
+}
+
+// Whenever it is stopped, a step that is repeated gives what it would have given.
+TEST(GradientDescent, AStoppedStepChangesNothing)
+{
+  const Field<float> field = Waves();
+  const inr::InMemorySource source(field.data(), -1, 1);
+  const inr::Arena threads(2);
+  const inr::InstructionSet set = inr::ChooseInstructionSet("");
+  inr::GradientDescent expected(SmallDescription(), 1, set, threads);
+  expected.step(source);
+  inr::GradientDescent stopped(SmallDescription(), 1, set, threads);
+  int stops = 0;
+  for (int limit = 1; stopped.steps() == 0; limit += 7) {
+    int asked = 0;
+    const inr::StopCheck check([&] { return ++asked < limit; });
+    stops += stopped.step(source, check) ? 0 : 1;
+  }
+  EXPECT_GT(stops, 3);
+  EXPECT_EQ(stopped.parameters(), expected.parameters());
 }
 
 TEST(LearningRate, FallsToItsFloor)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The streamed quality report against the same definitions written out directly.
+#include "Core/Error.h"
 #include "Core/Training/Quality.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
@@ -121,6 +122,19 @@ TEST(Quality, SsimIsUndefinedForThinVolumes)
   const Comparison flat(Waves<float>({20, 20, 3}, inr::ScalarType::Float32, -1, 1));
   EXPECT_TRUE(std::isnan(flat.Report.quality.ssim));
   EXPECT_TRUE(std::isfinite(flat.Report.quality.psnr));
+}
+
+TEST(Quality, AsksWithinASlice)
+{
+  const Field<float> field = Waves<float>({512, 256, 1}, inr::ScalarType::Float32, -1, 1);
+  inr::VolumeInfo info;
+  info.low = -1;
+  const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
+  int asked = 0;
+  const auto keepGoing = [&](double fraction) { return ++asked > 0 && fraction < 0.4; };
+  EXPECT_THROW(inr::MeasureQuality(*evaluator, field.data(), info, 16, inr::Arena(2), keepGoing),
+               inr::Error);
+  EXPECT_EQ(asked, 3); // at 0, 1/4 and 1/2
 }
 
 TEST(Quality, MacroCellsHoldTheirVoxelsAndAnApron)

@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <thread>
 
 namespace {
 
@@ -233,6 +235,45 @@ TEST(Trainer, CanBeStopped)
     EXPECT_EQ(error.code(), inr::ErrorCode::Cancelled);
     EXPECT_EQ(calls, 3);
   }
+}
+
+/// Seconds a step takes with it, on any machine of today.
+inr::Description HugeDescription()
+{
+  inr::Description description = inr::ChooseDescription({24, 20, 17}, inr::ScalarType::Float32, 0);
+  description.network.neurons = 512;
+  description.network.hiddenLayers = 12;
+  return description;
+}
+
+TEST(Trainer, EndsALongStepByTheClock)
+{
+  inr::TrainingOptions options;
+  options.description = HugeDescription();
+  options.timeLimit = 0.5;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    inr::TrainModel(Waves().data(), {}, options);
+    FAIL() << "there is a faster machine now";
+  } catch (const inr::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("TimeLimit"), std::string::npos) << error.what();
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(8));
+}
+
+TEST(Trainer, AsksWithinALongStep)
+{
+  inr::TrainingOptions options = Steps(1000);
+  options.description = HugeDescription();
+  const std::thread::id here = std::this_thread::get_id();
+  std::uint64_t steps = 1;
+  const auto stop = [&](const inr::TrainingProgress& progress) {
+    EXPECT_EQ(std::this_thread::get_id(), here);
+    steps = progress.steps;
+    return false;
+  };
+  EXPECT_THROW(inr::TrainModel(Waves().data(), {}, options, stop), inr::Error);
+  EXPECT_EQ(steps, 0u);
 }
 
 TEST(Trainer, RefusesToTrainForEverOrOnNothing)
