@@ -17,6 +17,7 @@
 #include <vtkGenericDataArray.h>
 #include <vtkObjectFactory.h>
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -63,14 +64,18 @@ public:
   void GetTypedTuple(vtkIdType index, ValueType* tuple) const { *tuple = this->GetValue(index); }
   ValueType GetTypedComponent(vtkIdType index, int) const { return this->GetValue(index); }
 
-  void SetValue(vtkIdType, ValueType) { this->RefuseToWrite(); }
-  void SetTypedTuple(vtkIdType, const ValueType*) { this->RefuseToWrite(); }
-  void SetTypedComponent(vtkIdType, int, ValueType) { this->RefuseToWrite(); }
+  void SetValue(vtkIdType, ValueType) { this->Refuse(Change::Values); }
+  void SetTypedTuple(vtkIdType, const ValueType*) { this->Refuse(Change::Values); }
+  void SetTypedComponent(vtkIdType, int, ValueType) { this->Refuse(Change::Values); }
 
   // The base class ends the process when it cannot get memory.
-  vtkTypeBool Allocate(vtkIdType, vtkIdType) override { return this->RefuseToWrite(); }
-  vtkTypeBool Resize(vtkIdType) override { return this->RefuseToWrite(); }
-  void SetNumberOfTuples(vtkIdType) override { this->RefuseToWrite(); }
+  vtkTypeBool Allocate(vtkIdType, vtkIdType) override { return this->Refuse(Change::Size); }
+  vtkTypeBool Resize(vtkIdType tuples) override
+  {
+    return tuples == this->Size || this->Refuse(Change::Size);
+  }
+  void SetNumberOfTuples(vtkIdType tuples) override { this->Resize(tuples); }
+  void Squeeze() override {}
 
   /// A decoded copy of all values, kept for the next call; null, with an error, for too many.
   void* GetVoidPointer(vtkIdType index) override
@@ -97,8 +102,8 @@ protected:
   vtkINRTypedArray() = default;
   ~vtkINRTypedArray() override = default;
 
-  bool AllocateTuples(vtkIdType) { return this->RefuseToWrite(); }
-  bool ReallocateTuples(vtkIdType) { return this->RefuseToWrite(); }
+  bool AllocateTuples(vtkIdType) { return this->Refuse(Change::Size); }
+  bool ReallocateTuples(vtkIdType) { return this->Refuse(Change::Size); }
 
   bool ComputeScalarRange(double* range) override { return this->RangeFromFile(range); }
   bool ComputeVectorRange(double range[2]) override { return this->RangeFromFile(range); }
@@ -127,6 +132,8 @@ private:
   friend class vtkGenericDataArray<vtkINRTypedArray<T>, T>;
   vtkINRTypedArray(const vtkINRTypedArray&) = delete;
   void operator=(const vtkINRTypedArray&) = delete;
+
+  enum class Change { Values, Size };
 
   /// What copies of one array share.
   struct Shared
@@ -160,7 +167,7 @@ private:
   {
     auto* same = dynamic_cast<Self*>(other);
     if (!same) {
-      this->RefuseToWrite();
+      this->Refuse(Change::Values);
       return;
     }
     if (same != this) {
@@ -179,14 +186,20 @@ private:
 
   const T* MakeCopy();
 
-  bool RefuseToWrite()
+  /// Says so once: a filter that writes does it for every value.
+  bool Refuse(Change change)
   {
-    vtkErrorMacro("The values of an implicit neural representation cannot be changed; use "
-                  "INRDecode to get ordinary ones.");
+    std::atomic<bool>& told = this->Told[static_cast<std::size_t>(change)];
+    if (!told.exchange(true)) {
+      vtkErrorMacro("The " << (change == Change::Values ? "values" : "number of values")
+                           << " of an implicit neural representation cannot be changed; use "
+                              "INRDecode to get ordinary ones.");
+    }
     return false;
   }
 
   std::shared_ptr<Shared> Values;
+  std::array<std::atomic<bool>, 2> Told{};
 };
 
 template <class T> const T* vtkINRTypedArray<T>::MakeCopy()
