@@ -46,6 +46,7 @@ int vtkINRWriter::FillInputPortInformation(int, vtkInformation* info)
 void vtkINRWriter::WriteData()
 {
   this->ForgetResult();
+  const StopSignals signals; // hands a signal on, which may end the process, after our message
   try {
     if (!this->FileName || !*this->FileName) {
       throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
@@ -55,7 +56,7 @@ void vtkINRWriter::WriteData()
       // Learn that the target is not writable now, not after minutes of training.
       const inr::AtomicFile attempt{std::string(this->FileName)};
     }
-    this->Train(input);
+    this->Train(input, signals);
   } catch (const std::exception& error) { // inr::Error, or no memory
     this->SetErrorCode(vtkErrorCode::UserError);
     vtkErrorMacro("Cannot save '" << (this->FileName ? this->FileName : "")
@@ -103,7 +104,7 @@ bool vtkINRWriter::ShouldStop()
 #endif
 }
 
-void vtkINRWriter::Train(const TrainingInput& input)
+void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
 {
   inr::TrainingOptions options;
   options.targetPsnr = this->TargetPSNR;
@@ -116,7 +117,6 @@ void vtkINRWriter::Train(const TrainingInput& input)
     options.description = inr::ParseDescription(std::string(this->ModelConfig));
   }
 
-  const StopSignals signals;
   const auto observe = [&](const inr::TrainingProgress& progress) {
     const bool training = progress.phase == inr::TrainingPhase::Training;
     this->SetProgressText(training ? "Training INR" : "Measuring INR quality");

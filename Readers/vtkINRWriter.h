@@ -21,6 +21,7 @@
 
 #include <vtkWriter.h>
 
+class StopSignals;
 struct TrainingInput;
 namespace inr {
 struct Model;
@@ -59,7 +60,8 @@ public:
   ///@}
 
   ///@{
-  /// Stop after so many seconds; 0 = no limit. Default 300.
+  /// Stop training after so many seconds, within a step if need be; 0 = no limit. Default 300. The
+  /// quality is measured afterwards, which takes as long as decoding all the voxels.
   vtkSetClampMacro(TimeLimit, double, 0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);
   ///@}
@@ -107,7 +109,7 @@ private:
   void operator=(const vtkINRWriter&) = delete;
 
   TrainingInput FindInput();
-  void Train(const TrainingInput& input);
+  void Train(const TrainingInput& input, const StopSignals& signals);
   bool ShouldStop();
   void ForgetResult();
   void KeepResult(const inr::Model& model);

@@ -394,6 +394,15 @@ TEST_F(Writer, ReportsProgressAndStopsWhenAsked)
 namespace {
 
 volatile std::sig_atomic_t SignalsSeen = 0;
+volatile std::sig_atomic_t MessagesBefore = 0;
+
+/// As in pvpython, where the handler ends the process: what is to be said must have been.
+void NoteSignal(int)
+{
+  SignalsSeen = SignalsSeen + 1;
+  const auto* window = dynamic_cast<CapturingWindow*>(vtkOutputWindow::GetInstance());
+  MessagesBefore = window ? static_cast<int>(window->Errors.size()) : 0;
+}
 
 } // namespace
 
@@ -401,7 +410,7 @@ TEST_F(Writer, StopsOnASignalAndHandsItOn)
 {
   struct sigaction mine = {};
   struct sigaction before = {};
-  mine.sa_handler = [](int) { SignalsSeen = SignalsSeen + 1; };
+  mine.sa_handler = NoteSignal;
   sigaction(SIGTERM, &mine, &before);
 
   bool sent = false;
@@ -419,6 +428,7 @@ TEST_F(Writer, StopsOnASignalAndHandsItOn)
   this->Algorithm->SetMaximumSteps(0);
   this->expectRefusal(MakeImage({20, 20, 20}, VTK_FLOAT, 0, 1), "stopped");
   EXPECT_EQ(SignalsSeen, 1);
+  EXPECT_EQ(MessagesBefore, 1);
   this->Algorithm->RemoveObserver(tag);
 
   std::raise(SIGTERM); // the handler is back in its place
