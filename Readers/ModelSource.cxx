@@ -2,6 +2,7 @@
 #include "ModelSource.h"
 
 #include "Core/Error.h"
+#include "Core/Model/ScaledModel.h"
 
 #include <cerrno>
 #include <sys/stat.h>
@@ -31,6 +32,14 @@ void ModelSource::Select(const std::string& path, const inr::ModelOverrides& ove
   }
 }
 
+void ModelSource::Scale(double factor)
+{
+  if (factor != this->Factor) {
+    this->Factor = factor;
+    this->Scaled = nullptr;
+  }
+}
+
 const inr::Model& ModelSource::Header()
 {
   if (!this->LoadedHeader) {
@@ -39,10 +48,18 @@ const inr::Model& ModelSource::Header()
   return *this->LoadedHeader;
 }
 
+inr::VolumeInfo ModelSource::Volume()
+{
+  return inr::ScaledVolume(this->Header().volume, this->Factor);
+}
+
 const inr::ModelPointer& ModelSource::Model()
 {
   if (!this->Loaded) {
     this->Loaded = inr::ReadModel(this->Path, this->Overrides);
   }
-  return this->Loaded;
+  if (!this->Scaled) {
+    this->Scaled = inr::ScaledModel(this->Loaded, this->Factor);
+  }
+  return this->Scaled;
 }

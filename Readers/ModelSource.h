@@ -8,17 +8,24 @@
 #include <optional>
 #include <string>
 
-/// A model file that is read again only when name, overrides or the file itself have changed.
+/// A model file that is read again only when name, overrides or the file itself have changed, on a
+/// grid that is not the file's own when a factor says so.
 class ModelSource
 {
 public:
   /// Which file with which corrections. Throws inr::Error(CannotRead) when it is not there.
   void Select(const std::string& path, const inr::ModelOverrides& overrides);
 
-  /// Everything but parameters and macro-cells. Throws inr::Error.
+  /// Of the selected file; see inr::ScaledVolume. 1 after a new selection.
+  void Scale(double factor);
+
+  /// Everything but parameters and macro-cells, not scaled. Throws inr::Error.
   const inr::Model& Header();
 
-  /// The whole model. Throws inr::Error.
+  /// The scaled volume. Throws inr::Error.
+  inr::VolumeInfo Volume();
+
+  /// The whole model, scaled. Throws inr::Error.
   const inr::ModelPointer& Model();
 
   std::int64_t FileSize() const { return this->File.size; }
@@ -46,4 +53,6 @@ private:
   FileStamp File;
   std::optional<inr::Model> LoadedHeader;
   inr::ModelPointer Loaded;
+  double Factor = 1;
+  inr::ModelPointer Scaled;
 };

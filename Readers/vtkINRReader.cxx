@@ -148,9 +148,10 @@ void vtkINRReader::ReadInformation(vtkInformation* outInfo)
     overrides.dataRange = glm::dvec2(this->DataRange[0], this->DataRange[1]);
   }
   this->Internal->Source.Select(this->FileName, overrides);
-  const inr::VolumeInfo& volume = this->Internal->Source.Header().volume;
+  this->Internal->Source.Scale(this->ScaleFactor);
+  const inr::VolumeInfo volume = this->Internal->Source.Volume();
   this->Internal->Grid = PresentGrid(volume, this->MaximumGridPoints);
-  this->Describe();
+  this->Describe(volume);
   this->WarnIfLimited();
 
   int extent[6];
@@ -168,8 +169,8 @@ void vtkINRReader::WarnIfLimited()
 {
   const PresentedGrid& grid = this->Internal->Grid;
   if (grid.limited) {
-    vtkWarningMacro("'" << this->FileName << "' has a native grid of " << this->NativeDimensions[0]
-                        << " x " << this->NativeDimensions[1] << " x " << this->NativeDimensions[2]
+    vtkWarningMacro("'" << this->FileName << "' has a native grid of " << this->ScaledDimensions[0]
+                        << " x " << this->ScaledDimensions[1] << " x " << this->ScaledDimensions[2]
                         << " points; filters are shown " << grid.dims.x << " x " << grid.dims.y
                         << " x " << grid.dims.z << ", since many cannot cope with more than "
                         << LargestPresentedGrid
@@ -178,13 +179,15 @@ void vtkINRReader::WarnIfLimited()
   }
 }
 
-void vtkINRReader::Describe()
+void vtkINRReader::Describe(const inr::VolumeInfo& scaled)
 {
   const inr::Model& header = this->Internal->Source.Header();
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   for (int axis = 0; axis < 3; ++axis) {
     this->NativeDimensions[axis] = header.volume.dims[axis];
     this->NativeSpacing[axis] = header.volume.spacing[axis];
+    this->ScaledDimensions[axis] = scaled.dims[axis];
+    this->ScaledSpacing[axis] = scaled.spacing[axis];
   }
   this->PSNR = header.quality ? header.quality->psnr : unknown;
   this->SSIM = header.quality ? header.quality->ssim : unknown;
@@ -243,6 +246,8 @@ void vtkINRReader::AddFieldData(vtkDataObject* output)
   vtkFieldData* fields = output->GetFieldData();
   AddTuple<vtkTypeInt64Array>(fields, "INRNativeDimensions", this->NativeDimensions, 3);
   AddTuple<vtkDoubleArray>(fields, "INRNativeSpacing", this->NativeSpacing, 3);
+  AddTuple<vtkTypeInt64Array>(fields, "INRScaledDimensions", this->ScaledDimensions, 3);
+  AddTuple<vtkDoubleArray>(fields, "INRScaledSpacing", this->ScaledSpacing, 3);
   AddKnown(fields, "INRRatio", this->Ratio);
   AddKnown(fields, "INRPSNR", this->PSNR);
   AddKnown(fields, "INRSSIM", this->SSIM);
@@ -255,6 +260,7 @@ void vtkINRReader::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n"
      << indent << "ArrayName: " << (this->ArrayName ? this->ArrayName : "(as in the file)") << "\n"
      << indent << "MaximumGridPoints: " << this->MaximumGridPoints << "\n"
+     << indent << "ScaleFactor: " << this->ScaleFactor << "\n"
      << indent << "DataRange: " << this->DataRange[0] << " " << this->DataRange[1] << "\n"
      << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
      << this->Dimensions[2] << "\n";

@@ -10,7 +10,8 @@
  * native resolution, and vtkINRDecode computes native voxels.
  *
  * The output's field data tells about the volume behind the grid: INRNativeDimensions,
- * INRNativeSpacing, INRRatio and, where the file has them, INRPSNR (dB), INRSSIM, INRMaximumError.
+ * INRNativeSpacing, INRScaledDimensions, INRScaledSpacing, INRRatio and, where the file has them,
+ * INRPSNR (dB), INRSSIM, INRMaximumError.
  *
  * A file that cannot be read gives one error and an empty output; mend the file, call Modified(),
  * and the reader goes on.
@@ -23,6 +24,10 @@
 #include <vtkImageAlgorithm.h>
 
 #include <memory> // for Internals
+
+namespace inr {
+struct VolumeInfo;
+}
 
 class VTKINRREADERS_EXPORT vtkINRReader : public vtkImageAlgorithm
 {
@@ -57,6 +62,14 @@ public:
   ///@}
 
   ///@{
+  /// Voxels per axis over those in the file, 0.25 to 4 (default 1), between the same point bounds;
+  /// an axis of a single voxel keeps it. The network is asked for the values of these voxels: they
+  /// are what vtkINRVolumeMapper and vtkINRDecode take for native from here on.
+  vtkSetMacro(ScaleFactor, double);
+  vtkGetMacro(ScaleFactor, double);
+  ///@}
+
+  ///@{
   /// Value range for files that lack it (0 and 1 of the network's output stand for these). Equal
   /// values (default 0, 0) = as in the file.
   vtkSetVector2Macro(DataRange, double);
@@ -74,6 +87,12 @@ public:
   /// original volume.
   vtkGetVector3Macro(NativeDimensions, vtkIdType);
   vtkGetVector3Macro(NativeSpacing, double);
+  ///@}
+
+  ///@{
+  /// The same after ScaleFactor.
+  vtkGetVector3Macro(ScaledDimensions, vtkIdType);
+  vtkGetVector3Macro(ScaledSpacing, double);
   ///@}
 
   ///@{
@@ -102,18 +121,21 @@ private:
 
   void ReadInformation(vtkInformation* outInfo);
   void ReadData(vtkInformation* outInfo);
-  void Describe();
+  void Describe(const inr::VolumeInfo& scaled);
   void WarnIfLimited();
   void AddFieldData(vtkDataObject* output);
 
   char* FileName = nullptr;
   char* ArrayName = nullptr;
   vtkIdType MaximumGridPoints = vtkIdType{1} << 24;
+  double ScaleFactor = 1;
   double DataRange[2] = {0, 0};
   int Dimensions[3] = {0, 0, 0};
 
   vtkIdType NativeDimensions[3] = {0, 0, 0};
   double NativeSpacing[3] = {1, 1, 1};
+  vtkIdType ScaledDimensions[3] = {0, 0, 0};
+  double ScaledSpacing[3] = {1, 1, 1};
   double PSNR = 0;
   double SSIM = 0;
   double MaximumError = 0;

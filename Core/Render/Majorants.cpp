@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Majorants.h"
 
-#include "Core/Render/RangeGrids.h"
+#include "Core/Model/RangeGrids.h"
 
 #include <limits>
 #include <utility>

@@ -145,6 +145,73 @@ TEST_F(Reader, KeepsSlabsAndSticks)
   this->expectTruth(model);
 }
 
+TEST_F(Reader, ScalesTheGridBetweenTheSameBounds)
+{
+  const auto model = MakeModel({20, 13, 1});
+  const std::string path = this->write(*model);
+  const Truth truth(model);
+  double native[6];
+  this->open(path)->GetBounds(native);
+  for (const double factor : {0.25, 0.7, 4.0, 1.0}) {
+    SCOPED_TRACE(factor);
+    this->Algorithm->SetScaleFactor(factor);
+    vtkImageData* image = this->open(path);
+    const glm::ivec3 dims(std::lround(20 * factor), std::lround(13 * factor), 1);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(image->GetDimensions()[axis], dims[axis]);
+      EXPECT_EQ(this->Algorithm->GetScaledDimensions()[axis], dims[axis]);
+      EXPECT_EQ(this->Algorithm->GetScaledSpacing()[axis], image->GetSpacing()[axis]);
+    }
+    for (int side = 0; side < 6; ++side) {
+      EXPECT_NEAR(image->GetBounds()[side], native[side], 1e-12);
+    }
+    for (vtkIdType index = 0; index < image->GetNumberOfPoints(); ++index) {
+      const glm::dvec3 voxel(index % dims.x, index / dims.x, 0);
+      const double expected = truth((voxel + 0.5) / glm::dvec3(dims));
+      ASSERT_NEAR(this->scalars()->GetTuple1(index), expected, 70 * PositionTolerance);
+    }
+    vtkFieldData* fields = image->GetFieldData();
+    EXPECT_EQ(fields->GetArray("INRScaledDimensions")->GetComponent(0, 1), dims.y);
+    EXPECT_EQ(fields->GetArray("INRNativeDimensions")->GetComponent(0, 1), 13);
+    const double bytes = static_cast<double>(std::filesystem::file_size(path));
+    EXPECT_DOUBLE_EQ(this->Algorithm->GetRatio(), 20 * 13 * 4 / bytes);
+  }
+}
+
+TEST_F(Reader, PresentsTheBoundsOfAScaledGridToo)
+{
+  const auto model = MakeModel(Dims);
+  const std::string path = this->write(*model);
+  double native[6];
+  this->open(path)->GetBounds(native);
+  this->Algorithm->SetScaleFactor(3);
+  this->Algorithm->SetMaximumGridPoints(500);
+  vtkImageData* image = this->open(path);
+  EXPECT_LE(image->GetNumberOfPoints(), 500);
+  for (int side = 0; side < 6; ++side) {
+    EXPECT_NEAR(image->GetBounds()[side], native[side], 1e-12);
+  }
+  inr::VolumeInfo scaled = model->volume;
+  scaled.dims *= 3;
+  scaled.spacing *= glm::dvec3(Dims - std::int64_t{1}) / glm::dvec3(scaled.dims - std::int64_t{1});
+  const auto finer = std::make_shared<inr::Model>(*model);
+  finer->volume = scaled;
+  this->expectTruth(finer);
+}
+
+TEST_F(Reader, RefusesOtherScaleFactors)
+{
+  const std::string path = this->write(*MakeModel(Dims));
+  for (const double factor : {0.0, 0.24, 4.1, -1.0, std::nan("")}) {
+    this->Algorithm->SetScaleFactor(factor);
+    const MessageCapture messages;
+    EXPECT_EQ(this->open(path)->GetNumberOfPoints(), 0);
+    EXPECT_TRUE(messages.onlyError("ScaleFactor")) << messages.text();
+  }
+  this->Algorithm->SetScaleFactor(1);
+  EXPECT_GT(this->open(path)->GetNumberOfPoints(), 0);
+}
+
 TEST_F(Reader, TellsAboutTheVolumeBehindTheGrid)
 {
   const auto model = MakeModel(Dims);

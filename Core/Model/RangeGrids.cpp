@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/RangeGrids.h"
+#include "Core/Model/RangeGrids.h"
 
 #include "Core/Parallel.h"
 

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Error.h"
+#include "Core/Model/ScaledModel.h"
+#include "Testing/Core/RandomModel.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace {
+
+inr::VolumeInfo Volume(const glm::i64vec3& dims)
+{
+  inr::VolumeInfo volume;
+  volume.dims = dims;
+  volume.spacing = {0.5, -1.25, 3};
+  volume.origin = {1, 2, 3};
+  return volume;
+}
+
+TEST(ScaledModel, KeepsThePointBounds)
+{
+  for (const double factor : {0.25, 0.3, 0.999, 1.0, 1.7, 4.0}) {
+    const inr::VolumeInfo native = Volume({301, 7, 2});
+    const inr::VolumeInfo scaled = inr::ScaledVolume(native, factor);
+    EXPECT_EQ(scaled.dims.x, std::llround(301 * factor));
+    EXPECT_EQ(scaled.origin, native.origin);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GE(scaled.dims[axis], 2);
+      EXPECT_DOUBLE_EQ(scaled.spacing[axis] * static_cast<double>(scaled.dims[axis] - 1),
+                       native.spacing[axis] * static_cast<double>(native.dims[axis] - 1));
+    }
+  }
+}
+
+TEST(ScaledModel, KeepsSlabs)
+{
+  for (const double factor : {0.25, 4.0}) {
+    const inr::VolumeInfo scaled = inr::ScaledVolume(Volume({20, 1, 20}), factor);
+    EXPECT_EQ(scaled.dims.y, 1);
+    EXPECT_EQ(scaled.spacing.y, -1.25);
+  }
+}
+
+TEST(ScaledModel, RefusesOtherFactorsAndTooManyVoxels)
+{
+  const auto told = [](const glm::i64vec3& dims, double factor) {
+    try {
+      inr::ScaledVolume(Volume(dims), factor);
+    } catch (const inr::Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const double factor : {0.0, -1.0, 0.2499, 4.001, std::nan(""), 1e300}) {
+    EXPECT_NE(told(glm::i64vec3(9), factor).find("ScaleFactor"), std::string::npos) << factor;
+  }
+  EXPECT_NE(told(glm::i64vec3(131072), 4).find("524288"), std::string::npos);
+  EXPECT_EQ(told(glm::i64vec3(131072), 1), "");
+}
+
+TEST(ScaledModel, BoundsWhatLiesBetweenCoarserVoxels)
+{
+  auto model = RandomModel(SmallDescription());
+  model->volume = Volume({160, 160, 1});
+  model->macroCells = inr::MakeMacroCells(model->volume.dims, 16);
+  for (inr::ValueRange& range : model->macroCells.ranges) {
+    range = {0.25f, 0.5f};
+  }
+  const auto special = static_cast<std::size_t>(model->macroCells.index(4, 4, 0));
+  model->macroCells.ranges[special] = {0.0f, 1.0f};
+  const auto wide = [&](double factor) {
+    const inr::ModelPointer scaled = inr::ScaledModel(model, factor);
+    EXPECT_EQ(scaled->volume.dims.x, std::llround(160 * factor));
+    int count = 0;
+    for (const inr::ValueRange& range : scaled->macroCells.ranges) {
+      count += range.high == 1.0f ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(wide(0.25), 9);
+  EXPECT_EQ(wide(1), 1);
+  EXPECT_EQ(wide(4), 1);
+  EXPECT_EQ(inr::ScaledModel(model, 1), model);
+  EXPECT_EQ(inr::ScaledModel(model, 4)->parameters, model->parameters);
+}
+
+} // namespace
