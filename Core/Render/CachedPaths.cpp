@@ -21,26 +21,52 @@ float Between(float a, float b, float weight) { return a + (b - a) * weight; }
 
 CachedSampler::CachedSampler(const BrickCache& cache, const Evaluator& field, OnPathMiss onMiss)
     : Cache(cache), Missing(onMiss), Network(field, cache.hierarchy().dims()),
-      StrideY(cache.hierarchy().brickDims().x),
+      BrickStride(cache.hierarchy().brickDims() - 1), InverseBrickStride(1.0 / this->BrickStride),
+      VoxelBytes(BytesPerVoxel(cache.precision())), StrideY(cache.hierarchy().brickDims().x),
       StrideZ(this->StrideY * cache.hierarchy().brickDims().y),
       LastCell(cache.hierarchy().brickDims() - 2)
-{}
+{
+  const Hierarchy& hierarchy = cache.hierarchy();
+  for (int level = 0; level < hierarchy.levels(); ++level) {
+    this->Levels.push_back({hierarchy.scale(level), hierarchy.bias(level),
+                            glm::dvec3(hierarchy.size(level) - std::int64_t{1}),
+                            glm::ivec3(hierarchy.bricks(level) - std::int64_t{1})});
+  }
+}
+
+BrickKey CachedSampler::locate(int level, const glm::dvec3& index, glm::dvec3& local) const
+{
+  const Level& at = this->Levels[static_cast<std::size_t>(level)];
+  const glm::dvec3 place = glm::clamp(index * at.scale + at.bias, glm::dvec3(0.0), at.last);
+  const glm::ivec3 brick =
+      glm::min(glm::ivec3(place * this->InverseBrickStride), at.lastBrick); // rounded down
+  local = place - glm::dvec3(brick) * this->BrickStride;
+  return KeyOf({level, glm::i64vec3(brick)});
+}
 
 CachedSampler::Cell CachedSampler::cellIn(std::int32_t slot, const glm::dvec3& local) const
 {
   const glm::ivec3 corner = glm::min(glm::ivec3(local), this->LastCell);
   this->Cache.touch(slot);
-  return {this->Cache.view(slot), corner.x + this->StrideY * corner.y + this->StrideZ * corner.z,
-          glm::vec3(local - glm::dvec3(corner))};
+  const Cell cell{this->Cache.view(slot),
+                  corner.x + this->StrideY * corner.y + this->StrideZ * corner.z,
+                  glm::vec3(local - glm::dvec3(corner))};
+  // Paths lead anywhere: memory is slow to answer unless all the batch's points ask at once.
+  const char* first = static_cast<const char*>(cell.brick.voxels) + cell.first * this->VoxelBytes;
+  __builtin_prefetch(first);
+  __builtin_prefetch(first + this->StrideY * this->VoxelBytes);
+  __builtin_prefetch(first + this->StrideZ * this->VoxelBytes);
+  __builtin_prefetch(first + (this->StrideY + this->StrideZ) * this->VoxelBytes);
+  return cell;
 }
 
 bool CachedSampler::find(const FieldPoint& point, Cell& cell)
 {
-  const Hierarchy::Location at = this->Cache.hierarchy().locate(point.level, IndexOf(point));
-  const BrickKey key = KeyOf(at.brick);
+  glm::dvec3 local;
+  const BrickKey key = this->locate(point.level, IndexOf(point), local);
   const std::int32_t slot = this->Cache.find(key);
   if (slot != PageTable::Unmapped) {
-    cell = this->cellIn(slot, at.local);
+    cell = this->cellIn(slot, local);
     return true;
   }
   if (this->Missing != OnPathMiss::Approach) {
@@ -51,15 +77,14 @@ bool CachedSampler::find(const FieldPoint& point, Cell& cell)
 
 void CachedSampler::findCoarser(const FieldPoint& point, Cell& cell)
 {
-  const Hierarchy& hierarchy = this->Cache.hierarchy();
   const glm::dvec3 index = IndexOf(point);
-  BrickKey finer = KeyOf(hierarchy.brickAt(point.level, index));
-  for (int level = point.level + 1; level < hierarchy.levels(); ++level) {
-    const Hierarchy::Location at = hierarchy.locate(level, index);
-    const BrickKey key = KeyOf(at.brick);
+  glm::dvec3 local;
+  BrickKey finer = this->locate(point.level, index, local);
+  for (int level = point.level + 1; level < static_cast<int>(this->Levels.size()); ++level) {
+    const BrickKey key = this->locate(level, index, local);
     const std::int32_t slot = this->Cache.find(key);
     if (slot != PageTable::Unmapped) {
-      cell = this->cellIn(slot, at.local);
+      cell = this->cellIn(slot, local);
       break;
     }
     finer = key;

@@ -45,6 +45,18 @@ private:
     glm::vec3 weight;   ///< of the far neighbours
   };
 
+  /// What the cache's hierarchy says about a level, ready for use.
+  struct Level
+  {
+    glm::dvec3 scale;
+    glm::dvec3 bias;
+    glm::dvec3 last; ///< voxel
+    glm::ivec3 lastBrick;
+  };
+
+  /// The brick of a place and where in it that is, as Hierarchy::locate has it but for places that
+  /// two bricks share.
+  BrickKey locate(int level, const glm::dvec3& index, glm::dvec3& local) const;
   bool find(const FieldPoint& point, Cell& cell);
   void findCoarser(const FieldPoint& point, Cell& cell);
   Cell cellIn(std::int32_t slot, const glm::dvec3& local) const;
@@ -54,6 +66,10 @@ private:
   const BrickCache& Cache;
   OnPathMiss Missing;
   EvaluatorSampler Network;
+  std::vector<Level> Levels;
+  glm::dvec3 BrickStride; ///< voxels
+  glm::dvec3 InverseBrickStride;
+  std::int64_t VoxelBytes;
   std::int64_t StrideY; ///< voxels
   std::int64_t StrideZ;
   glm::ivec3 LastCell;

@@ -18,10 +18,14 @@ class GridWalker
 public:
   INR_HOST_DEVICE GridWalker(const MajorantGrid& cells, const glm::dvec3& volumeDims,
                              const Ray& ray)
-      : Cells(&cells), Start((ray.entry + 0.5) / (volumeDims * cells.spacing())),
-        Slope(ray.direction / (volumeDims * cells.spacing())),
-        Inverse(ray.inverse * (volumeDims * cells.spacing()))
-  {}
+      : Cells(&cells)
+  {
+    const glm::dvec3 edge = volumeDims * cells.spacing();
+    const glm::dvec3 scale = 1.0 / edge;
+    this->Start = (ray.entry + 0.5) * scale;
+    this->Slope = ray.direction * scale;
+    this->Inverse = ray.inverse * edge;
+  }
 
   /// Begins anew in another grid.
   INR_HOST_DEVICE void changeTo(const MajorantGrid& cells)
@@ -82,9 +86,11 @@ private:
   INR_HOST_DEVICE double exitFrom(int axis, std::int64_t cell) const
   {
     const bool forward = this->Slope[axis] > 0;
-    const bool open =
-        this->Slope[axis] == 0 || (forward ? cell + 1 >= this->Cells->dims()[axis] : cell <= 0);
-    return open ? Never : this->faceAt(axis, cell + (forward ? 1 : 0));
+    const std::int64_t last = forward ? this->Cells->dims()[axis] - 1 : 0;
+    const double face = this->faceAt(axis, cell + (forward ? 1 : 0));
+    // Which way a ray goes is anybody's guess, so better no branches.
+    const bool open = static_cast<int>(this->Slope[axis] == 0) | static_cast<int>(cell == last);
+    return open ? Never : face;
   }
 
   INR_HOST_DEVICE void findAxisExit(int axis)

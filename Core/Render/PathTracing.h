@@ -77,7 +77,8 @@ constexpr float MaximumOpacity = 1.0f - 0x1p-20f;
 /// Extinction per opacity unit distance.
 INR_HOST_DEVICE inline float Extinction(float opacity)
 {
-  return -std::log1p(-(opacity < MaximumOpacity ? opacity : MaximumOpacity));
+  // Rounding of the difference is as good as an opacity of 1e-7, and the logarithm twice as fast.
+  return -std::log(1.0f - (opacity < MaximumOpacity ? opacity : MaximumOpacity));
 }
 
 /// The next random number of a path, uniform in [0, 1).
@@ -160,7 +161,7 @@ INR_HOST_DEVICE inline bool NextCollision(const PathScene& scene, PathState& pat
                                           PathSample& sample)
 {
   const double end = path.ray.length;
-  double depth = -std::log1p(-Draw(path));
+  double depth = -std::log(1.0 - Draw(path)); // 1 - x is exact
   while (path.t < end) {
     path.walker.moveTo(path.t);
     if (!path.walker.moveToVisible(end)) {

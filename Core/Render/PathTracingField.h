@@ -20,11 +20,11 @@ struct FieldPoint
   int level;          ///< of the hierarchy, 0 = native
 };
 
-/// `index` is a native point index, within 32 bits.
+/// `index` is a native point index, not negative and within 32 bits.
 INR_HOST_DEVICE inline FieldPoint MakeFieldPoint(const glm::dvec3& index, int level = 0)
 {
-  const glm::dvec3 floor = glm::floor(index);
-  return {glm::ivec3(floor), glm::vec3(index - floor), level};
+  const glm::ivec3 voxel(index); // not negative, so truncation is floor
+  return {voxel, glm::vec3(index - glm::dvec3(voxel)), level};
 }
 
 /// Where paths get the field's values from. One for each thread and tile.

@@ -33,8 +33,10 @@ public:
     ray.inverse = 1.0 / ray.direction;
     ray.length = limit / this->WorldPerUnit;
     for (int axis = 0; axis < 3; ++axis) {
-      Keep(from[axis] - this->Low[axis], ray.direction[axis], ray.length);
-      Keep(this->High[axis] - from[axis], -ray.direction[axis], ray.length);
+      // A start that rounding has put outside counts as being on the border.
+      const double face = ray.direction[axis] < 0 ? this->Low[axis] : this->High[axis];
+      const double end = glm::max((face - from[axis]) * ray.inverse[axis], 0.0);
+      ray.length = ray.direction[axis] != 0 && end < ray.length ? end : ray.length;
     }
     for (const glm::dvec4& plane : this->Planes) {
       Keep(glm::dot(plane, glm::dvec4(from, 1.0)), glm::dot(plane, glm::dvec4(ray.direction, 0.0)),

@@ -39,13 +39,20 @@ INR_HOST_DEVICE inline double SamplePhaseCosine(double g, double u)
 /// in [0, 1) of a whole turn.
 INR_HOST_DEVICE inline glm::dvec3 Turn(const glm::dvec3& direction, double cosine, double turn)
 {
-  const glm::dvec3 aside = std::abs(direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 first = glm::normalize(glm::cross(direction, aside));
-  const glm::dvec3 second = glm::cross(direction, first);
+  // Axes across it without a root or a branch: Duff et al., "Building an orthonormal basis,
+  // revisited", Journal of Computer Graphics Techniques 6(1), 2017.
+  const glm::dvec3& d = direction;
+  const double sign = std::copysign(1.0, d.z);
+  const double a = -1.0 / (sign + d.z);
+  const double b = d.x * d.y * a;
+  const glm::dvec3 first(1.0 + sign * d.x * d.x * a, sign * b, -sign * d.x);
+  const glm::dvec3 second(b, sign + d.y * d.y * a, -d.y);
   const double angle = 6.283185307179586 * turn;
   const double sine = std::sqrt(glm::max(0.0, 1.0 - cosine * cosine));
-  return glm::normalize(cosine * direction +
-                        sine * (std::cos(angle) * first + std::sin(angle) * second));
+  const glm::dvec3 turned =
+      cosine * d + sine * (std::cos(angle) * first + std::sin(angle) * second);
+  // One step of Newton's towards length 1: rounding must not add up over many turns.
+  return turned * (1.5 - 0.5 * glm::dot(turned, turned));
 }
 
 } // namespace inr
