@@ -30,6 +30,7 @@ inr::CacheOptions SmallBricks()
   cache.precision = inr::CachePrecision::Float32;
   cache.brickSize = 8;
   cache.bytes = 64 << 20;
+  cache.background = false; // every call brings something
   return cache;
 }
 
@@ -230,6 +231,24 @@ TEST(PathPicture, PartsMakeTheSamePicture)
     EXPECT_LT(calls, 300);
     EXPECT_EQ(image.pixels, Render(whole, frame).pixels);
   }
+}
+
+TEST(PathPicture, PartsMakeTheSamePictureWhileBricksLoadBehindIt)
+{
+  inr::CacheOptions options = SmallBricks();
+  options.background = true;
+  inr::Renderer parts = MakeRenderer(true, 2, options);
+  inr::Frame frame = LitFrame();
+  inr::Renderer whole = MakeRenderer(true);
+  const inr::Image truth = Render(whole, frame);
+  frame.timeLimit = 0.01;
+  inr::Image image;
+  int calls = 1;
+  while (!parts.render(frame, image).complete && calls < 10000) {
+    ++calls;
+  }
+  EXPECT_LT(calls, 10000);
+  EXPECT_EQ(image.pixels, truth.pixels);
 }
 
 TEST(PathPicture, ShowsWhatThereIsBeforeTheFirstCompleteSample)
