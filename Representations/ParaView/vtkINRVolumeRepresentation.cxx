@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRVolumeRepresentation.h"
 
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
 #include "vtkPVRenderView.h"
+#include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkVolumeProperty.h"
 
@@ -37,6 +40,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
   } else if (request == vtkPVView::REQUEST_RENDER()) {
     this->UpdateMapperParameters();
+    this->ReportColouring();
     this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
   }
   return 1;
@@ -52,6 +56,35 @@ void vtkINRVolumeRepresentation::DeliverOutline(vtkInformation* in, vtkInformati
   vtkPVRenderView::SetOrderedCompositingConfiguration(
       in, this, vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION);
   out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
+}
+
+std::string vtkINRVolumeRepresentation::WhyBlank()
+{
+  vtkDataSet* data = this->VolumeMapper->GetDataSetInput();
+  if (!data || data->GetNumberOfPoints() == 0) {
+    return {}; // another process draws, or the reader has said why there is nothing
+  }
+  vtkDataArray* scalars = data->GetPointData()->GetScalars();
+  const std::string advice =
+      std::string("; colour by its point array") +
+      (scalars && scalars->GetName() ? " '" + std::string(scalars->GetName()) + "'" : "");
+  const char* name = this->VolumeMapper->GetArrayName();
+  if (!name || !*name) {
+    return "A volume of a solid colour cannot be drawn" + advice;
+  }
+  const bool isPointArray =
+      this->VolumeMapper->GetScalarMode() == VTK_SCALAR_MODE_USE_POINT_FIELD_DATA &&
+      data->GetPointData()->HasArray(name);
+  return isPointArray ? "" : "The volume has no point array '" + std::string(name) + "'" + advice;
+}
+
+void vtkINRVolumeRepresentation::ReportColouring()
+{
+  const std::string problem = this->WhyBlank();
+  if (!problem.empty() && problem != this->LastProblem) {
+    vtkErrorMacro(<< problem);
+  }
+  this->LastProblem = problem;
 }
 
 vtkINRVolumeMapper* vtkINRVolumeRepresentation::GetMapper()

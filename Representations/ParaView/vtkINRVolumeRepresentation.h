@@ -6,13 +6,15 @@
  * Takes what INRReader produces and draws it at its native resolution, whatever grid the reader
  * presents to filters. Colour, opacity and placement are those of ParaView's own volume
  * representation. The data never leave the process that has them: where that is not the process
- * that draws, the outline is shown.
+ * that draws, the outline is shown. A colouring that leaves the picture blank is reported once.
  */
 #ifndef vtkINRVolumeRepresentation_h
 #define vtkINRVolumeRepresentation_h
 
 #include "vtkINRRepresentationsModule.h" // for the export macro
 #include "vtkImageVolumeRepresentation.h"
+
+#include <string> // for LastProblem
 
 class vtkINRVolumeMapper;
 
@@ -64,6 +66,10 @@ private:
 
   vtkINRVolumeMapper* GetMapper();
   void DeliverOutline(vtkInformation* in, vtkInformation* out);
+  std::string WhyBlank();
+  void ReportColouring();
+
+  std::string LastProblem;
 };
 
 #endif

@@ -83,6 +83,25 @@ with Messages() as messages:
     simple.INRDecode(Input=wavelet).UpdatePipeline()
 refused("decoding ordinary data", messages, "INRReader")
 
+# The stock code shows a volume that it cannot colour as nothing, without a word.
+view = simple.CreateView("RenderView")
+display = simple.Show(simple.OpenDataFile(MODEL), view)
+simple.Render(view)
+for what, colouring, word in (
+    ("a missing array", ["POINTS", "absent"], "'absent'"),
+    ("a cell array", ["CELLS", ARRAY], ARRAY),
+    ("a solid colour", [None, ""], "solid colour"),
+):
+    with Messages() as messages:
+        display.ColorArrayName = colouring
+        simple.Render(view)
+        simple.Render(view)
+    refused(what, messages, word, "colour by")
+with Messages() as messages:
+    display.ColorArrayName = ["POINTS", ARRAY]
+    simple.Render(view)
+check(messages.errors() == 0, "coloured again", messages.text)
+
 # The session goes on.
 with Messages() as messages:
     reader = simple.OpenDataFile(MODEL)
