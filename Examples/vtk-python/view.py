@@ -2,6 +2,8 @@
 """Renders a model file with VTK alone, no ParaView.
 
     PYTHONPATH=build/lib/python python3 Examples/vtk-python/view.py MODEL.inr PICTURE.png
+
+Without a display put Testing/with-display.sh in front of python3.
 """
 import sys
 
@@ -12,11 +14,15 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (vtkColorTransferFunction, vtkRenderer, vtkRenderWindow,
                                          vtkVolume, vtkWindowToImageFilter)
 
-model_file, picture_file = sys.argv[1:3]
+if len(sys.argv) != 3:
+    sys.exit(f"usage: {sys.argv[0]} MODEL.inr PICTURE.png")
+model_file, picture_file = sys.argv[1:]
 
 reader = vtkINRReader()
 reader.SetFileName(model_file)
 reader.Update()
+if reader.GetOutput().GetNumberOfPoints() == 0:
+    sys.exit(f"{model_file} cannot be shown; the message above says why.")
 low, high = reader.GetOutput().GetScalarRange()
 if not low < high:
     sys.exit(f"{model_file} shows nothing: its values span {low} to {high}")

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Renders a model file in ParaView without a window.
+
+    pvpython Examples/pvpython/view.py MODEL.inr PICTURE.png
+
+The plugin is looked for in build/; the environment variable INR_PLUGIN names another one.
+"""
+import glob
+import os
+import sys
+
+from paraview.simple import *  # ParaView's own idiom
+
+if len(sys.argv) != 3:
+    sys.exit(f"usage: pvpython {sys.argv[0]} MODEL.inr PICTURE.png")
+model_file, picture_file = sys.argv[1:]
+
+found = glob.glob("build/lib/paraview-*/plugins/INRVolume/INRVolume.so")
+plugin = os.environ.get("INR_PLUGIN") or (found and os.path.abspath(found[0]))
+if not plugin:
+    sys.exit("There is no plugin in build/; build it, or set INR_PLUGIN.")
+LoadPlugin(plugin, remote=False, ns=globals())
+
+model = INRReader(FileName=model_file)
+model.UpdatePipeline()
+if model.GetDataInformation().GetNumberOfPoints() == 0:
+    sys.exit(f"{model_file} cannot be shown; the message above says why.")
+
+view = CreateView("RenderView")
+view.ViewSize = [600, 600]
+view.OrientationAxesVisibility = 0
+shown = Show(model, view)  # as "INR Volume", coloured by its array
+name = shown.ColorArrayName[1]
+low, high = model.PointData[name].GetRange()
+GetColorTransferFunction(name).RGBPoints = [low, 0.1, 0.2, 0.6, high, 1.0, 0.7, 0.3]
+GetOpacityTransferFunction(name).Points = [low, 0.0, 0.5, 0.0, high, 0.5, 0.5, 0.0]
+shown.SetScalarBarVisibility(view, False)
+
+ResetCamera(view)
+view.GetActiveCamera().Azimuth(30)
+SaveScreenshot(picture_file, view)
+print(f"{picture_file}: drawn on {shown.GetPropertyValue('BackendInUse')}")
