@@ -9,8 +9,6 @@ namespace inr {
 
 namespace {
 
-constexpr float OpaqueTransmittance = 1.0f - OpaqueEnough;
-
 /// How often 2 divides k; more than enough for 0.
 int PowerOfTwoIn(std::int64_t k)
 {
@@ -31,7 +29,9 @@ CachedRay::CachedRay(const CachedScene& scene, int x, int y)
       walker(scene.majorants, scene.settings.dims, this->ray, scene.frame.levelOfDetailScale,
              scene.cache.hierarchy().levels()),
       stream(PixelStream(scene.frame, x, y)), jitter(JitterOf(this->stream))
-{}
+{
+  this->detail.moveTo(0);
+}
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
     : Scene(scene), Missing(onMiss)
@@ -80,21 +80,45 @@ void CachedMarcher::place(CachedRay& state)
     }
   }
   while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
-    const double begin = static_cast<double>(state.next) * step;
-    if (begin >= state.ray.length) {
+    if (static_cast<double>(state.next) * step >= state.ray.length) {
       this->Ended = true;
       return;
     }
-    state.walker.moveTo(std::min(begin + state.jitter * step, state.ray.length));
+    state.walker.moveTo(this->firstPlace(state, state.next));
     if (state.walker.extinction() > 0.0f) {
-      this->fill(state, this->segmentAt(state));
+      this->fill(state);
     } else if (state.walker.moveToVisible(state.ray.length)) {
-      const double first = std::ceil(state.walker.enter() / step - state.jitter);
-      state.next = std::max(state.next + 1, static_cast<std::int64_t>(first));
+      this->skipTo(state, state.walker.enter());
     } else {
       this->Ended = true;
     }
   }
+}
+
+int CachedMarcher::shortest(const CachedRay& state, std::int64_t k)
+{
+  return std::min(state.detail.coarsest(), PowerOfTwoIn(k));
+}
+
+double CachedMarcher::firstPlace(const CachedRay& state, std::int64_t k) const
+{
+  const double intervals = static_cast<double>(k) + Doubled(state.jitter, shortest(state, k));
+  return std::min(intervals * this->Scene.settings.step, state.ray.length);
+}
+
+void CachedMarcher::skipTo(CachedRay& state, double t) const
+{
+  this->lookFrom(state, t);
+  const int level = state.detail.coarsest();
+  const double length = Doubled(this->Scene.settings.step, level);
+  const auto first = static_cast<std::int64_t>(std::ceil(t / length - state.jitter));
+  state.next = std::max(state.next + 1, first * (std::int64_t{1} << level));
+}
+
+void CachedMarcher::lookFrom(CachedRay& state, double t)
+{
+  state.detail.moveTo(t);
+  state.lookedFrom = t;
 }
 
 CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
@@ -104,7 +128,7 @@ CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
   const int adaptive =
       settings.adaptive ? 2 : 0; // at most 4 times as long where little can be seen
   const double depth = state.walker.extinction() * settings.unitsPerT * settings.step;
-  state.detail.moveTo(state.walker.enter());
+  this->lookFrom(state, state.walker.enter());
   int longest = state.detail.coarsest();
   for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= faint; ++k) {
     ++longest;
@@ -113,61 +137,72 @@ CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
 }
 
 CachedMarcher::Sampling CachedMarcher::samplingAt(const CachedRay& state, const Segment& segment,
-                                                  std::int64_t k) const
+                                                  int shortest) const
 {
   const double limit = std::min(segment.exit, state.ray.length);
-  // Longer samples start at multiples of their length and end inside the cell.
-  Sampling sampling{std::min(segment.longest, PowerOfTwoIn(k)), 0};
+  // Longer samples than the level's own start at multiples of their length and end inside the cell.
+  const int longest = std::min(segment.longest, PowerOfTwoIn(state.next));
+  Sampling sampling{std::max(longest, shortest), 0};
   sampling.length = Doubled(this->Scene.settings.step, sampling.multiple);
-  const double begin = static_cast<double>(k) * this->Scene.settings.step;
-  while (sampling.multiple > 0 && begin + sampling.length > limit) {
+  const double begin = static_cast<double>(state.next) * this->Scene.settings.step;
+  while (sampling.multiple > shortest && begin + sampling.length > limit) {
     --sampling.multiple;
     sampling.length *= 0.5;
   }
   return sampling;
 }
 
-void CachedMarcher::fill(CachedRay& state, const Segment& segment)
+void CachedMarcher::fill(CachedRay& state)
 {
   const double step = this->Scene.settings.step;
   const double end = state.ray.length;
-  const std::int64_t first = state.next;
-  while (this->Count < SampleBatch::Capacity) {
-    const Sampling sampling = this->samplingAt(state, segment, state.next);
+  // The first sample's cell was found by what the ray looked at before.
+  int shortest = CachedMarcher::shortest(state, state.next);
+  double lookedFrom = state.lookedFrom;
+  const Segment segment = this->segmentAt(state);
+  while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
+    const Sampling sampling = this->samplingAt(state, segment, shortest);
     const double begin = static_cast<double>(state.next) * step;
-    const double t = std::min(begin + state.jitter * sampling.length, end);
-    // The first one is this cell's whatever rounding says, so that a ray always moves on.
-    if (begin >= end || (t >= segment.exit && state.next != first)) {
-      break;
-    }
-    const int most = this->likeSamples(state, segment, sampling);
+    std::fill_n(this->LookedFrom + this->Count, SampleBatch::Capacity - this->Count, lookedFrom);
+    const int most = this->likeSamples(state, segment, sampling, shortest);
     const int count = state.detail.isDithered() ? this->addDithered(state, sampling, most)
                                                 : this->addAlike(state, sampling, most);
     state.next += static_cast<std::int64_t>(count) << sampling.multiple;
     if (this->Waiting) {
-      break;
+      return;
     }
     if (begin + sampling.length > end) {
       this->LastLength = static_cast<float>((end - begin) * this->Scene.settings.unitsPerT);
       this->Ended = true;
-      break;
+      return;
+    }
+    shortest = CachedMarcher::shortest(state, state.next);
+    lookedFrom = state.lookedFrom;
+    if (static_cast<double>(state.next) * step >= end ||
+        this->firstPlace(state, state.next) >= segment.exit) {
+      return;
     }
   }
 }
 
 int CachedMarcher::likeSamples(const CachedRay& state, const Segment& segment,
-                               const Sampling& sampling) const
+                               const Sampling& sampling, int shortest) const
 {
   if (sampling.multiple < segment.longest) {
     return 1;
   }
-  const double limit = std::min(segment.exit, state.ray.length);
+  // Samples of the level's own length may reach out of the cell that they begin in.
+  const double reach = sampling.multiple > shortest ? 1.0 : state.jitter;
   const auto fits = [&](int k) {
     const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
-    return static_cast<double>(at) * this->Scene.settings.step + sampling.length <= limit;
+    const double begin = static_cast<double>(at) * this->Scene.settings.step;
+    return begin + sampling.length <= state.ray.length &&
+           (reach < 1.0 ? this->firstPlace(state, at) < segment.exit
+                        : begin + sampling.length <= segment.exit);
   };
   // A guess by division, made good by what decides: where a batch begins must not matter.
   const double begin = static_cast<double>(state.next) * this->Scene.settings.step;
+  const double limit = std::min(segment.exit, state.ray.length);
   const int most = SampleBatch::Capacity - this->Count;
   const double room = (limit - begin) / sampling.length;
   int count = static_cast<int>(std::clamp(room, 1.0, static_cast<double>(most)));
@@ -297,63 +332,6 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
   run.close();
 }
 
-void CachedMarcher::takeLogarithms()
-{
-  for (int k = 0; k < this->Count; ++k) {
-    const ValueRange range{this->Batch.low[k], this->Batch.high[k]};
-    this->Statistics.clamped += ClampToRange(range, this->Batch.value[k]) ? 1 : 0;
-    this->Batch.value[k] = this->Scene.colors.coordinate(this->Batch.value[k]);
-    this->Batch.low[k] = -std::numeric_limits<float>::max();
-    this->Batch.high[k] = std::numeric_limits<float>::max();
-  }
-}
-
-void CachedMarcher::composite(CachedRay& state)
-{
-  if (this->LastLength > 0) {
-    --this->Count; // apart, for its own length
-  }
-  const float last = this->Batch.value[this->Count];
-  if (this->Scene.colors.logarithmic) {
-    this->takeLogarithms();
-  }
-  const int used =
-      this->Scene.kernel.composite(this->Scene.steps, this->Batch, this->Count, OpaqueTransmittance,
-                                   state.color, this->Statistics.clamped);
-  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
-    int k = 0; // the last sample whose light was not yet halved
-    while (k + 1 < used && this->Batch.opacity[k + 1] < 0.5f) {
-      ++k;
-    }
-    state.halfOpaqueAt = this->T[k];
-  }
-  if (this->LastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
-    this->Batch.value[this->Count] = last;
-    this->compositeLast(state);
-  }
-}
-
-void CachedMarcher::compositeLast(CachedRay& state)
-{
-  float value = this->Batch.value[this->Count];
-  const ValueRange range{this->Batch.low[this->Count], this->Batch.high[this->Count]};
-  ClampToRange(range, value);
-  this->compositeColor(state, this->Scene.colors.at(value), this->LastLength, this->T[this->Count]);
-}
-
-void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
-{
-  const float alpha = 1.0f - std::pow(1.0f - color.w, length);
-  const float weight = state.color.transmittance * alpha;
-  for (int channel = 0; channel < 3; ++channel) {
-    state.color.rgb[channel] += color[channel] * weight;
-  }
-  state.color.transmittance -= weight;
-  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
-    state.halfOpaqueAt = t;
-  }
-}
-
 void CachedMarcher::advanceShaded(CachedRay& state)
 {
   const CachedRay before = state; // gradients may ask for bricks that are not there
@@ -377,34 +355,11 @@ void CachedMarcher::advanceShaded(CachedRay& state)
   }
 }
 
-void CachedMarcher::clampToRanges()
-{
-  for (int k = 0; k < this->Count; ++k) {
-    const float value = this->Batch.value[k];
-    ClampToRange({this->Batch.low[k], this->Batch.high[k]}, this->Batch.value[k]);
-    const float moved = std::abs(value - this->Batch.value[k]);
-    this->Statistics.clamped += moved > RoundingOfStorage ? 1 : 0;
-  }
-}
-
-void CachedMarcher::compositeShaded(CachedRay& state, const glm::vec4* colors, int count)
-{
-  const double step = this->Scene.settings.step * this->Scene.settings.unitsPerT;
-  for (int k = 0; k < count && state.color.transmittance > OpaqueTransmittance; ++k) {
-    const bool isLast = this->LastLength > 0 && k + 1 == this->Count;
-    const float length =
-        isLast ? this->LastLength : static_cast<float>(Doubled(step, this->Batch.multiple[k]));
-    if (colors[k].w > 0.0f) {
-      this->compositeColor(state, colors[k], length, this->T[k]);
-    }
-  }
-}
-
 void CachedMarcher::goBackTo(int k, const CachedRay& before, CachedRay& state)
 {
   state.next = this->Intervals[k];
   state.walker = before.walker;
-  state.detail = before.detail;
+  this->lookFrom(state, this->LookedFrom[k]);
   this->Statistics.samples -= this->Count - k; // they will be counted again
   this->Waiting = true;
   this->Ended = false;

@@ -39,6 +39,7 @@ struct CachedRay
   std::uint64_t stream;  ///< of the ray's random numbers
   double jitter;         ///< in [0, 1)
   std::int64_t next = 0; ///< lattice interval to look at next
+  double lookedFrom = 0; ///< t of the present detail
   RayColor color{{0, 0, 0}, 1};
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
 };
@@ -81,11 +82,21 @@ private:
   };
 
   void place(CachedRay& state);
+  /// log2 of the steps that a sample from interval k on stands for at least: those of the level.
+  static int shortest(const CachedRay& state, std::int64_t k);
+  /// Where such a sample is; in its macro-cell.
+  double firstPlace(const CachedRay& state, std::int64_t k) const;
+  /// Goes on with the first sample at t or behind it.
+  void skipTo(CachedRay& state, double t) const;
+  /// Takes the level of detail that t deserves.
+  static void lookFrom(CachedRay& state, double t);
   Segment segmentAt(CachedRay& state) const;
-  Sampling samplingAt(const CachedRay& state, const Segment& segment, std::int64_t k) const;
-  void fill(CachedRay& state, const Segment& segment);
+  Sampling samplingAt(const CachedRay& state, const Segment& segment, int shortest) const;
+  /// Adds the samples in the walker's cell.
+  void fill(CachedRay& state);
   /// How many samples from state.next on differ in nothing but their place.
-  int likeSamples(const CachedRay& state, const Segment& segment, const Sampling& sampling) const;
+  int likeSamples(const CachedRay& state, const Segment& segment, const Sampling& sampling,
+                  int shortest) const;
   /// t of sample k from state.next on.
   double placeOf(const CachedRay& state, const Sampling& sampling, int k) const;
   /// Add up to `most` such samples, of one level and brick or of dithered levels; how many.
@@ -116,6 +127,7 @@ private:
   SampleBatch Batch{};
   double T[SampleBatch::Capacity];
   std::int64_t Intervals[SampleBatch::Capacity]; ///< lattice interval at which a sample begins
+  double LookedFrom[SampleBatch::Capacity];      ///< when the sample's cell was looked for
   BrickKey Bricks[SampleBatch::Capacity + 2];    ///< of the batch's paths
   int Count = 0;
   int Paths = 0;        ///< in Batch

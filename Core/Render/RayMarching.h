@@ -61,6 +61,7 @@ struct MarchSample
 
 /// Opacity at which the rest of a ray no longer shows.
 constexpr float OpaqueEnough = 0.999f;
+constexpr float OpaqueTransmittance = 1.0f - OpaqueEnough;
 
 /// The macro-cell of a point in the unit cube, and where the ray leaves it.
 struct CellVisit

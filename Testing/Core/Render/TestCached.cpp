@@ -130,6 +130,25 @@ TEST(Cached, CoarseLevelsStayInRegister)
   EXPECT_GT(inr::ImagePsnr(coarse, fine), 38);
 }
 
+TEST(Cached, ALargerVolumeTakesNoMoreSamples)
+{
+  // The same view of the same field; levels of detail follow the pixels.
+  std::int64_t smallest = 0;
+  for (const std::int64_t size : {100, 1600, 25600}) {
+    const glm::dvec3 dims(static_cast<double>(size));
+    inr::Renderer renderer =
+        CachedRenderer(glm::i64vec3(size), Waves, Options(inr::CachePrecision::Bits16, 40));
+    inr::Frame frame = Oblique(dims);
+    frame.levelOfDetailScale = 1;
+    frame.unitDistance = dims.x / 100;
+    inr::Image picture;
+    const std::int64_t samples = renderer.render(frame, picture).samples;
+    smallest = smallest > 0 ? smallest : samples;
+    EXPECT_LT(samples, smallest * 1.3) << size;
+    EXPECT_GT(samples, smallest * 0.7) << size;
+  }
+}
+
 TEST(Cached, LogarithmicColoursAreTheSameThroughTheCache)
 {
   const glm::i64vec3 dims(30, 30, 30);

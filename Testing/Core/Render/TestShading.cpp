@@ -159,7 +159,7 @@ TEST(Shading, FramesInALimitedTimeEndWithTheCompletePicture)
   inr::Renderer complete = CachedRenderer(dims, Waves, options);
   const inr::Image truth = Render(complete, frame);
   frame.timeLimit = 0.01;
-  for (const std::int64_t bytes : {std::int64_t{64} << 20, std::int64_t{200000}}) {
+  for (const std::int64_t bytes : {std::int64_t{64} << 20, std::int64_t{500000}}) {
     options.bytes = bytes;
     inr::Renderer hurried = CachedRenderer(dims, Waves, options);
     inr::Image image;

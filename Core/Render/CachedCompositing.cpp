@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What CachedMarcher does with the values of a batch.
+#include "Core/Render/CachedMarcher.h"
+
+#include <cmath>
+#include <limits>
+
+namespace inr {
+
+void CachedMarcher::takeLogarithms()
+{
+  for (int k = 0; k < this->Count; ++k) {
+    const ValueRange range{this->Batch.low[k], this->Batch.high[k]};
+    this->Statistics.clamped += ClampToRange(range, this->Batch.value[k]) ? 1 : 0;
+    this->Batch.value[k] = this->Scene.colors.coordinate(this->Batch.value[k]);
+    this->Batch.low[k] = -std::numeric_limits<float>::max();
+    this->Batch.high[k] = std::numeric_limits<float>::max();
+  }
+}
+
+void CachedMarcher::composite(CachedRay& state)
+{
+  if (this->LastLength > 0) {
+    --this->Count; // apart, for its own length
+  }
+  const float last = this->Batch.value[this->Count];
+  if (this->Scene.colors.logarithmic) {
+    this->takeLogarithms();
+  }
+  const int used =
+      this->Scene.kernel.composite(this->Scene.steps, this->Batch, this->Count, OpaqueTransmittance,
+                                   state.color, this->Statistics.clamped);
+  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
+    int k = 0; // the last sample whose light was not yet halved
+    while (k + 1 < used && this->Batch.opacity[k + 1] < 0.5f) {
+      ++k;
+    }
+    state.halfOpaqueAt = this->T[k];
+  }
+  if (this->LastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
+    this->Batch.value[this->Count] = last;
+    this->compositeLast(state);
+  }
+}
+
+void CachedMarcher::compositeLast(CachedRay& state)
+{
+  float value = this->Batch.value[this->Count];
+  const ValueRange range{this->Batch.low[this->Count], this->Batch.high[this->Count]};
+  ClampToRange(range, value);
+  this->compositeColor(state, this->Scene.colors.at(value), this->LastLength, this->T[this->Count]);
+}
+
+void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
+{
+  const float alpha = 1.0f - std::pow(1.0f - color.w, length);
+  const float weight = state.color.transmittance * alpha;
+  for (int channel = 0; channel < 3; ++channel) {
+    state.color.rgb[channel] += color[channel] * weight;
+  }
+  state.color.transmittance -= weight;
+  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
+    state.halfOpaqueAt = t;
+  }
+}
+
+void CachedMarcher::clampToRanges()
+{
+  for (int k = 0; k < this->Count; ++k) {
+    const float value = this->Batch.value[k];
+    ClampToRange({this->Batch.low[k], this->Batch.high[k]}, this->Batch.value[k]);
+    const float moved = std::abs(value - this->Batch.value[k]);
+    this->Statistics.clamped += moved > RoundingOfStorage ? 1 : 0;
+  }
+}
+
+void CachedMarcher::compositeShaded(CachedRay& state, const glm::vec4* colors, int count)
+{
+  const double step = this->Scene.settings.step * this->Scene.settings.unitsPerT;
+  for (int k = 0; k < count && state.color.transmittance > OpaqueTransmittance; ++k) {
+    const bool isLast = this->LastLength > 0 && k + 1 == this->Count;
+    const float length =
+        isLast ? this->LastLength : static_cast<float>(std::ldexp(step, this->Batch.multiple[k]));
+    if (colors[k].w > 0.0f) {
+      this->compositeColor(state, colors[k], length, this->T[k]);
+    }
+  }
+}
+
+} // namespace inr
