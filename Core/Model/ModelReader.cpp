@@ -67,7 +67,12 @@ Document Scan(const InputFile& file, const std::string& path)
     throw Error(ErrorCode::Unsupported,
                 "this is an INRIA image, which shares the extension; it is no neural model");
   }
-  const bool text = LooksLikeText(start) && !StartsWithItsSize(start, file);
+  const bool whole = StartsWithItsSize(start, file);
+  const bool text = LooksLikeText(start) && !whole;
+  if (!text && !whole && !IsRootKey(FirstBsonKey(start))) { // else it may be a part of a model
+    throw Error(ErrorCode::Malformed, "this is not a model file: it starts neither as BSON with a "
+                                      "known key nor as JSON text");
+  }
   return text ? ScanJsonText(path) : ScanBson(file);
 }
 

@@ -64,6 +64,19 @@ TEST_F(BadFiles, OtherFormats)
   this->expectRefused(std::string(5000, '\xff'), "noise");
 }
 
+// The first bytes of a text are no length worth telling anybody about.
+TEST_F(BadFiles, SaysOfATextThatItIsNoModel)
+{
+  WriteBytes(Folder.file("notes.inr"), "all about kittens\n");
+  try {
+    inr::ReadModel(Folder.file("notes.inr"));
+    FAIL();
+  } catch (const inr::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("not a model file"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(BadFiles, TruncatedAnywhere)
 {
   for (std::size_t length = 1; length < this->Good.size(); length += 97) {
