@@ -55,12 +55,19 @@ glm::dvec3 NativeSpacing(vtkImageData* image, vtkINRDataArray* source)
 }
 
 /// The wanted voxels of a level's grid; an axis whose last voxel is below its first is whole.
+/// Throws inr::Error when none of them is in the grid.
 void LevelExtent(const glm::i64vec3& dims, const int wanted[6], int extent[6])
 {
   for (int axis = 0; axis < 3; ++axis) {
     const int last = static_cast<int>(dims[axis] - 1); // the validator sees to it that it fits
     const int* range = wanted + 2 * axis;
     const bool whole = range[1] < range[0];
+    if (!whole && (range[0] > last || range[1] < 0)) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument,
+                       "VolumeOfInterest asks for the voxels " + std::to_string(range[0]) + " to " +
+                           std::to_string(range[1]) + " of an axis that has 0 to " +
+                           std::to_string(last) + " at this Level");
+    }
     extent[2 * axis] = whole ? 0 : std::clamp(range[0], 0, last);
     extent[2 * axis + 1] = whole ? last : std::clamp(range[1], 0, last);
   }
@@ -100,9 +107,14 @@ int vtkINRDecode::RequestInformation(vtkInformation*, vtkInformationVector**,
   this->GetInputAlgorithm(0, 0)->Update();
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  if (!this->DescribeOutput(outInfo)) {
-    outInfo->Set(Pipeline::WHOLE_EXTENT(), EmptyExtent, 6);
+  try {
+    if (this->DescribeOutput(outInfo)) {
+      return 1;
+    }
+  } catch (const inr::Error& error) {
+    vtkErrorMacro("Cannot decode: " << error.what());
   }
+  outInfo->Set(Pipeline::WHOLE_EXTENT(), EmptyExtent, 6);
   return 1;
 }
 
@@ -161,6 +173,9 @@ int vtkINRDecode::RequestData(vtkInformation*, vtkInformationVector**,
   try {
     int extent[6];
     outInfo->Get(Pipeline::UPDATE_EXTENT(), extent);
+    if (extent[1] < extent[0] || extent[3] < extent[2] || extent[5] < extent[4]) {
+      return 1; // RequestInformation has said why, or there are more processes than voxels
+    }
     output->SetExtent(extent);
     output->SetSpacing(outInfo->Get(vtkDataObject::SPACING()));
     output->SetOrigin(outInfo->Get(vtkDataObject::ORIGIN()));

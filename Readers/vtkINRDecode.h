@@ -24,7 +24,7 @@ public:
 
   ///@{
   /// First and last voxel per axis in the level's grid; an axis whose last is below its first
-  /// (default) is taken whole. Cut to the grid.
+  /// (default) is taken whole. Cut to the grid; an error when it lies outside.
   vtkSetVector6Macro(VolumeOfInterest, int);
   vtkGetVector6Macro(VolumeOfInterest, int);
   ///@}

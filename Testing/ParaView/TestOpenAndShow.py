@@ -53,6 +53,16 @@ agreement = psnr(ours, theirs)
 print(f"PSNR with ParaView's own volume rendering: {agreement:.2f} dB")
 check(agreement >= 40, "PSNR with the stock picture is", agreement)
 
+# Every type of numbers that a model may have had can be chosen.
+types = decoded.GetProperty("ScalarType").Available
+check(len(types) == 11, "types to decode to:", types)
+small = simple.INRDecode(Input=reader, Level=4)
+for name in types:
+    small.ScalarType = name
+    small.UpdatePipeline()
+    found = small.PointData[ARRAY].GetDataTypeAsString() if "original" not in name else name
+    check(found == name, name, "gives", found)
+
 # Upstream's files are found by the end of their name.
 renamed = output_file("les_params.json")
 shutil.copy(MODEL, renamed)

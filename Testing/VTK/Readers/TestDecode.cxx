@@ -183,6 +183,33 @@ TEST_F(Decode, GivesTheTypeThatIsAskedFor)
   EXPECT_TRUE(messages.onlyError("ScalarType")) << messages.text();
 }
 
+TEST_F(Decode, GivesEveryTypeOfNumbers)
+{
+  this->connect(*MakeModel({6, 5, 4}, inr::ScalarType::UInt8));
+  for (const int type :
+       {VTK_TYPE_INT8, VTK_TYPE_UINT8, VTK_TYPE_INT16, VTK_TYPE_UINT16, VTK_TYPE_INT32,
+        VTK_TYPE_UINT32, VTK_TYPE_INT64, VTK_TYPE_UINT64, VTK_FLOAT, VTK_DOUBLE}) {
+    this->Filter->SetScalarType(type);
+    EXPECT_EQ(this->update()->GetScalarType(), type);
+    EXPECT_GE(this->Filter->GetOutput()->GetScalarRange()[0], 19.0); // the model has 20 to 90
+  }
+}
+
+TEST_F(Decode, RefusesAVolumeOfInterestOutsideTheGrid)
+{
+  this->connect(*MakeModel({20, 14, 9}));
+  this->Filter->SetVolumeOfInterest(20, 30, 0, -1, 0, -1);
+  {
+    const MessageCapture messages;
+    EXPECT_EQ(this->update()->GetNumberOfPoints(), 0);
+    EXPECT_TRUE(messages.onlyError("20 to 30 of an axis that has 0 to 19")) << messages.text();
+  }
+  this->Filter->SetVolumeOfInterest(-5, -1, 0, -1, 0, -1);
+  const MessageCapture messages;
+  EXPECT_EQ(this->update()->GetNumberOfPoints(), 0);
+  EXPECT_TRUE(messages.onlyError("-5 to -1")) << messages.text();
+}
+
 TEST_F(Decode, RefusesWhatMemoryCannotHold)
 {
   this->connect(*MakeModel({65536, 65536, 4096}));
