@@ -26,6 +26,19 @@ struct vtkINRVolumeMapper::Internals
 vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>()) {}
 vtkINRVolumeMapper::~vtkINRVolumeMapper() = default;
 
+void vtkINRVolumeMapper::SetCacheMode(int mode)
+{
+  if (mode != CACHE_AND_NETWORK && mode != NETWORK_ONLY) {
+    vtkErrorMacro("There is no CacheMode " << mode << "; it is 0 (cache and network) or 2 "
+                                           << "(network only).");
+    return;
+  }
+  if (mode != this->CacheMode) {
+    this->CacheMode = mode;
+    this->Modified();
+  }
+}
+
 double vtkINRVolumeMapper::GetFrameTime() const { return this->Self->Painter.last().seconds; }
 
 vtkIdType vtkINRVolumeMapper::GetNumberOfSamples() const

@@ -140,8 +140,8 @@ public:
     NETWORK_ONLY = 2       ///< every sample straight from the network: exact, and slow
   };
   ///@{
-  /** One of CacheModes. Default CACHE_AND_NETWORK. */
-  vtkSetMacro(CacheMode, int);
+  /** One of CacheModes; anything else is refused. Default CACHE_AND_NETWORK. */
+  void SetCacheMode(int mode);
   vtkGetMacro(CacheMode, int);
   ///@}
 

@@ -145,10 +145,21 @@ TEST_F(Refusals, OtherDataSets)
   this->expectRefused("not image data");
 }
 
+TEST_F(Refusals, ACacheModeThatIsNone)
+{
+  for (const int mode : {-1, 1, 3}) {
+    this->mapper->SetCacheMode(mode);
+    EXPECT_EQ(this->mapper->GetCacheMode(), vtkINRVolumeMapper::CACHE_AND_NETWORK);
+    EXPECT_NE(this->messages.last.find("CacheMode"), std::string::npos);
+  }
+  EXPECT_EQ(this->messages.errors, 3);
+  EXPECT_TRUE(this->draws());
+}
+
 TEST_F(Refusals, ATransformThatFlattens)
 {
   this->volume->SetScale(1, 1, 0);
-  this->expectRefused("");
+  this->expectRefused("the volume's matrix has no inverse");
   this->volume->SetScale(1, 1, 1);
   EXPECT_TRUE(this->draws());
 }
