@@ -12,7 +12,8 @@ namespace {
 /// the root of the voxels, which gives 13:1 for 91^3 floats and 6,000:1 for 4096^3.
 double DefaultParameters(double voxels) { return 128.0 * std::sqrt(voxels); }
 
-/// A volume is never "compressed" to more than half of its size.
+/// When nobody names a ratio, the parameters take at most half of the volume's bytes, down to the
+/// smallest model: the file of a volume of a few thousand voxels can be larger than the volume.
 constexpr double SmallestRatio = 2.0;
 constexpr double BytesPerParameter = 2.0; // half
 constexpr double FramingBytes = 2048.0;

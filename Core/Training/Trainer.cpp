@@ -28,6 +28,11 @@ void CheckArguments(const VolumeData& volume, const TrainingOptions& options)
   if (volume.values == nullptr || volume.dims.x < 1 || volume.dims.y < 1 || volume.dims.z < 1) {
     throw Error(ErrorCode::InvalidArgument, "there are no voxels to train on");
   }
+  const int edge = options.macroCellSize;
+  if (edge < 0 || (edge & (edge - 1)) != 0) {
+    throw Error(ErrorCode::InvalidArgument, "MacroCellSize is " + std::to_string(edge) +
+                                                "; set a power of two, or 0 for the default");
+  }
   const bool limited = options.targetPsnr > 0 || options.maximumSteps > 0 || options.timeLimit > 0;
   if (!limited) {
     throw Error(ErrorCode::InvalidArgument,

@@ -19,8 +19,8 @@ struct TrainingOptions
   std::uint64_t maximumSteps = 0; ///< 0 = no limit
   double timeLimit = 300;         ///< seconds of training; measuring comes on top; 0 = no limit
   std::uint64_t seed = 1;
-  int macroCellSize = 0;                        ///< voxels; 0 = DefaultMacroCellSize
-  std::optional<Description> description;       ///< empty = ChooseDescription
+  int macroCellSize = 0;                  ///< voxels, a power of two; 0 = DefaultMacroCellSize
+  std::optional<Description> description; ///< empty = ChooseDescription
   ParameterType storedAs = ParameterType::Half; ///< Float where a half cannot hold a parameter
   std::string kernel;                           ///< for tests; empty = the fastest
   int threads = 0;                              ///< 0 = all
@@ -42,7 +42,7 @@ struct TrainingProgress
 using TrainingObserver = std::function<bool(const TrainingProgress&)>;
 
 /// A model size for the volume: upstream-readable, about volume bytes / `ratio`; ratio 0 lets the
-/// volume's size decide.
+/// volume's size decide. The smallest model takes a few KiB, whatever the volume and the ratio.
 Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio);
 
 /// Fits an INR to `volume`; `info` gives geometry, name and type (its low and high are measured).

@@ -285,6 +285,18 @@ TEST(Trainer, RefusesToTrainForEverOrOnNothing)
   EXPECT_THROW(inr::TrainModel(nothing, {}, Steps(5)), inr::Error);
 }
 
+TEST(Trainer, TakesPowersOfTwoForMacroCells)
+{
+  const Field<float> field = Waves();
+  inr::TrainingOptions options = Steps(1);
+  options.macroCellSize = 8;
+  EXPECT_EQ(inr::TrainModel(field.data(), {}, options)->macroCells.dims, glm::i64vec3(3, 3, 3));
+  for (const int edge : {12, -8}) {
+    options.macroCellSize = edge;
+    EXPECT_THROW(inr::TrainModel(field.data(), {}, options), inr::Error);
+  }
+}
+
 // The observer is called in the first step already.
 TEST(Trainer, FindsBeforeItTrainsWhatNoFileCanHold)
 {
