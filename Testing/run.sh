@@ -51,9 +51,9 @@ else
   failed=$((failed + 1))
 fi
 
-# Core alone, as on a machine without VTK; then under the sanitizers, without the training runs, which
+# Core alone, as on a machine without VTK, and under the sanitizers; without the training runs, which
 # would take most of the time to execute the same lines again.
-build core
+build core && run_tests build-core -E '^Trainer\.' "$@"
 build asan && run_tests build-asan -L 'core|fuzz' -E '^Trainer\.' "$@"
 
 echo "$passed passed, $failed failed"
