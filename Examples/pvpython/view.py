@@ -6,6 +6,7 @@
 The plugin is looked for in build/; the environment variable INR_PLUGIN names another one.
 """
 import glob
+import math
 import os
 import sys
 
@@ -29,11 +30,17 @@ if model.GetDataInformation().GetNumberOfPoints() == 0:
 view = CreateView("RenderView")
 view.ViewSize = [600, 600]
 view.OrientationAxesVisibility = 0
+view.UseColorPaletteForBackground = 0
+view.Background = [0, 0, 0]
 shown = Show(model, view)  # as "INR Volume", coloured by its array
 name = shown.ColorArrayName[1]
 low, high = model.PointData[name].GetRange()
-GetColorTransferFunction(name).RGBPoints = [low, 0.1, 0.2, 0.6, high, 1.0, 0.7, 0.3]
+colours = GetColorTransferFunction(name)
+colours.ColorSpace = "RGB"
+colours.RGBPoints = [low, 0.1, 0.2, 0.6, high, 1.0, 0.7, 0.3]
 GetOpacityTransferFunction(name).Points = [low, 0.0, 0.5, 0.0, high, 0.5, 0.5, 0.0]
+bounds = model.GetDataInformation().GetBounds()
+shown.ScalarOpacityUnitDistance = math.dist(bounds[0::2], bounds[1::2]) / 100
 shown.SetScalarBarVisibility(view, False)
 
 ResetCamera(view)
