@@ -81,10 +81,12 @@ INR_HOST_DEVICE inline float Extinction(float opacity)
   return -std::log(1.0f - (opacity < MaximumOpacity ? opacity : MaximumOpacity));
 }
 
-/// The next random number of a path, uniform in [0, 1).
+/// The next random number of a path, uniform in [0, 1): SplitMix64's sequence, from a start of the
+/// path's own.
 INR_HOST_DEVICE inline double Draw(PathState& path)
 {
-  return static_cast<double>(RandomBits(path.stream, path.drawn++) >> 11) * 0x1p-53;
+  const std::uint64_t bits = MixBits(path.stream + path.drawn++ * 0x9E3779B97F4A7C15ull);
+  return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
 INR_HOST_DEVICE inline float Largest(const glm::vec3& v)

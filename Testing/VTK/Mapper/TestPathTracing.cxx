@@ -189,7 +189,7 @@ TEST(PathTracing, InteractiveFramesClearUp)
   one.scene.capture();
   EXPECT_FALSE(one.mapper->GetConverged());
   int frames = 1;
-  while (!one.mapper->GetConverged() && frames < 200) {
+  while (!one.mapper->GetConverged() && frames < 3000) {
     one.scene.capture();
     ++frames;
   }
