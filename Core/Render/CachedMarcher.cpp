@@ -34,7 +34,7 @@ CachedRay::CachedRay(const CachedScene& scene, int x, int y)
 }
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
-    : Scene(scene), Missing(onMiss)
+    : Scene(scene), Missing(onMiss), StepsPerT(1.0 / scene.settings.step)
 {
   if (scene.shading != nullptr) {
     this->Shader.emplace(*scene.shading, scene.colors,
@@ -141,47 +141,51 @@ CachedMarcher::Sampling CachedMarcher::samplingAt(const CachedRay& state, const 
 {
   const double limit = std::min(segment.exit, state.ray.length);
   // Longer samples than the level's own start at multiples of their length and end inside the cell.
-  const int longest = std::min(segment.longest, PowerOfTwoIn(state.next));
-  Sampling sampling{std::max(longest, shortest), 0};
-  sampling.length = Doubled(this->Scene.settings.step, sampling.multiple);
-  const double begin = static_cast<double>(state.next) * this->Scene.settings.step;
-  while (sampling.multiple > shortest && begin + sampling.length > limit) {
-    --sampling.multiple;
-    sampling.length *= 0.5;
+  int multiple = std::max(std::min(segment.longest, PowerOfTwoIn(state.next)), shortest);
+  while (multiple > shortest && this->endOf(state, {multiple, Doubled(1.0, multiple)}, 0) > limit) {
+    --multiple;
   }
-  return sampling;
+  return {multiple, Doubled(1.0, multiple)};
 }
 
 void CachedMarcher::fill(CachedRay& state)
 {
-  const double step = this->Scene.settings.step;
-  const double end = state.ray.length;
   // The first sample's cell was found by what the ray looked at before.
   int shortest = CachedMarcher::shortest(state, state.next);
   double lookedFrom = state.lookedFrom;
   const Segment segment = this->segmentAt(state);
-  while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
+  while (this->Count < SampleBatch::Capacity) {
     const Sampling sampling = this->samplingAt(state, segment, shortest);
-    const double begin = static_cast<double>(state.next) * step;
-    std::fill_n(this->LookedFrom + this->Count, SampleBatch::Capacity - this->Count, lookedFrom);
+    const bool isLast = this->endOf(state, sampling, 0) > state.ray.length;
     const int most = this->likeSamples(state, segment, sampling, shortest);
     const int count = state.detail.isDithered() ? this->addDithered(state, sampling, most)
                                                 : this->addAlike(state, sampling, most);
-    state.next += static_cast<std::int64_t>(count) << sampling.multiple;
-    if (this->Waiting) {
-      return;
+    if (this->Shader) {
+      this->remember(state, sampling, lookedFrom, count);
     }
-    if (begin + sampling.length > end) {
-      this->LastLength = static_cast<float>((end - begin) * this->Scene.settings.unitsPerT);
+    if (isLast && count > 0) {
+      this->LastLength = static_cast<float>((state.ray.length - this->endOf(state, sampling, -1)) *
+                                            this->Scene.settings.unitsPerT);
       this->Ended = true;
+    }
+    state.next += static_cast<std::int64_t>(count) << sampling.multiple;
+    const double begin = static_cast<double>(state.next) * this->Scene.settings.step;
+    if (this->Waiting || this->Ended || begin >= state.ray.length ||
+        this->firstPlace(state, state.next) >= segment.exit) {
       return;
     }
     shortest = CachedMarcher::shortest(state, state.next);
     lookedFrom = state.lookedFrom;
-    if (static_cast<double>(state.next) * step >= end ||
-        this->firstPlace(state, state.next) >= segment.exit) {
-      return;
-    }
+  }
+}
+
+void CachedMarcher::remember(const CachedRay& state, const Sampling& sampling, double lookedFrom,
+                             int count)
+{
+  for (int k = 0; k < count; ++k) {
+    const int sample = this->Count - count + k;
+    this->Intervals[sample] = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
+    this->LookedFrom[sample] = lookedFrom;
   }
 }
 
@@ -192,24 +196,29 @@ int CachedMarcher::likeSamples(const CachedRay& state, const Segment& segment,
     return 1;
   }
   // Samples of the level's own length may reach out of the cell that they begin in.
-  const double reach = sampling.multiple > shortest ? 1.0 : state.jitter;
+  const bool reachesOut = sampling.multiple <= shortest;
   const auto fits = [&](int k) {
-    const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
-    const double begin = static_cast<double>(at) * this->Scene.settings.step;
-    return begin + sampling.length <= state.ray.length &&
-           (reach < 1.0 ? this->firstPlace(state, at) < segment.exit
-                        : begin + sampling.length <= segment.exit);
+    const double end = this->endOf(state, sampling, k);
+    return end <= state.ray.length &&
+           (reachesOut ? this->placeOf(state, sampling, k) < segment.exit : end <= segment.exit);
   };
-  // A guess by division, made good by what decides: where a batch begins must not matter.
-  const double begin = static_cast<double>(state.next) * this->Scene.settings.step;
-  const double limit = std::min(segment.exit, state.ray.length);
+  const double first = this->endOf(state, sampling, 0);
+  const double beyond = reachesOut ? first - this->placeOf(state, sampling, 0) : 0.0;
+  const double room = std::min(segment.exit + beyond, state.ray.length) - first;
   const int most = SampleBatch::Capacity - this->Count;
-  const double room = (limit - begin) / sampling.length;
-  int count = static_cast<int>(std::clamp(room, 1.0, static_cast<double>(most)));
-  while (count > 1 && !fits(count - 1)) {
+  return 1 + this->largest(sampling, room, most - 1, fits);
+}
+
+template <typename Fits>
+int CachedMarcher::largest(const Sampling& sampling, double room, int most, const Fits& fits) const
+{
+  // A guess by division, made good by what decides: where a batch begins must not matter.
+  const double guess = room * this->StepsPerT / sampling.intervals;
+  int count = static_cast<int>(std::clamp(guess, 0.0, static_cast<double>(most)));
+  while (count > 0 && !fits(count)) {
     --count;
   }
-  while (count < most && fits(count)) {
+  while (count < most && fits(count + 1)) {
     ++count;
   }
   return count;
@@ -217,30 +226,30 @@ int CachedMarcher::likeSamples(const CachedRay& state, const Segment& segment,
 
 double CachedMarcher::placeOf(const CachedRay& state, const Sampling& sampling, int k) const
 {
-  const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
-  const double t = static_cast<double>(at) * this->Scene.settings.step;
-  return std::min(t + state.jitter * sampling.length, state.ray.length);
+  const double interval = static_cast<double>(state.next) + k * sampling.intervals; // exact
+  return (interval + state.jitter * sampling.intervals) * this->Scene.settings.step;
+}
+
+double CachedMarcher::endOf(const CachedRay& state, const Sampling& sampling, int k) const
+{
+  const double interval = static_cast<double>(state.next) + (k + 1) * sampling.intervals;
+  return interval * this->Scene.settings.step;
 }
 
 int CachedMarcher::addAlike(const CachedRay& state, const Sampling& sampling, int most)
 {
-  BrickRun* run = this->runFor(state, state.detail.level(), this->placeOf(state, sampling, 0));
+  const double first = this->placeOf(state, sampling, 0);
+  BrickRun* run = this->runFor(state, state.detail.level(), std::min(first, state.ray.length));
   if (run == nullptr) {
     this->Waiting = true;
     return 0;
   }
-  int count = 1;
-  if (this->placeOf(state, sampling, most - 1) < run->exit()) {
-    count = most;
-  } else {
-    while (this->placeOf(state, sampling, count) < run->exit()) {
-      ++count;
-    }
-  }
+  const int count = 1 + this->largest(sampling, run->exit() - first, most - 1, [&](int k) {
+    return this->placeOf(state, sampling, k) < run->exit();
+  });
+  double* t = this->T + this->Count;
   for (int k = 0; k < count; ++k) {
-    this->T[this->Count + k] = this->placeOf(state, sampling, k);
-    this->Intervals[this->Count + k] =
-        state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
+    t[k] = std::min(this->placeOf(state, sampling, k), state.ray.length);
   }
   this->fillIn(state, *run, sampling.multiple, count);
   run->count(count);
@@ -251,14 +260,13 @@ int CachedMarcher::addDithered(const CachedRay& state, const Sampling& sampling,
 {
   for (int k = 0; k < most; ++k) {
     const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
-    const double t = this->placeOf(state, sampling, k);
+    const double t = std::min(this->placeOf(state, sampling, k), state.ray.length);
     BrickRun* run = this->runFor(state, state.detail.dithered(state.stream, at), t);
     if (run == nullptr) {
       this->Waiting = true;
       return k;
     }
     this->T[this->Count] = t;
-    this->Intervals[this->Count] = at;
     this->fillIn(state, *run, sampling.multiple, 1);
     run->count(1);
   }

@@ -77,8 +77,8 @@ private:
 
   struct Sampling
   {
-    int multiple; ///< log2 of the steps a sample stands for
-    double length;
+    int multiple;     ///< log2 of the steps a sample stands for
+    double intervals; ///< these steps
   };
 
   void place(CachedRay& state);
@@ -92,13 +92,20 @@ private:
   static void lookFrom(CachedRay& state, double t);
   Segment segmentAt(CachedRay& state) const;
   Sampling samplingAt(const CachedRay& state, const Segment& segment, int shortest) const;
+  /// Where the latest `count` samples came from, should the ray have to go back to one.
+  void remember(const CachedRay& state, const Sampling& sampling, double lookedFrom, int count);
   /// Adds the samples in the walker's cell.
   void fill(CachedRay& state);
   /// How many samples from state.next on differ in nothing but their place.
   int likeSamples(const CachedRay& state, const Segment& segment, const Sampling& sampling,
                   int shortest) const;
-  /// t of sample k from state.next on.
+  /// t of sample k from state.next on, but for the ray's end, and where what it stands for ends.
   double placeOf(const CachedRay& state, const Sampling& sampling, int k) const;
+  double endOf(const CachedRay& state, const Sampling& sampling, int k) const;
+  /// The largest of 0 ... most that `fits`, if all below do and 0 in any case; about as many
+  /// samples as there are in a length of `room`.
+  template <typename Fits>
+  int largest(const Sampling& sampling, double room, int most, const Fits& fits) const;
   /// Add up to `most` such samples, of one level and brick or of dithered levels; how many.
   int addAlike(const CachedRay& state, const Sampling& sampling, int most);
   int addDithered(const CachedRay& state, const Sampling& sampling, int most);
@@ -120,6 +127,7 @@ private:
 
   const CachedScene& Scene;
   OnMiss Missing;
+  double StepsPerT;
   FrameStatistics Statistics;
   RequestList Requests;
 
