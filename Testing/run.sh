@@ -54,7 +54,7 @@ fi
 # Core alone, as on a machine without VTK, and under the sanitizers; without the training runs, which
 # would take most of the time to execute the same lines again.
 build core && run_tests build-core -E '^Trainer\.' "$@"
-build asan && run_tests build-asan -L 'core|fuzz' -E '^Trainer\.' "$@"
+build asan && run_tests build-asan -L 'core|fuzz' -E '^(Trainer|Examples)\.' "$@"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
