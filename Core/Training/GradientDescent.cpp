@@ -22,6 +22,20 @@ constexpr float WeightDecay = 1e-6f; // of the MLP only
 /// Samples whose weight gradients are summed in one buffer; the buffers are then added in order.
 constexpr std::int64_t ShardSize = 4 * TrainBlockSize;
 
+/// Samples between two looks at the StopCheck: a block, but less of one where the network is so
+/// large that a block takes seconds. A power of two; depends on the network alone, as sums do on
+/// it.
+std::int64_t SamplesPerCheck(std::uint64_t weights)
+{
+  constexpr std::uint64_t mostProducts = std::uint64_t{1} << 29;
+  constexpr std::int64_t fewest = 16;
+  std::int64_t samples = TrainBlockSize;
+  while (samples > fewest && static_cast<std::uint64_t>(samples) * weights > mostProducts) {
+    samples /= 2;
+  }
+  return samples;
+}
+
 /// From this many updates on an entry's bias correction is 1 to float precision.
 constexpr std::uint32_t LastCorrectedStep = 16384;
 
@@ -156,17 +170,23 @@ void GradientDescent::backpropagateShard(std::int64_t shard, const float* xyz, c
                                          std::int64_t begin, std::int64_t end, std::int64_t total,
                                          const StopCheck& check)
 {
+  if (!check.goesOn()) { // gradients of gigabytes are not worth their zeros then
+    return;
+  }
   const ModelView& model = this->Views.view();
   std::vector<float> workspace(static_cast<std::size_t>(this->Kernel.workspace(model)));
   std::vector<float>& weightGradient = this->ShardGradients[static_cast<std::size_t>(shard)];
   weightGradient.assign(this->Shape.gridOffset, 0.0f);
-  for (std::int64_t first = begin; first < end && check.goesOn(); first += TrainBlockSize) {
+  const std::int64_t samples = SamplesPerCheck(this->Shape.gridOffset);
+  for (std::int64_t first = begin; first < end && check.goesOn(); first += samples) {
+    const std::int64_t within = first % TrainBlockSize;
     TrainBlock block{};
     block.xyz = xyz + 3 * first;
     block.targets = targets + first;
-    block.count = std::min(TrainBlockSize, end - first);
+    block.count = std::min(samples, end - first);
     block.gradientScale = 1.0f / static_cast<float>(total);
-    block.encodedGradient = this->EncodedGradient.data() + first * this->Shape.encodedWidth;
+    block.encodedGradient =
+        this->EncodedGradient.data() + (first - within) * this->Shape.encodedWidth + within;
     block.weightGradient = weightGradient.data();
     this->Kernel.backpropagate(model, block, workspace.data());
     this->ShardLosses[static_cast<std::size_t>(shard)] += block.loss;

@@ -10,7 +10,7 @@ namespace inr {
 
 namespace {
 constexpr std::int64_t SampleCount = 1 << 15;
-constexpr std::int64_t BlockSize = 512;
+constexpr std::int64_t BlockSize = 64;
 constexpr std::uint64_t EstimateStream = 3; // apart from those of GradientDescent
 } // namespace
 

@@ -13,10 +13,6 @@ namespace inr {
 
 namespace {
 
-/// Voxels that are decoded before anybody is asked whether to go on; always the same, since the
-/// last bit of a position may depend on where its band begins.
-constexpr std::int64_t BandSize = 1 << 15;
-
 /// Sums over one row, added up in row order so that threads cannot change the result.
 struct RowError
 {
@@ -30,8 +26,8 @@ class SliceComparison
 {
 public:
   SliceComparison(const Evaluator& evaluator, const VolumeData& volume, const VolumeInfo& info,
-                  const Arena& arena)
-      : Source(evaluator), Volume(volume), Info(info), Threads(arena),
+                  const Arena& arena, std::int64_t bandSize)
+      : BandSize(bandSize), Source(evaluator), Volume(volume), Info(info), Threads(arena),
         SliceSize(static_cast<std::size_t>(volume.dims.x * volume.dims.y)), Raw(this->SliceSize),
         Decoded(this->SliceSize), Reference(this->SliceSize)
   {}
@@ -40,7 +36,7 @@ public:
   void load(std::int64_t z, const std::function<void(double)>& check)
   {
     const glm::i64vec3 dims = this->Volume.dims;
-    const std::int64_t rows = std::max<std::int64_t>(1, BandSize / dims.x);
+    const std::int64_t rows = std::max<std::int64_t>(1, this->BandSize / dims.x);
     for (std::int64_t y = 0; y < dims.y; y += rows) {
       check((static_cast<double>(z) + static_cast<double>(y) / static_cast<double>(dims.y)) /
             static_cast<double>(dims.z));
@@ -81,6 +77,7 @@ public:
   const std::vector<double>& reference() const { return this->Reference; }
 
 private:
+  std::int64_t BandSize;
   const Evaluator& Source;
   const VolumeData& Volume;
   const VolumeInfo& Info;
@@ -138,13 +135,13 @@ void ExtendCells(MacroCells& cells, const std::vector<float>& slice, const glm::
 
 DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volume,
                              const VolumeInfo& info, int macroCellSize, const Arena& arena,
-                             const std::function<bool(double)>& keepGoing)
+                             const std::function<bool(double)>& keepGoing, std::int64_t bandSize)
 {
   const glm::i64vec3 dims = volume.dims;
   DecodedReport report;
   report.macroCells = MakeMacroCells(dims, macroCellSize);
   report.macroCells.provenance = MacroCellProvenance::Decoded;
-  SliceComparison slice(evaluator, volume, info, arena);
+  SliceComparison slice(evaluator, volume, info, arena, bandSize);
   SliceSsim ssim(dims.x, dims.y, arena);
   RowError all;
   std::vector<RowError> rows(static_cast<std::size_t>(dims.y));

@@ -20,9 +20,11 @@ struct DecodedReport
 /// `structural_similarity(win_size=7, data_range=1)`); the largest difference. Windows and voxels
 /// that hold a NaN or infinity are left out; where none is left, the figure is NaN. `info` gives
 /// the value range, low < high; `keepGoing` receives the fraction done and returns false to stop
-/// (Error(Cancelled)).
+/// (Error(Cancelled)). It is asked after so many voxels as `bandSize` says, in whole rows; the last
+/// bit of a position may depend on it.
 DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volume,
                              const VolumeInfo& info, int macroCellSize, const Arena& arena,
-                             const std::function<bool(double)>& keepGoing);
+                             const std::function<bool(double)>& keepGoing,
+                             std::int64_t bandSize = 1 << 20);
 
 } // namespace inr

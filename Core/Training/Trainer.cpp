@@ -78,6 +78,14 @@ void RequireFinite(double loss, std::uint64_t steps)
   }
 }
 
+/// Voxels that are decoded in about a second: the larger the network, the fewer.
+std::int64_t BandSize(const Description& description)
+{
+  constexpr std::uint64_t products = std::uint64_t{1} << 34;
+  const std::uint64_t weights = std::max<std::uint64_t>(1, Layout(description).gridOffset);
+  return std::clamp<std::int64_t>(static_cast<std::int64_t>(products / weights), 1024, 1 << 20);
+}
+
 /// Steps until a limit is reached, telling the observer.
 class TrainingLoop
 {
@@ -222,7 +230,8 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
       [&](double fraction) {
         return !observer || observer({TrainingPhase::Measuring,
                                       TrainingShare + (1.0 - TrainingShare) * fraction, steps, 0});
-      });
+      },
+      BandSize(trained->description));
   trained->quality = report.quality;
   trained->macroCells = report.macroCells;
   return trained;

@@ -71,9 +71,12 @@ std::vector<float> Direction(std::size_t size, std::size_t begin, std::size_t en
 }
 
 void ExpectGradient(const inr::Description& description, const std::string& kernel,
-                    const std::string& what)
+                    const std::string& what, float size = 1.0f)
 {
   Problem problem(description, kernel);
+  for (float& parameter : problem.Descent.parameters()) {
+    parameter *= size;
+  }
   problem.loss();
   const std::vector<float> gradient = problem.Descent.gradient();
   const inr::Layout layout(description);
@@ -139,6 +142,16 @@ TEST(Gradients, MatchForEveryGrid)
       ExpectGradient(description, "", "grid " + std::to_string(static_cast<int>(type)));
     }
   }
+}
+
+// Which goes through it in less than a block at a time.
+TEST(Gradients, MatchForALargeNetwork)
+{
+  inr::Description description = SmallDescription();
+  description.network.neurons = 1024;
+  description.network.hiddenLayers = 3;
+  description.network.activation = inr::Activation::Tanh;
+  ExpectGradient(description, "", "1024 neurons", 0.1f);
 }
 
 TEST(Gradients, UnknownTargetsCarryNone)

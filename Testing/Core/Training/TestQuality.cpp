@@ -132,8 +132,9 @@ TEST(Quality, AsksWithinASlice)
   const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
   int asked = 0;
   const auto keepGoing = [&](double fraction) { return ++asked > 0 && fraction < 0.4; };
-  EXPECT_THROW(inr::MeasureQuality(*evaluator, field.data(), info, 16, inr::Arena(2), keepGoing),
-               inr::Error);
+  EXPECT_THROW(
+      inr::MeasureQuality(*evaluator, field.data(), info, 16, inr::Arena(2), keepGoing, 1 << 15),
+      inr::Error);
   EXPECT_EQ(asked, 3); // at 0, 1/4 and 1/2
 }
 
