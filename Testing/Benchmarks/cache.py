@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs bench_cache, bench_paths, and bench_against_vtk where it was built; writes cache.json.
+"""Runs bench_majorants, bench_cache, bench_paths, and bench_against_vtk where it was built; writes
+cache.json.
 
     cmake --preset vtk -DINR_BUILD_BENCHMARKS=ON && cmake --build --preset vtk
     Testing/with-display.sh Testing/Benchmarks/cache.py build-vtk/Testing/Benchmarks \\
@@ -15,8 +16,26 @@ from pathlib import Path
 
 import results_file
 
+
+def majorants(program):
+    """From a change of transfer function to all levels' majorants, and rays through next to
+    nothing."""
+    output = subprocess.run([program, "--benchmark_format=json"], check=True, capture_output=True)
+    for run in json.loads(output.stdout)["benchmarks"]:
+        given = dict(part.split(":") for part in run["name"].split("/") if ":" in part)
+        cells = f"{int(given['edge'])**3 / 1e6:.3g} M cells"
+        rate = float(f"{run['items_per_second'] / 1e6:.4g}")
+        if "threads" in given:
+            name, unit = f"majorants of {cells}, threads: {given['threads']}", "M cells/s"
+            note = "4.17 M cells are the largest default table"
+        else:
+            name, unit, note = f"rays through {cells}, empty", "M rays/s", "one thread"
+        print(f"{name}: {rate} {unit} ({note})", flush=True)
+        yield results_file.result(name, rate, unit, "higher", note)
+
+
 folder = Path(sys.argv[1])
-results = []
+results = list(majorants(folder / "bench_majorants"))
 for argument in sys.argv[2:]:
     name, model = argument.split("=", 1)
     model, _, part = model.partition(":")
