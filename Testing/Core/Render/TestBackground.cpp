@@ -94,6 +94,22 @@ TEST(Background, FramesInALimitedTimeEndWithTheCompletePicture)
   }
 }
 
+TEST(Background, PathsEndWithTheCompletePicture)
+{
+  const Field field;
+  inr::Frame frame = View(0);
+  frame.mode = inr::RenderMode::PathTracing;
+  frame.samplesPerPixel = 2;
+  inr::Renderer complete = field.renderer(false);
+  const inr::Image truth = Render(complete, frame);
+  for (const double timeLimit : {0.002, 0.05}) {
+    inr::Renderer hurried = field.renderer(true);
+    inr::Image image;
+    Finish(hurried, frame, timeLimit, image);
+    EXPECT_EQ(image.pixels, truth.pixels) << timeLimit;
+  }
+}
+
 TEST(Background, CompleteFramesAreTheSameWhateverIsOnItsWay)
 {
   const Field field;
