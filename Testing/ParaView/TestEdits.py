@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Random edits while bricks load: nothing is reported, nothing is lost, and what is shown in the end
+depends on the last settings only. INR_EDITS is how many (150; thousands when run by hand)."""
+import os
+import random
+
+import numpy as np
+from paraview import simple
+from pvtest import MODEL, Messages, check, load_plugin, look_at, picture, psnr, show_view
+
+load_plugin()
+EDITS = int(os.environ.get("INR_EDITS", "150"))
+dice = random.Random(7)
+
+SETTINGS = {
+    "RenderMode": ["Ray Marching"] * 4 + ["Path Tracing"],
+    "LevelOfDetailScale": [0, 0.5, 1, 2, 4],
+    "SampleDistance": [0.5, 1, 2],
+    "CacheSize": [1, 8, 64],
+    "CachePrecision": ["Float", "16 bit", "8 bit"],
+    "BrickSize": [12, 24, 40],
+    "MaximumRequests": [1, 40],
+    "PriorityRanking": [0, 1],
+    "Preloading": [0, 1],
+    "CacheMode": ["Cache and network"] * 4 + ["Network only"],
+    "Shade": [0, 0, 1],
+    "NumberOfThreads": [0, 1, 3],
+}
+
+
+def new_scene():
+    view = show_view((120, 90))
+    reader = simple.OpenDataFile(MODEL)
+    display = simple.Show(reader, view)
+    display.SamplesPerPixel = 2
+    look_at(view)
+    return view, reader, display
+
+
+def set_one(display):
+    name = dice.choice(sorted(SETTINGS))
+    setattr(display, name, dice.choice(SETTINGS[name]))
+
+
+def turn(view):
+    camera = view.GetActiveCamera()
+    camera.Azimuth(dice.uniform(-90, 90))
+    camera.Dolly(dice.uniform(0.7, 1.4))
+    view.GetRenderer().ResetCameraClippingRange()
+
+
+def recolour(display):
+    opacity = display.ScalarOpacityFunction
+    low, high = opacity.Points[0], opacity.Points[-4]
+    middle = dice.uniform(low, high)
+    opacity.Points = [low, 0, 0.5, 0, middle, dice.random(), 0.5, 0, high, dice.random(), 0.5, 0]
+
+
+def edit(view, reader, display):
+    kind = dice.randrange(10)
+    if kind < 5:
+        set_one(display)
+    elif kind < 7:
+        turn(view)
+    elif kind < 9:
+        recolour(display)
+    else:
+        view.ViewSize = [dice.randrange(20, 160), dice.randrange(20, 120)]
+    # As while the mouse moves: a frame in a limited time, more bricks to come.
+    view.SMProxy.InteractiveRender()
+    if kind == 9:
+        simple.Hide(reader, view) if dice.random() < 0.3 else simple.Show(reader, view)
+
+
+with Messages() as messages:
+    view, reader, display = new_scene()
+    for k in range(EDITS):
+        edit(view, reader, display)
+        if k % 50 == 49:  # while bricks load
+            simple.Delete(reader)
+            simple.Delete(view)
+            view, reader, display = new_scene()
+check(messages.errors() == 0, "reported:", messages.text)
+
+# What is shown now is what a new scene shows with the same settings.
+simple.Show(reader, view)
+view.ViewSize = [120, 90]
+display.RenderMode = "Ray Marching"
+edited = picture(view, "edits-last")
+settings = {name: getattr(display, name) for name in SETTINGS}
+points = list(display.ScalarOpacityFunction.Points)
+place = [list(view.CameraPosition), list(view.CameraFocalPoint), list(view.CameraViewUp)]
+simple.Delete(reader)
+simple.Delete(view)
+view, reader, display = new_scene()
+for name, value in settings.items():
+    setattr(display, name, value)
+display.ScalarOpacityFunction.Points = points
+view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = place
+simple.Render(view)
+anew = picture(view, "edits-anew")
+check(np.isfinite(edited).all() and edited.std() > 0.01, "nothing is shown")
+check(psnr(edited, anew) > 50, "the way to a picture shows in it:", psnr(edited, anew), "dB")
