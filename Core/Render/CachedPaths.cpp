@@ -97,6 +97,7 @@ void CachedSampler::findCoarser(const FieldPoint& point, Cell& cell)
 
 void CachedSampler::infer(const FieldPoint* points, float* values)
 {
+  this->Missed += static_cast<std::int64_t>(this->Absent.size());
   this->AbsentPoints.clear();
   for (const std::int64_t k : this->Absent) {
     this->AbsentPoints.push_back(points[k]);

@@ -31,7 +31,7 @@ public:
 
   void sample(const FieldPoint* points, std::int64_t count, float* values) override;
 
-  /// Points served from a coarser level so far.
+  /// Points so far that the cache did not have at the level they asked for.
   std::int64_t missed() const { return this->Missed; }
   /// The bricks wished for so far, each as often as it was, by their keys.
   RequestList requests() const;

@@ -174,9 +174,9 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* time
                                        const std::function<bool()>& keepGoing)
 {
   const BrickStore::Call call(*this->Store);
-  if (round.first) {
-    this->InferMisses = false;
-  }
+  // Where somebody waits for all of it, what did not fit a moment ago is not tried again.
+  const bool guessed = round.first && timer == nullptr && this->InferMisses;
+  this->InferMisses = this->InferMisses && (!round.first || guessed);
   if (round.whole) {
     this->Store->beginFrame();
   }
@@ -187,15 +187,26 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* time
   RequestRanking requests;
   TracedTiles traced = TraceThroughCache(round, this->Store->cache(), *this->Field, onMiss,
                                          this->Threads, keepGoing, requests);
+  if (guessed && requests.count() <= this->roomForPaths()) {
+    this->InferMisses = false; // a wrong guess: bricks for them all, and once more
+  } else if (this->InferMisses) {
+    for (FrameStatistics& tile : traced.tiles) {
+      tile.missed = 0;
+    }
+  }
   this->loadForPaths(requests, timer, keepGoing);
   return traced;
+}
+
+std::int64_t CachedRenderer::roomForPaths() const
+{
+  return this->Store->cache().capacity() - this->Store->cache().usedInFrame();
 }
 
 void CachedRenderer::loadForPaths(const RequestRanking& requests, const Timer* timer,
                                   const std::function<bool()>& keepGoing)
 {
-  const BrickCache& cache = this->Store->cache();
-  const std::int64_t room = cache.capacity() - cache.usedInFrame();
+  const std::int64_t room = this->roomForPaths();
   const bool some = timer != nullptr || this->InferMisses;
   const std::int64_t most = std::min(room, some ? this->Options.maximumRequests : room);
   const std::vector<BrickKey> keys = requests.ranked(most, this->Options.ranking);

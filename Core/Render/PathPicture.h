@@ -40,10 +40,14 @@ using TraceTiles = std::function<TracedTiles(const PathRound&)>;
 
 /// A path-traced picture in the making, over several calls: the mean of samples, each with one path
 /// through every pixel and complete. Sample k is a function of seed, frame index and k, however the
-/// calls share the work.
+/// calls share the work. One for each medium.
 class PathPicture
 {
 public:
+  PathPicture() = default;
+  PathPicture(const PathPicture&) = delete;
+  PathPicture& operator=(const PathPicture&) = delete;
+
   /// Goes on with the picture at hand if `frame` asks for the same one (and for no fewer samples
   /// than there are), else starts anew. Traces until Frame::samplesPerPixel or, at least one round,
   /// until Frame::timeLimit. Shows the mean of the complete samples or, before the first of them is
@@ -51,8 +55,6 @@ public:
   /// Error(InvalidArgument) as PathTracer does, and for fewer than one sample per pixel.
   FrameStatistics advance(const Frame& frame, const PathMedium& medium, const TraceTiles& trace,
                           const PassOutput& output);
-  /// Starts anew at the next call.
-  void forget() { this->Begun = false; }
 
 private:
   bool continues(const Frame& frame) const;

@@ -57,7 +57,7 @@ struct Renderer::Implementation
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
   std::optional<CachedRenderer> Cached; ///< made by the first frame that needs it
-  PathPicture Paths;
+  std::optional<PathPicture> Paths; ///< while paths are traced
   std::int64_t MajorantBuilds = 0;
 };
 
@@ -107,7 +107,7 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
   ColorTable colors(transferFunction, self.Volume); // before anything changes: it may throw
   self.Colors.emplace(std::move(colors));
   self.Function = transferFunction;
-  self.Paths.forget();
+  self.Paths.reset();
   if (self.Cached) {
     self.Cached->forgetColors();
   }
@@ -137,6 +137,7 @@ FrameStatistics Renderer::Implementation::renderUncached(
 FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
                                                 const std::function<bool()>& keepGoing)
 {
+  this->Paths.reset();
   const RayGeometry geometry(frame, this->Volume.dims);
   MarchSettings settings;
   settings.dims = glm::dvec3(this->Volume.dims);
@@ -154,12 +155,15 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
                                                      const std::function<bool()>& keepGoing)
 {
+  if (!this->Paths) {
+    this->Paths.emplace();
+  }
   PathMedium medium{this->Volume.dims, this->Cells, this->Colors->lookup()};
   if (!this->Options.cached) {
     const TraceTiles trace = [&](const PathRound& round) {
       return TraceWithNetwork(round, *this->Field, this->Volume.dims, this->Threads, keepGoing);
     };
-    return this->Paths.advance(frame, medium, trace, output);
+    return this->Paths->advance(frame, medium, trace, output);
   }
   CachedRenderer& cached = this->cached();
   medium.levels = cached.store().cache().hierarchy().levels();
@@ -167,7 +171,7 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
   const TraceTiles trace = [&](const PathRound& round) {
     return cached.tracePaths(round, frame.timeLimit > 0 ? &timer : nullptr, keepGoing);
   };
-  return this->Paths.advance(frame, medium, trace, output);
+  return this->Paths->advance(frame, medium, trace, output);
 }
 
 FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,

@@ -201,6 +201,19 @@ TEST(PathPicture, DoesNotDependOnThreadsTheCacheOrEarlierPictures)
   EXPECT_NE(Render(unranked, other).pixels, truth);
 }
 
+TEST(PathPicture, IsTheSameAfterOneThatDidNotFitTheCache)
+{
+  inr::CacheOptions options = SmallBricks();
+  options.bytes = 60000;
+  inr::Renderer small = MakeRenderer(true, 2, options);
+  inr::Frame frame = LitFrame();
+  Render(small, frame);
+  EXPECT_EQ(Render(small, frame).pixels, Render(small, frame).pixels);
+  frame.clippingPlanes = {{0, 0, -1, 6}, {-1, 0, 0, 12}}; // a dozen bricks
+  inr::Renderer large = MakeRenderer(true);
+  EXPECT_EQ(Render(small, frame).pixels, Render(large, frame).pixels);
+}
+
 /// Calls with next to no time until the picture is complete; how many.
 int RenderInParts(inr::Renderer& renderer, inr::Frame frame, inr::Image& image)
 {
