@@ -76,7 +76,7 @@ with Messages() as messages:
     view, reader, display = new_scene()
     for k in range(EDITS):
         edit(view, reader, display)
-        if k % 50 == 49:  # while bricks load
+        if k % 50 == 24:  # while bricks load
             simple.Delete(reader)
             simple.Delete(view)
             view, reader, display = new_scene()
