@@ -2,6 +2,7 @@
 //
 // What majorants say of samples of every level, against all that these samples can be made of.
 #include "Core/Cache/BrickSource.h"
+#include "Core/Model/ScaledModel.h"
 #include "Core/Render/CellWalker.h"
 #include "Core/Render/LevelOfDetail.h"
 #include "Testing/Core/Render/Scene.h"
@@ -20,19 +21,22 @@ float RandomAt(const glm::vec3& place)
       inr::RandomUnit(1, static_cast<std::uint64_t>(at.x + 1000 * (at.y + 1000 * at.z))));
 }
 
-/// Blocks that have nothing in common with their neighbours, with a little noise in each.
-float Noise(const glm::vec3& u) { return 0.9f * RandomAt(u * 8.7f) + 0.1f * RandomAt(u * 301.0f); }
+/// Blocks that have nothing in common with their neighbours.
+float Blocks(const glm::vec3& u) { return RandomAt(u * 8.7f); }
+
+/// The same with a little noise in each.
+float Noise(const glm::vec3& u) { return 0.9f * Blocks(u) + 0.1f * RandomAt(u * 301.0f); }
 
 /// A volume's voxels at all levels, and macro-cells that hold what the network says within them and
 /// a voxel around, no more.
 struct Volume
 {
-  Volume(const glm::i64vec3& size, const inr::MacroCells& empty)
-      : dims(size), hierarchy(size, 8), cells(empty)
+  Volume(const glm::i64vec3& size, const inr::MacroCells& empty, float (*truth)(const glm::vec3&))
+      : dims(size), hierarchy(size, 8), cells(empty), Truth(truth)
   {
     const auto field = std::make_shared<FieldEvaluator>([this](const glm::vec3& u) {
       this->extend(u);
-      return Noise(u);
+      return this->Truth(u);
     });
     const auto source = inr::MakeBrickSource(field, this->hierarchy);
     for (int level = 0; level < this->hierarchy.levels(); ++level) {
@@ -80,7 +84,8 @@ private:
       for (std::int64_t y = glm::max(low.y, std::int64_t{0}); y <= glm::min(high.y, last.y); ++y) {
         for (std::int64_t x = glm::max(low.x, std::int64_t{0}); x <= glm::min(high.x, last.x);
              ++x) {
-          this->cells.ranges[static_cast<std::size_t>(this->cells.index(x, y, z))].extend(Noise(u));
+          this->cells.ranges[static_cast<std::size_t>(this->cells.index(x, y, z))].extend(
+              this->Truth(u));
         }
       }
     }
@@ -110,6 +115,8 @@ private:
     }
     return voxels;
   }
+
+  float (*Truth)(const glm::vec3&);
 };
 
 inr::MacroCells LikeUpstream(const glm::dvec3& spacing)
@@ -121,15 +128,15 @@ inr::MacroCells LikeUpstream(const glm::dvec3& spacing)
   return cells;
 }
 
-std::vector<Volume> Volumes()
+std::vector<Volume> Volumes(float (*truth)(const glm::vec3&) = Noise)
 {
   const glm::i64vec3 odd(75, 50, 33);
   const glm::i64vec3 slab(90, 1, 61);
-  return {{odd, inr::MakeMacroCells(odd, 16)},
-          {odd, inr::MakeMacroCells(odd, 4)},
-          {odd, LikeUpstream({0.07, 0.11, 0.3})},
-          {odd, LikeUpstream({0.019, 0.02, 1})}, // cells of less than two voxels
-          {slab, inr::MakeMacroCells(slab, 8)}};
+  return {{odd, inr::MakeMacroCells(odd, 16), truth},
+          {odd, inr::MakeMacroCells(odd, 4), truth},
+          {odd, LikeUpstream({0.07, 0.11, 0.3}), truth},
+          {odd, LikeUpstream({0.019, 0.02, 1}), truth}, // cells of less than two voxels
+          {slab, inr::MakeMacroCells(slab, 8), truth}};
 }
 
 /// Points at random and the corners of the cube's voxels.
@@ -309,6 +316,30 @@ TEST(Majorants, ClampNoSampleForBeingCoarse)
         const inr::FrameStatistics statistics = renderer.render(frame, image);
         EXPECT_GT(statistics.samples, 0);
         EXPECT_EQ(statistics.clamped, 0) << "scale " << scale;
+      }
+    }
+  }
+}
+
+/// The same of volumes with fewer or more voxels than the cells were made for.
+TEST(Majorants, ClampNoSampleOfAScaledVolume)
+{
+  for (const Volume& volume : Volumes(Blocks)) {
+    auto model = std::make_shared<inr::Model>();
+    model->volume.dims = volume.dims;
+    model->macroCells = volume.cells;
+    for (const double factor : {0.25, 0.6, 1.0, 2.5}) {
+      const inr::ModelPointer scaled = inr::ScaledModel(model, factor);
+      const glm::i64vec3& dims = scaled->volume.dims;
+      inr::Renderer renderer = FieldRenderer(dims, Blocks, scaled->macroCells, 2, true);
+      renderer.setTransferFunction(OpacityRamp(0.01f));
+      inr::Frame frame = ParallelFrame(64, {0, -1}, {dims.x, dims.y}, -10, 200);
+      for (const double scale : {0.0, 2.0}) {
+        frame.levelOfDetailScale = scale;
+        inr::Image image;
+        const inr::FrameStatistics statistics = renderer.render(frame, image);
+        EXPECT_GT(statistics.samples, 0);
+        EXPECT_EQ(statistics.clamped, 0) << "factor " << factor << " scale " << scale;
       }
     }
   }
