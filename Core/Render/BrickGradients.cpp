@@ -2,6 +2,7 @@
 #include "Core/Render/BrickGradients.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace inr {
 
@@ -15,15 +16,16 @@ float PlaceOn(const BrickPath& path, int axis, float along)
 
 } // namespace
 
-bool BrickGradients::crosses(const Move& move, BrickKey brick, float place) const
+BrickGradients::Inside BrickGradients::insideOf(BrickKey brick, const Move& move) const
 {
   const Hierarchy& hierarchy = this->Cache.hierarchy();
   const BrickId id = IdOf(brick);
-  const float target = place + static_cast<float>(move.step);
-  const auto stride = static_cast<float>(hierarchy.brickDims()[move.axis] - 1);
-  return move.step < 0
-             ? target < 0.0f && id.at[move.axis] > 0
-             : target > stride && id.at[move.axis] + 1 < hierarchy.bricks(id.level)[move.axis];
+  const int last = hierarchy.brickDims()[move.axis] - 1;
+  constexpr float everywhere = std::numeric_limits<float>::infinity();
+  const bool hasLower = id.at[move.axis] > 0;
+  const bool hasUpper = id.at[move.axis] + 1 < hierarchy.bricks(id.level)[move.axis];
+  return {move.step < 0 && hasLower ? 1.0f : -everywhere,
+          move.step > 0 && hasUpper ? static_cast<float>(last - 1) : everywhere};
 }
 
 bool BrickGradients::movePath(const Move& move, const Wish& wish, BrickKey brick, bool crosses,
@@ -59,11 +61,15 @@ int BrickGradients::moveSamples(const SampleBatch& batch, const BrickKey* bricks
   int paths = 0;
   int source = -1; // path of which the latest one was made
   bool crossing = false;
+  Inside inside{};
   for (int k = 0; k < count; ++k) {
     const int from = batch.path[which[k]];
     const float along = batch.along[which[k]];
     const float place = PlaceOn(batch.paths[from], move.axis, along);
-    const bool crosses = this->crosses(move, bricks[from], place);
+    if (from != source) {
+      inside = this->insideOf(bricks[from], move);
+    }
+    const bool crosses = place < inside.low || place > inside.high;
     if (from != source || crosses != crossing) {
       this->Moved.paths[paths] = batch.paths[from];
       if (!this->movePath(move, wish, bricks[from], crosses, this->Moved.paths[paths])) {
@@ -74,11 +80,11 @@ int BrickGradients::moveSamples(const SampleBatch& batch, const BrickKey* bricks
       ++paths;
     }
     const BrickPath& path = this->Moved.paths[paths - 1];
-    const bool inside = !crosses || path.voxels == batch.paths[from].voxels;
+    const bool stays = !crosses || path.voxels == batch.paths[from].voxels;
     this->Moved.path[k] = paths - 1;
     this->Moved.along[k] = along;
     this->Offsets[k] =
-        inside ? PlaceOn(path, move.axis, along) - place : static_cast<float>(move.step);
+        stays ? PlaceOn(path, move.axis, along) - place : static_cast<float>(move.step);
   }
   return count;
 }
@@ -102,15 +108,28 @@ int BrickGradients::find(const SampleBatch& batch, const BrickKey* bricks, const
         std::copy_n(this->Offsets, count, offsets);
       }
     }
-    for (int k = 0; k < count; ++k) {
-      const int level = IdOf(bricks[batch.path[which[k]]]).level;
-      const auto scale = static_cast<float>(this->Cache.hierarchy().scale(level)[axis]);
-      const float length = this->Offsets[k] - offsets[k];
-      const float difference = this->Moved.value[k] - values[k];
-      gradients[k][axis] = length > 0.0f ? difference / length * scale : 0.0f;
-    }
+    this->differentiate(batch, bricks, which, count, axis, values, offsets, gradients);
   }
   return count;
+}
+
+void BrickGradients::differentiate(const SampleBatch& batch, const BrickKey* bricks,
+                                   const int* which, int count, int axis, const float* values,
+                                   const float* offsets, glm::vec3* gradients) const
+{
+  int source = -1;
+  float scale = 0;
+  for (int k = 0; k < count; ++k) {
+    const int path = batch.path[which[k]];
+    if (path != source) {
+      const int level = IdOf(bricks[path]).level;
+      scale = static_cast<float>(this->Cache.hierarchy().scale(level)[axis]);
+      source = path;
+    }
+    const float length = this->Offsets[k] - offsets[k];
+    const float difference = this->Moved.value[k] - values[k];
+    gradients[k][axis] = length > 0.0f ? difference / length * scale : 0.0f;
+  }
 }
 
 } // namespace inr

@@ -46,11 +46,22 @@ private:
     RequestList& requests;
   };
 
-  bool crosses(const Move& move, BrickKey brick, float place) const;
+  /// Places along the axis from which a move stays in the brick or has nowhere else to go.
+  struct Inside
+  {
+    float low;
+    float high;
+  };
+
+  Inside insideOf(BrickKey brick, const Move& move) const;
   bool movePath(const Move& move, const Wish& wish, BrickKey brick, bool crosses,
                 BrickPath& path) const;
   int moveSamples(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count,
                   const Move& move, const Wish& wish);
+  /// By what was found below, `values` at `offsets`, and above.
+  void differentiate(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count,
+                     int axis, const float* values, const float* offsets,
+                     glm::vec3* gradients) const;
 
   const BrickCache& Cache;
   BrickFormat Format;

@@ -81,7 +81,9 @@ void CachedMarcher::compositeShaded(CachedRay& state, const glm::vec4* colors, i
   for (int k = 0; k < count && state.color.transmittance > OpaqueTransmittance; ++k) {
     const bool isLast = this->LastLength > 0 && k + 1 == this->Count;
     const float length =
-        isLast ? this->LastLength : static_cast<float>(std::ldexp(step, this->Batch.multiple[k]));
+        isLast ? this->LastLength
+               : static_cast<float>(
+                     step * static_cast<double>(std::int64_t{1} << this->Batch.multiple[k]));
     if (colors[k].w > 0.0f) {
       this->compositeColor(state, colors[k], length, this->T[k]);
     }
