@@ -55,9 +55,14 @@ void RefinementTimer::OnTimer(vtkObject* caller, unsigned long, void* self, void
   if (!timer || *static_cast<int*>(timer) != refinement->Timer) {
     return;
   }
+  // VTK's interactor for X is going through its timers: the one that fires must stay until then.
+  auto* interactor = static_cast<vtkRenderWindowInteractor*>(caller);
+  interactor->DestroyTimer(refinement->Fired);
+  refinement->Fired = refinement->Timer;
+  refinement->Timer = 0;
   refinement->cancel();
   // Nothing of `refinement` from here on: rendering may delete the mapper.
-  static_cast<vtkRenderWindowInteractor*>(caller)->Render();
+  interactor->Render();
 }
 
 } // namespace inr

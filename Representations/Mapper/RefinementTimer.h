@@ -36,6 +36,7 @@ private:
   vtkNew<vtkCallbackCommand> Command;
   unsigned long Observer = 0;
   int Timer = 0;
+  int Fired = 0; ///< the timer before
 };
 
 } // namespace inr

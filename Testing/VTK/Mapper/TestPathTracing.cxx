@@ -11,12 +11,15 @@
 #include <vtkCubeSource.h>
 #include <vtkLight.h>
 #include <vtkPolyDataMapper.h>
+#include <vtkRenderWindowInteractor.h>
 #include <vtkVolumeProperty.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace {
 
@@ -199,6 +202,27 @@ TEST(PathTracing, InteractiveFramesClearUp)
   one.scene.capture();
   EXPECT_TRUE(one.mapper->GetConverged());
   EXPECT_EQ(one.mapper->GetImageReduction(), 1);
+}
+
+TEST(PathTracing, WindowsClearUpWhileTheyAreIdle)
+{
+  Traced one;
+  one.mapper->SetAmbientLight(1, 1, 1);
+  one.mapper->SetSamplesPerPixel(6);
+  one.mapper->SetStillTimeLimit(1e-3); // a sample, or what there is of one, for each frame
+  one.scene.window->SetOffScreenRendering(0);
+  vtkNew<vtkRenderWindowInteractor> interactor;
+  interactor->SetRenderWindow(one.scene.window);
+  interactor->Initialize();
+  one.scene.window->Render();
+  EXPECT_FALSE(one.mapper->GetConverged());
+  const auto start = std::chrono::steady_clock::now();
+  while (!one.mapper->GetConverged() &&
+         std::chrono::steady_clock::now() - start < std::chrono::seconds(60)) {
+    interactor->ProcessEvents();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(one.mapper->GetConverged());
 }
 
 TEST(PathTracing, EqualsItsBaseline)
