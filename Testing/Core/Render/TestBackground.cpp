@@ -2,6 +2,7 @@
 //
 // Bricks that come in between frames: what may change is when a picture is complete, never the
 // complete picture.
+#include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <ctime>
 #include <thread>
 
 namespace {
@@ -199,6 +202,43 @@ TEST(Background, CameraAndColoursMayChangeWhileBricksLoad)
     inr::Renderer synchronous = field.renderer(false);
     EXPECT_EQ(image.pixels, Render(synchronous, View(0)).pixels);
   }
+}
+
+/// Whether this process computes while the calling thread sleeps: ten times as much as the few
+/// glances at the clock take.
+bool IsAtWork()
+{
+  const std::clock_t before = std::clock();
+  const auto working = [&] { return std::clock() - before >= CLOCKS_PER_SEC / 50; };
+  for (int k = 0; k < 40 && !working(); ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(25));
+  }
+  return working();
+}
+
+/// Ends the process with bricks of a network on their way and nobody to delete the renderer, as an
+/// application does that just exits.
+void ExitWhileBricksLoad()
+{
+  const auto model = RandomModel(inr::Description{});
+  model->volume.dims = glm::i64vec3(2000);
+  inr::RendererOptions options;
+  options.cache.bytes = 512 << 20;
+  options.cache.brickSize = 64; // a second's work in all
+  options.cache.preloading = false;
+  static auto* renderer = new inr::Renderer(model, options); // nothing of it runs at the end
+  renderer->setTransferFunction(Colours(0.0f));
+  inr::Frame frame = View(0);
+  frame.timeLimit = 1e-9;
+  inr::Image image;
+  renderer->render(frame, image);
+  std::exit(IsAtWork() ? 0 : 1);
+}
+
+TEST(BackgroundDeathTest, TheProcessMayExitWhileBricksLoad)
+{
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(ExitWhileBricksLoad(), testing::ExitedWithCode(0), "");
 }
 
 } // namespace
