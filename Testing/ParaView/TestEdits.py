@@ -16,7 +16,7 @@ SETTINGS = {
     "RenderMode": ["Ray Marching"] * 4 + ["Path Tracing"],
     "LevelOfDetailScale": [0, 0.5, 1, 2, 4],
     "SampleDistance": [0.5, 1, 2],
-    "CacheSize": [1, 8, 64],
+    "CacheSize": [4, 8, 64],
     "CachePrecision": ["Float", "16 bit", "8 bit"],
     "BrickSize": [12, 24, 40],
     "MaximumRequests": [1, 40],
