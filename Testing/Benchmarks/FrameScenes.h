@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -89,6 +90,14 @@ inline inr::RendererOptions Cached()
   options.threads = Threads;
   options.cache.bytes = std::int64_t{4} << 30;
   return options;
+}
+
+/// The model as that of a volume of `dims` voxels.
+inline inr::ModelPointer Scaled(const inr::ModelPointer& model, const glm::i64vec3& dims)
+{
+  auto scaled = std::make_shared<inr::Model>(*model);
+  scaled->volume.dims = dims;
+  return scaled;
 }
 
 struct Timed
