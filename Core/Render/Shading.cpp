@@ -46,13 +46,14 @@ glm::vec3 Shading::shade(const glm::vec3& color, const View& view, const glm::dv
   for (std::size_t k = 0; k < this->Lights.size(); ++k) {
     const Illumination light =
         k < this->Constant.size() ? this->Constant[k] : IlluminationAt(this->Lights[k], world);
-    const double facing = std::abs(glm::dot(normal, light.toLight));
-    const glm::dvec3 between = light.toLight + view.toEye;
-    const double length = glm::length(between);
-    const double mirrored = length > 0 ? std::abs(glm::dot(normal, between)) / length : 0.0;
-    const float diffuse = static_cast<float>(facing) * this->Surface.diffuse;
-    const float specular = std::pow(static_cast<float>(mirrored), this->Surface.specularPower) *
-                           this->Surface.specular;
+    const double facing = glm::dot(normal, light.toLight);
+    const double mirrored =
+        2.0 * facing * glm::dot(normal, view.toEye) - glm::dot(light.toLight, view.toEye);
+    const float diffuse = static_cast<float>(std::abs(facing)) * this->Surface.diffuse;
+    const float specular =
+        mirrored > 0 ? std::pow(static_cast<float>(mirrored), this->Surface.specularPower) *
+                           this->Surface.specular
+                     : 0.0f;
     // An irradiance of pi makes a white surface white.
     result += light.irradiance * static_cast<float>(1.0 / detail::Pi) *
               (color * diffuse + glm::vec3(specular));

@@ -12,13 +12,13 @@
 
 namespace inr {
 
-/// Gradient shading after Blinn (1977), as VTK shades volumes under a headlight: with n the direction
-/// of the field's gradient, l the one to a light, v the one to the eye and h the one between them,
+/// Gradient shading after Phong (1975), as VTK has it from 9.2 on: with n the direction of the
+/// field's gradient, l the one to a light, v the one to the eye and r = 2 (n.l) n - l,
 ///
-///   colour * ambient + sum over lights of (colour * diffuse * |n.l| + specular * |n.h|^power) * I
+///   colour * ambient + sum over lights of (colour * diffuse * |n.l| + specular * (r.v)^power) * I
 ///
-/// where both sides of a surface are lit and a sample without a gradient gets the ambient part only.
-/// I is the light's colour at the place.
+/// where both sides of a surface are lit, r.v is taken as 0 where it is below, and a sample without
+/// a gradient gets the ambient part only. I is the light's colour at the place.
 class Shading
 {
 public:

@@ -33,8 +33,8 @@ inr::Frame Lit(const glm::dvec3& dims, int size = 48)
 glm::dvec3 Truth(const inr::Material& m, const glm::dvec3& color, const glm::dvec3& n,
                  const glm::dvec3& l, const glm::dvec3& v, const glm::dvec3& light)
 {
-  const double shine =
-      std::pow(std::abs(glm::dot(n, glm::normalize(l + v))), double{m.specularPower});
+  const glm::dvec3 r = 2.0 * glm::dot(n, l) * n - l;
+  const double shine = std::pow(std::max(glm::dot(r, v), 0.0), double{m.specularPower});
   return double{m.ambient} * color + light * (double{m.diffuse} * std::abs(glm::dot(n, l)) * color +
                                               double{m.specular} * shine);
 }

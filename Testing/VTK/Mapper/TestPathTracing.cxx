@@ -7,6 +7,7 @@
 #include "vtkINRVolumeMapper.h"
 
 #include <vtkActor.h>
+#include <vtkCallbackCommand.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkCubeSource.h>
 #include <vtkLight.h>
@@ -19,7 +20,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <thread>
 
 namespace {
 
@@ -216,12 +216,23 @@ TEST(PathTracing, WindowsClearUpWhileTheyAreIdle)
   interactor->Initialize();
   one.scene.window->Render();
   EXPECT_FALSE(one.mapper->GetConverged());
-  const auto start = std::chrono::steady_clock::now();
-  while (!one.mapper->GetConverged() &&
-         std::chrono::steady_clock::now() - start < std::chrono::seconds(60)) {
-    interactor->ProcessEvents();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  // VTK 9.1 fires timers in its own event loop only.
+  struct Watch
+  {
+    vtkINRVolumeMapper* mapper;
+    std::chrono::steady_clock::time_point end;
+  } watch{one.mapper, std::chrono::steady_clock::now() + std::chrono::seconds(60)};
+  vtkNew<vtkCallbackCommand> look;
+  look->SetClientData(&watch);
+  look->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    const auto* watched = static_cast<Watch*>(data);
+    if (watched->mapper->GetConverged() || std::chrono::steady_clock::now() > watched->end) {
+      static_cast<vtkRenderWindowInteractor*>(caller)->TerminateApp();
+    }
+  });
+  interactor->AddObserver(vtkCommand::TimerEvent, look);
+  interactor->CreateRepeatingTimer(20);
+  interactor->Start();
   EXPECT_TRUE(one.mapper->GetConverged());
 }
 
