@@ -54,4 +54,4 @@ for argument in sys.argv[2:]:
                 print(f"{result['name']}: {result['value']} {result['unit']}", flush=True)
         if process.wait() != 0:
             sys.exit(f"{program} failed")
-results_file.write("cache", results)
+    results_file.write("cache", results)  # a long run may end early
