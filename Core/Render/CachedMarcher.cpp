@@ -123,14 +123,13 @@ void CachedMarcher::lookFrom(CachedRay& state, double t)
 
 CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
 {
-  constexpr double faint = 0.02; // optical depth that needs no finer sampling
   const MarchSettings& settings = this->Scene.settings;
   const int adaptive =
       settings.adaptive ? 2 : 0; // at most 4 times as long where little can be seen
   const double depth = state.walker.extinction() * settings.unitsPerT * settings.step;
   this->lookFrom(state, state.walker.enter());
   int longest = state.detail.coarsest();
-  for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= faint; ++k) {
+  for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= FaintDepth; ++k) {
     ++longest;
   }
   return {state.walker.exit(), longest};
@@ -142,10 +141,14 @@ CachedMarcher::Sampling CachedMarcher::samplingAt(const CachedRay& state, const 
   const double limit = std::min(segment.exit, state.ray.length);
   // Longer samples than the level's own start at multiples of their length and end inside the cell.
   int multiple = std::max(std::min(segment.longest, PowerOfTwoIn(state.next)), shortest);
-  while (multiple > shortest && this->endOf(state, {multiple, Doubled(1.0, multiple)}, 0) > limit) {
+  const auto sampling = [](int multiple) {
+    const double intervals = Doubled(1.0, multiple);
+    return Sampling{multiple, intervals, 1.0 / intervals};
+  };
+  while (multiple > shortest && this->endOf(state, sampling(multiple), 0) > limit) {
     --multiple;
   }
-  return {multiple, Doubled(1.0, multiple)};
+  return sampling(multiple);
 }
 
 void CachedMarcher::fill(CachedRay& state)
@@ -213,7 +216,7 @@ template <typename Fits>
 int CachedMarcher::largest(const Sampling& sampling, double room, int most, const Fits& fits) const
 {
   // A guess by division, made good by what decides: where a batch begins must not matter.
-  const double guess = room * this->StepsPerT / sampling.intervals;
+  const double guess = room * (this->StepsPerT * sampling.inverse);
   int count = static_cast<int>(std::clamp(guess, 0.0, static_cast<double>(most)));
   while (count > 0 && !fits(count)) {
     --count;

@@ -79,6 +79,7 @@ private:
   {
     int multiple;     ///< log2 of the steps a sample stands for
     double intervals; ///< these steps
+    double inverse;   ///< 1 / intervals
   };
 
   void place(CachedRay& state);

@@ -57,6 +57,11 @@ glm::dmat4 Inverse(const glm::dmat4& matrix, const char* message)
   return inverse;
 }
 
+glm::dvec3 Point(const glm::dvec4& homogeneous)
+{
+  return glm::dvec3(homogeneous) * (1.0 / homogeneous.w);
+}
+
 /// The part of a line that survives clipping.
 struct Interval
 {
@@ -110,18 +115,14 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture
   Require(this->WorldPerUnit > 0, "the volume is flat in world space");
 }
 
-glm::dvec3 RayGeometry::unproject(double x, double y, double z) const
-{
-  const glm::dvec4 world = this->Picture.clipToWorld * glm::dvec4(x, y, z, 1.0);
-  return glm::dvec3(world) / world.w;
-}
-
 Ray RayGeometry::ray(int x, int y) const
 {
   const double clipX = 2.0 * (x + 0.5) / this->Picture.width - 1.0;
   const double clipY = 2.0 * (y + 0.5) / this->Picture.height - 1.0;
-  const glm::dvec3 near = this->unproject(clipX, clipY, -1.0);
-  const glm::dvec3 toFar = this->unproject(clipX, clipY, 1.0) - near;
+  const glm::dmat4& toWorld = this->Picture.clipToWorld;
+  const glm::dvec4 center = toWorld[0] * clipX + toWorld[1] * clipY + toWorld[3];
+  const glm::dvec3 near = Point(center - toWorld[2]);
+  const glm::dvec3 toFar = Point(center + toWorld[2]) - near;
   const double range = glm::length(toFar);
   const glm::dvec3 forward = toFar / range;
 
@@ -139,7 +140,7 @@ Ray RayGeometry::ray(int x, int y) const
     const auto pixel = static_cast<std::size_t>(y) * this->Picture.width + x;
     const double depth = this->Picture.opaqueDepth[pixel];
     if (depth < 1.0) {
-      const glm::dvec3 opaque = this->unproject(clipX, clipY, 2.0 * depth - 1.0);
+      const glm::dvec3 opaque = Point(center + toWorld[2] * (2.0 * depth - 1.0));
       world.end = std::min(world.end, glm::dot(opaque - near, forward));
     }
   }
@@ -150,9 +151,9 @@ Ray RayGeometry::ray(int x, int y) const
     ray.inverse = 1.0 / ray.direction;
     ray.length = (world.end - world.begin) / this->WorldPerUnit;
     // A pixel's edge grows linearly from the near to the far plane.
-    const double clipEdge = 2.0 / this->Picture.width;
-    const double atNear = glm::length(this->unproject(clipX + clipEdge, clipY, -1.0) - near);
-    const double atFar = glm::length(this->unproject(clipX + clipEdge, clipY, 1.0) - near - toFar);
+    const glm::dvec4 next = center + toWorld[0] * (2.0 / this->Picture.width);
+    const double atNear = glm::length(Point(next - toWorld[2]) - near);
+    const double atFar = glm::length(Point(next + toWorld[2]) - near - toFar);
     ray.footprintGrowth = (atFar - atNear) / range;
     ray.footprint = (atNear + ray.footprintGrowth * world.begin) / this->WorldPerUnit;
   }

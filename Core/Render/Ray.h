@@ -41,8 +41,6 @@ public:
   double worldPerUnit() const { return this->WorldPerUnit; }
 
 private:
-  glm::dvec3 unproject(double x, double y, double z) const;
-
   const Frame& Picture;
   glm::dmat4 IndexToWorld;
   glm::dmat4 WorldToClip;

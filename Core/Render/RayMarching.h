@@ -59,6 +59,9 @@ struct MarchSample
   float t;
 };
 
+/// Optical depth that needs no finer sampling.
+constexpr double FaintDepth = 0.05;
+
 /// Opacity at which the rest of a ray no longer shows.
 constexpr float OpaqueEnough = 0.999f;
 constexpr float OpaqueTransmittance = 1.0f - OpaqueEnough;
@@ -108,13 +111,12 @@ INR_HOST_DEVICE inline int StepsAtOnce(const MarchSettings& settings, std::int64
                                        float extinction, double exit)
 {
   const int most = settings.adaptive ? 4 : 1;
-  constexpr double faint = 0.02; // optical depth that needs no finer sampling
   int steps = 1;
   while (steps < most) {
     const int doubled = 2 * steps;
     const double length = doubled * settings.step * settings.unitsPerT;
     if (k % doubled != 0 || static_cast<double>(k + doubled) * settings.step > exit ||
-        extinction * length > faint) {
+        extinction * length > FaintDepth) {
       break;
     }
     steps = doubled;

@@ -20,7 +20,9 @@ inr::Image TwiceAsFine(const inr::ModelPointer& model, const Look& look)
   const inr::ModelPointer fine = Scaled(model, model->volume.dims * std::int64_t{2});
   inr::Renderer renderer(fine, Cached());
   renderer.setTransferFunction(look.function);
-  inr::Frame frame = View(fine->volume);
+  inr::Frame frame = View(model->volume);
+  frame.worldToIndex = glm::dmat4(2.0); // voxel i becomes the point between 2 i and 2 i + 1
+  frame.worldToIndex[3] = glm::dvec4(0.5, 0.5, 0.5, 1.0);
   frame.sampleDistance *= 2;
   frame.levelOfDetailScale = 0;
   return Median(renderer, frame, 1).picture;
