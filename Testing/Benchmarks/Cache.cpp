@@ -14,20 +14,6 @@
 
 namespace {
 
-/// The picture out of voxels of half the size, at the same places along the same rays.
-inr::Image TwiceAsFine(const inr::ModelPointer& model, const Look& look)
-{
-  const inr::ModelPointer fine = Scaled(model, model->volume.dims * std::int64_t{2});
-  inr::Renderer renderer(fine, Cached());
-  renderer.setTransferFunction(look.function);
-  inr::Frame frame = View(model->volume);
-  frame.worldToIndex = glm::dmat4(2.0); // voxel i becomes the point between 2 i and 2 i + 1
-  frame.worldToIndex[3] = glm::dvec4(0.5, 0.5, 0.5, 1.0);
-  frame.sampleDistance *= 2;
-  frame.levelOfDetailScale = 0;
-  return Median(renderer, frame, 1).picture;
-}
-
 /// Warm frames against the network alone and against one dense grid.
 void CompareWithUncached(const inr::ModelPointer& model, const Look& look, const std::string& name)
 {
@@ -54,8 +40,6 @@ void CompareWithUncached(const inr::ModelPointer& model, const Look& look, const
   const Timed exact = Median(cached, frame, 5);
   Report("interpolation error" + where, inr::ImagePsnr(exact.picture, uncached.picture), "dB",
          "higher", Target(40));
-  Report("interpolation error at twice the resolution" + where,
-         inr::ImagePsnr(TwiceAsFine(model, look), uncached.picture), "dB", "higher");
   options = Cached();
   options.cache.precision = inr::CachePrecision::Float32;
   Timed floats;
