@@ -9,14 +9,6 @@ namespace inr {
 
 namespace {
 
-void Add(const FrameStatistics& part, FrameStatistics& sum)
-{
-  sum.rays += part.rays;
-  sum.samples += part.samples;
-  sum.missed += part.missed;
-  sum.clamped += part.clamped;
-}
-
 void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
                 const PassOutput& output)
 {
@@ -54,7 +46,7 @@ FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& 
   });
   FrameStatistics sum;
   for (std::size_t k = 0; k < lists.size(); ++k) {
-    Add(statistics[k], sum);
+    sum.add(statistics[k]);
     requests.add(lists[k]);
   }
   return sum;
@@ -115,7 +107,7 @@ void CompletePass::advance(const Arena& arena, const std::function<bool()>& keep
     lists[index] = std::move(marcher.requests());
   });
   for (std::size_t k = 0; k < lists.size(); ++k) {
-    Add(statistics[k], this->Statistics);
+    this->Statistics.add(statistics[k]);
     requests.add(lists[k]);
   }
   this->Alone = false;

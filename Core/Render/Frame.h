@@ -106,6 +106,15 @@ struct FrameStatistics
   std::int64_t paths = 0;   ///< of path tracing: through each pixel, in the picture shown
   double seconds = 0;       ///< wall time
   double marchSeconds = 0;  ///< of these, without what was loaded into the cache in between
+
+  /// Adds what was counted in another part of the picture; times are not counts.
+  void add(const FrameStatistics& part)
+  {
+    this->rays += part.rays;
+    this->samples += part.samples;
+    this->missed += part.missed;
+    this->clamped += part.clamped;
+  }
 };
 
 } // namespace inr

@@ -11,14 +11,6 @@ namespace inr {
 
 namespace {
 
-void Add(const FrameStatistics& part, FrameStatistics& sum)
-{
-  sum.rays += part.rays;
-  sum.samples += part.samples;
-  sum.missed += part.missed;
-  sum.clamped += part.clamped;
-}
-
 /// The mean depth of the collisions where at least half of the paths had one, else 1. `collided` is
 /// the part that had, and `depth` a mean over all paths.
 float DepthOf(float collided, float depth) { return collided >= 0.5f ? depth / collided : 1.0f; }
@@ -59,13 +51,13 @@ void PathPicture::finishTiles(const TracedTiles& traced)
   std::size_t pending = 0;
   for (std::size_t k = 0; k < traced.tiles.size(); ++k) {
     const bool finished = traced.tiles[k].missed == 0;
-    Add(traced.tiles[k], finished ? this->Finished : unfinished);
+    (finished ? this->Finished : unfinished).add(traced.tiles[k]);
     if (!finished) {
       this->Pending[pending++] = this->Pending[k];
     }
   }
   this->Pending.resize(pending);
-  Add(this->Finished, unfinished);
+  unfinished.add(this->Finished);
   unfinished.marchSeconds = this->Latest.marchSeconds;
   this->Latest = unfinished;
 }

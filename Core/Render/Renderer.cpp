@@ -19,9 +19,7 @@ FrameStatistics Sum(const std::vector<FrameStatistics>& tiles)
 {
   FrameStatistics sum;
   for (const FrameStatistics& tile : tiles) {
-    sum.rays += tile.rays;
-    sum.samples += tile.samples;
-    sum.clamped += tile.clamped;
+    sum.add(tile);
   }
   return sum;
 }
@@ -57,7 +55,7 @@ struct Renderer::Implementation
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
   std::optional<CachedRenderer> Cached; ///< made by the first frame that needs it
-  std::optional<PathPicture> Paths; ///< while paths are traced
+  std::optional<PathPicture> Paths;     ///< while paths are traced
   std::int64_t MajorantBuilds = 0;
 };
 
