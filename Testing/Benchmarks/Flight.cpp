@@ -61,7 +61,7 @@ void Fly(const inr::ModelPointer& model, const std::string& name, int frames)
 {
   const inr::ModelPointer large = Scaled(model, glm::i64vec3(4096));
   inr::RendererOptions options = Cached();
-  options.cache.bytes = std::int64_t{64} << 20; // full before the first quarter is over
+  options.cache.bytes = std::int64_t{64} << 20; // fills on the way
   inr::Renderer renderer(large, options);
   renderer.setTransferFunction(Looks(large->volume)[1].function);
   double warm = 0;
