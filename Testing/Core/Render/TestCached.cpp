@@ -14,20 +14,10 @@ namespace {
 
 TEST(Cached, EqualsTheMarcherOverTheDenseVoxels)
 {
-  for (const glm::i64vec3& dims : {glm::i64vec3(33, 46, 21), glm::i64vec3(50, 3, 40),
-                                   glm::i64vec3(40, 40, 1), glm::i64vec3(17, 64, 2)}) {
-    const Voxels voxels(dims, Waves);
-    inr::Renderer dense = FieldRenderer(
-        dims, [&](const glm::vec3& u) { return voxels.at(u); }, {}, 2);
-    dense.setTransferFunction(Colours());
-    const inr::Frame frame = Oblique(glm::dvec3(dims));
-    const inr::Image truth = Render(dense, frame);
-    for (const int brickSize : {4, 9, 40}) {
-      inr::Renderer cached =
-          CachedRenderer(dims, Waves, Options(inr::CachePrecision::Float32, brickSize));
-      EXPECT_LT(LargestDifference(Render(cached, frame), truth), 2e-5f) << brickSize;
-    }
-  }
+  CompareWithDense([](const glm::dvec3& dims) { return Oblique(dims); },
+                   [](const inr::Image& cached, const inr::Image& dense) {
+                     EXPECT_LT(LargestDifference(cached, dense), 2e-5f);
+                   });
 }
 
 TEST(Cached, StorageFormatsCostWhatTheyShould)

@@ -98,21 +98,11 @@ TEST(Shading, OfARampIsThatOfItsDirection)
 
 TEST(Shading, ThroughTheCacheEqualsThatOverTheDenseVoxels)
 {
-  for (const glm::i64vec3& dims : {glm::i64vec3(33, 46, 21), glm::i64vec3(50, 3, 40),
-                                   glm::i64vec3(40, 40, 1), glm::i64vec3(17, 64, 2)}) {
-    const Voxels voxels(dims, Waves);
-    inr::Renderer dense = FieldRenderer(
-        dims, [&](const glm::vec3& u) { return voxels.at(u); }, {}, 2);
-    dense.setTransferFunction(Colours());
-    const inr::Frame frame = Lit(glm::dvec3(dims));
-    const inr::Image truth = Render(dense, frame);
-    for (const int brickSize : {4, 9, 40}) {
-      inr::Renderer cached =
-          CachedRenderer(dims, Waves, Options(inr::CachePrecision::Float32, brickSize));
-      EXPECT_GT(inr::ImagePsnr(Render(cached, frame), truth), 75) << brickSize;
-      EXPECT_LT(LargestDifference(Render(cached, frame), truth), 2e-2f) << brickSize;
-    }
-  }
+  CompareWithDense([](const glm::dvec3& dims) { return Lit(dims); },
+                   [](const inr::Image& cached, const inr::Image& dense) {
+                     EXPECT_GT(inr::ImagePsnr(cached, dense), 75);
+                     EXPECT_LT(LargestDifference(cached, dense), 2e-2f);
+                   });
 }
 
 TEST(Shading, WithoutLightButAmbientIsNone)

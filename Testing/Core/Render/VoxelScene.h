@@ -5,6 +5,8 @@
 
 #include "Testing/Core/Render/Scene.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -104,4 +106,26 @@ inline inr::CacheOptions Options(inr::CachePrecision precision, int brickSize)
   options.brickSize = brickSize;
   options.bytes = 64 << 20;
   return options;
+}
+
+/// Calls compare(through the cache, over the dense voxels) with pictures of volumes of odd shapes
+/// in bricks of several sizes; frameOf(dims) is what to look at.
+template <typename FrameOf, typename Compare>
+void CompareWithDense(const FrameOf& frameOf, const Compare& compare)
+{
+  for (const glm::i64vec3& dims : {glm::i64vec3(33, 46, 21), glm::i64vec3(50, 3, 40),
+                                   glm::i64vec3(40, 40, 1), glm::i64vec3(17, 64, 2)}) {
+    const Voxels voxels(dims, Waves);
+    inr::Renderer dense = FieldRenderer(
+        dims, [&](const glm::vec3& u) { return voxels.at(u); }, {}, 2);
+    dense.setTransferFunction(Colours());
+    const inr::Frame frame = frameOf(glm::dvec3(dims));
+    const inr::Image truth = Render(dense, frame);
+    for (const int brickSize : {4, 9, 40}) {
+      SCOPED_TRACE(brickSize);
+      inr::Renderer cached =
+          CachedRenderer(dims, Waves, Options(inr::CachePrecision::Float32, brickSize));
+      compare(Render(cached, frame), truth);
+    }
+  }
 }
