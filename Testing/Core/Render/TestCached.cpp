@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 
 namespace {
@@ -123,11 +124,15 @@ TEST(Cached, CoarseLevelsStayInRegister)
 TEST(Cached, ALargerVolumeTakesNoMoreSamples)
 {
   // The same view of the same field; levels of detail follow the pixels.
+  // All have the same macro-cells, in units of the volume: few voxels of the smallest, many of the
+  // largest.
+  inr::MacroCells cells = inr::MakeMacroCells(glm::i64vec3(100), 8);
+  std::fill(cells.ranges.begin(), cells.ranges.end(), inr::ValueRange{0.0f, 1.0f});
   std::int64_t smallest = 0;
   for (const std::int64_t size : {100, 1600, 25600}) {
     const glm::dvec3 dims(static_cast<double>(size));
-    inr::Renderer renderer =
-        CachedRenderer(glm::i64vec3(size), Waves, Options(inr::CachePrecision::Bits16, 40));
+    inr::Renderer renderer = FieldRenderer(glm::i64vec3(size), Waves, cells, 2, true);
+    renderer.setTransferFunction(Colours());
     inr::Frame frame = Oblique(dims);
     frame.levelOfDetailScale = 1;
     frame.unitDistance = dims.x / 100;
