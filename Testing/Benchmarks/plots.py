@@ -38,7 +38,7 @@ for column, (scene, kinds) in enumerate(sorted(curves.items())):
         if column == 0:
             plot.set_ylabel(label)
     axes[0][column].set_title(scene, fontsize=9)
-    axes[1][column].set_xlabel("frame of at most 0.1 s")
+    axes[1][column].set_xlabel("frame (loading ends at 0.1 s)")
 axes[1][0].legend(fontsize=8)
 figure.tight_layout()
 figure.savefig(folder / "protocol.png", dpi=100)
