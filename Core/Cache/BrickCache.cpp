@@ -11,16 +11,20 @@
 namespace inr {
 
 namespace {
-constexpr std::int64_t FewestBricks = 8;
+constexpr auto Word = static_cast<std::int64_t>(sizeof(std::uint64_t));
 }
 
-std::int64_t BrickCache::bytesFor(const Hierarchy& hierarchy, CachePrecision precision,
-                                  std::int64_t bricks)
+std::int64_t BrickCache::bytesPerBrick(const Hierarchy& hierarchy, CachePrecision precision)
 {
-  const auto perSlot =
-      static_cast<std::int64_t>(sizeof(BrickKey) + 2 * sizeof(std::uint64_t)); // use, candidate
-  return BrickPool::bytesFor(precision, hierarchy.voxelsPerBrick(), bricks) +
-         PageTable::bytesFor(bricks) + bricks * perSlot;
+  return BrickPool::bytesPerSlot(precision, hierarchy.voxelsPerBrick()) + PageTable::bytesFor(1) -
+         PageTable::bytesFor(0) + 2 * Word; // owner, last use
+}
+
+std::int64_t BrickCache::bytesFor(std::int64_t bricks) const
+{
+  // Candidates keep the memory that they have once had.
+  return PageTable::bytesFor(0) + this->Capacity * Word +
+         bricks * bytesPerBrick(this->Levels, this->precision());
 }
 
 std::int64_t BrickCache::capacityFor(const Hierarchy& hierarchy, CachePrecision precision,
@@ -33,57 +37,38 @@ std::int64_t BrickCache::capacityFor(const Hierarchy& hierarchy, CachePrecision 
     const glm::i64vec3& bricks = hierarchy.bricks(level);
     most += bricks.x * bricks.y * bricks.z;
   }
-  std::int64_t low = 0;
-  std::int64_t high = std::min(std::max(most, FewestBricks), enough);
-  while (low < high) {
-    const std::int64_t middle = (low + high + 1) / 2;
-    if (bytesFor(hierarchy, precision, middle) <= bytes) {
-      low = middle;
-    } else {
-      high = middle - 1;
-    }
-  }
-  if (low < FewestBricks) {
+  const std::int64_t each = bytesPerBrick(hierarchy, precision) + Word;
+  const std::int64_t capacity = (bytes - PageTable::bytesFor(0)) / each;
+  if (capacity < FewestBricks) {
     throw Error(ErrorCode::InvalidArgument,
                 "a cache of " + std::to_string(bytes) + " bytes does not hold " +
                     std::to_string(FewestBricks) + " bricks; it needs at least " +
-                    std::to_string(bytesFor(hierarchy, precision, FewestBricks)) +
+                    std::to_string(PageTable::bytesFor(0) + FewestBricks * each) +
                     ", or smaller bricks");
   }
-  return low;
+  return std::min({capacity, std::max(most, FewestBricks), enough});
 }
 
 BrickCache::BrickCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes)
-    : Levels(hierarchy),
-      Pool(precision, hierarchy.voxelsPerBrick(), capacityFor(hierarchy, precision, bytes)),
-      Table(this->Pool.slots()), Owners(static_cast<std::size_t>(this->Pool.slots()), NoBrick),
-      LastUse(new std::atomic<std::uint64_t>[static_cast<std::size_t>(this->Pool.slots())])
+    : Levels(hierarchy), Capacity(capacityFor(hierarchy, precision, bytes)),
+      Pool(precision, hierarchy.voxelsPerBrick(), this->Capacity), Table(this->Capacity),
+      Owners(this->Capacity), LastUse(this->Capacity)
 {
-  for (std::int64_t slot = 0; slot < this->capacity(); ++slot) {
-    this->LastUse[static_cast<std::size_t>(slot)] = 0;
-  }
-  this->Candidates.reserve(static_cast<std::size_t>(this->capacity())); // within the budget
-}
-
-std::int64_t BrickCache::bytes() const
-{
-  return bytesFor(this->Levels, this->precision(), this->capacity());
+  this->Candidates.reserve(static_cast<std::size_t>(this->Capacity)); // within the budget
 }
 
 std::int64_t BrickCache::usedInFrame() const
 {
   const auto isUsed = [this](const std::atomic<std::uint64_t>& use) { return use >= this->Frame; };
-  return std::count_if(this->LastUse.get(), this->LastUse.get() + this->capacity(), isUsed);
+  return std::count_if(this->LastUse.data(), this->LastUse.data() + this->mapped(), isUsed);
 }
-
-void BrickCache::beginFrame() { ++this->Frame; }
 
 // The first few per cent of all that can be evicted, from a sample drawn by a fixed rule: sorting
 // all of them would take longer than a frame may wait.
-std::uint64_t BrickCache::lastCandidate() const
+std::uint64_t BrickCache::lastCandidate(std::uint64_t frame) const
 {
   constexpr std::int64_t samples = 2048;
-  const std::int64_t stride = this->capacity() / samples;
+  const std::int64_t stride = this->mapped() / samples;
   if (stride < 2) {
     return ~std::uint64_t{0};
   }
@@ -93,7 +78,7 @@ std::uint64_t BrickCache::lastCandidate() const
     const std::uint64_t within = MixBits(static_cast<std::uint64_t>(k));
     const auto offset = static_cast<std::int64_t>(within % static_cast<std::uint64_t>(stride));
     const auto slot = static_cast<std::int32_t>(k * stride + offset);
-    if (this->lastUse(slot) < this->Frame) {
+    if (this->lastUse(slot) < frame) {
       sample.push_back(this->candidate(slot));
     }
   }
@@ -107,61 +92,119 @@ std::uint64_t BrickCache::lastCandidate() const
   return *last;
 }
 
-void BrickCache::findCandidates()
+void BrickCache::findCandidates(std::uint64_t frame)
 {
-  const std::uint64_t last = this->lastCandidate();
-  const auto slots = static_cast<std::int32_t>(this->capacity());
+  const std::uint64_t last = this->lastCandidate(frame);
+  const auto slots = static_cast<std::int32_t>(this->mapped());
   for (std::int32_t slot = 0; slot < slots; ++slot) {
     const std::uint64_t candidate = this->candidate(slot);
-    if (candidate <= last && this->lastUse(slot) < this->Frame) {
+    if (candidate <= last && this->lastUse(slot) < frame) {
       this->Candidates.push_back(candidate);
     }
   }
   std::sort(this->Candidates.begin(), this->Candidates.end(), std::greater<>());
 }
 
-std::int32_t BrickCache::freeSlot()
+/// The slot to be evicted next, whose candidate is then the list's last; -1 when there is none.
+std::int32_t BrickCache::oldest(std::uint64_t frame)
 {
   constexpr std::uint64_t slotMask = (std::uint64_t{1} << SlotBits) - 1;
-  while (this->ExhaustedIn != this->Frame) {
+  while (this->NoneBefore < frame) {
     while (!this->Candidates.empty()) {
       const std::uint64_t candidate = this->Candidates.back();
-      this->Candidates.pop_back();
       const auto slot = static_cast<std::int32_t>(candidate & slotMask);
-      if (this->candidate(slot) == candidate) { // not used since
-        return slot;
+      if (slot < this->mapped() && this->candidate(slot) == candidate) { // not used since
+        return this->lastUse(slot) < frame ? slot : -1;
       }
+      this->Candidates.pop_back();
     }
-    this->findCandidates();
+    this->findCandidates(frame);
     if (this->Candidates.empty()) {
-      this->ExhaustedIn = this->Frame;
+      this->NoneBefore = frame;
     }
   }
   return -1;
 }
 
-bool BrickCache::insert(BrickKey key, const float* values)
+std::uint64_t BrickCache::oldestUse(std::uint64_t frame)
 {
-  const std::int32_t slot = this->freeSlot();
-  if (slot < 0) {
-    return false;
-  }
-  BrickKey& owner = this->Owners[static_cast<std::size_t>(slot)];
-  if (owner != NoBrick) {
-    this->Table.unmap(owner);
-    --this->Mapped;
-  }
-  owner = key;
+  const std::int32_t slot = this->oldest(frame);
+  return slot < 0 ? Pinned : this->lastUse(slot);
+}
+
+void BrickCache::unmap(std::int32_t slot)
+{
+  this->Candidates.pop_back();
+  this->LostUse = std::max(this->LostUse, this->lastUse(slot));
+  this->Table.unmap(this->Owners[slot]);
+}
+
+void BrickCache::fill(std::int32_t slot, BrickKey key, const float* values)
+{
+  this->Owners[slot] = key;
   this->Pool.store(slot, values);
   this->Table.map(key, slot);
-  this->LastUse[static_cast<std::size_t>(slot)] = this->Frame;
-  ++this->Mapped;
+  this->LastUse[slot].store(this->Frame, std::memory_order_relaxed);
+  this->NoneBefore = std::min(this->NoneBefore, this->Frame);
+}
+
+bool BrickCache::insert(BrickKey key, const float* values)
+{
+  if (this->mapped() == this->Capacity) {
+    return this->replace(key, values);
+  }
+  const auto slot = static_cast<std::int32_t>(this->mapped());
+  this->resize(slot + 1);
+  this->fill(slot, key, values);
   return true;
 }
 
-void BrickCache::pin(BrickKey key)
+bool BrickCache::replace(BrickKey key, const float* values)
 {
-  this->LastUse[static_cast<std::size_t>(this->find(key))] = Pinned;
+  const std::int32_t slot = this->oldest(this->Frame);
+  if (slot >= 0) {
+    this->unmap(slot);
+    this->fill(slot, key, values);
+  }
+  return slot >= 0;
 }
+
+void BrickCache::evict(std::uint64_t frame)
+{
+  const std::int32_t slot = this->oldest(frame);
+  const auto last = static_cast<std::int32_t>(this->mapped() - 1);
+  this->unmap(slot);
+  if (slot != last) {
+    this->move(last, slot);
+  }
+  this->resize(last);
+}
+
+void BrickCache::move(std::int32_t from, std::int32_t to)
+{
+  const std::uint64_t before = this->candidate(from);
+  this->Pool.copy(from, to);
+  this->Owners[to] = this->Owners[from];
+  this->LastUse[to].store(this->lastUse(from), std::memory_order_relaxed);
+  this->Table.move(this->Owners[to], to);
+  const auto place = [this](std::uint64_t candidate) {
+    return std::lower_bound(this->Candidates.begin(), this->Candidates.end(), candidate,
+                            std::greater<>());
+  };
+  const auto known = place(before);
+  if (known != this->Candidates.end() && *known == before) {
+    this->Candidates.erase(known);
+    this->Candidates.insert(place(this->candidate(to)), this->candidate(to));
+  }
+}
+
+void BrickCache::resize(std::int64_t slots)
+{
+  this->Pool.resize(slots);
+  this->Owners.resize(slots);
+  this->LastUse.resize(slots);
+}
+
+void BrickCache::pin(BrickKey key) { this->LastUse[this->find(key)] = Pinned; }
 
 } // namespace inr

@@ -15,19 +15,24 @@ namespace inr {
 /// makes room for the next.
 ///
 /// Time runs in frames. During a frame any number of threads may find, view and touch; between
-/// frames one thread changes what is mapped.
+/// frames one thread changes what is mapped. Slots that are in use are the first ones, so that
+/// memory follows the number of bricks: a brick may change its slot when another is evicted.
 class BrickCache
 {
 public:
-  /// Everything is allocated within `bytes`. Throws Error(InvalidArgument) when that does not hold
-  /// 8 bricks and their tables.
+  static constexpr std::int64_t FewestBricks = 8; ///< that a cache can do its work with
+
+  /// Never takes more than `bytes`. Throws Error(InvalidArgument) when that does not hold
+  /// FewestBricks and their tables.
   BrickCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes);
 
   const Hierarchy& hierarchy() const { return this->Levels; }
   CachePrecision precision() const { return this->Pool.precision(); }
-  std::int64_t capacity() const { return this->Pool.slots(); } ///< in bricks
-  std::int64_t mapped() const { return this->Mapped; }
-  std::int64_t bytes() const; ///< of all that is allocated
+  std::int64_t capacity() const { return this->Capacity; } ///< in bricks
+  std::int64_t mapped() const { return this->Owners.size(); }
+  /// What it takes, at most, while it holds so many bricks.
+  std::int64_t bytesFor(std::int64_t bricks) const;
+  std::int64_t bytes() const { return this->bytesFor(this->mapped()); }
 
   /// Slot of a brick, or PageTable::Unmapped.
   std::int32_t find(BrickKey key) const { return this->Table.find(key); }
@@ -35,7 +40,7 @@ public:
   /// Marks a brick as used in this frame.
   void touch(std::int32_t slot) const
   {
-    std::atomic<std::uint64_t>& used = this->LastUse[static_cast<std::size_t>(slot)];
+    std::atomic<std::uint64_t>& used = this->LastUse[slot];
     // Most touches repeat an earlier one, and reading leaves the line with every core.
     if (used.load(std::memory_order_relaxed) < this->Frame) { // a pinned one is for ever later
       used.store(this->Frame, std::memory_order_relaxed);
@@ -45,22 +50,34 @@ public:
   /// Bricks touched or inserted since beginFrame, and pinned ones. Looks at all slots.
   std::int64_t usedInFrame() const;
 
-  /// Bricks touched or inserted from here on are not evicted until the next call.
-  void beginFrame();
-  /// Stores and maps an unmapped brick. Evicts the least recently used one that is neither of the
-  /// current frame nor pinned; false, and nothing has changed, when there is none.
+  /// Bricks touched or inserted from here on are not evicted until the next call. `frame`: later
+  /// than all before, and 1.
+  void beginFrame(std::uint64_t frame) { this->Frame = frame; }
+  std::uint64_t frame() const { return this->Frame; }
+  /// Stores and maps an unmapped brick. Without room, evicts the least recently used one that is
+  /// neither of the current frame nor pinned; false, and nothing has changed, when there is none.
   bool insert(BrickKey key, const float* values);
+  /// The same in the place of another one even where there is room.
+  bool replace(BrickKey key, const float* values);
   /// Keeps a mapped brick for good.
   void pin(BrickKey key);
 
+  static constexpr std::uint64_t Pinned = ~std::uint64_t{0}; ///< later than any frame
+  /// Last use of the brick that is evicted next, of those that were last used before `frame`;
+  /// Pinned when there is none.
+  std::uint64_t oldestUse(std::uint64_t frame);
+  /// Evicts that brick, which must exist, and gives its memory back.
+  void evict(std::uint64_t frame);
+  /// The latest use of all bricks that were ever evicted, 0 when none was.
+  std::uint64_t lostUse() const { return this->LostUse; }
+
 private:
-  static std::int64_t bytesFor(const Hierarchy& hierarchy, CachePrecision precision,
-                               std::int64_t bricks);
+  static std::int64_t bytesPerBrick(const Hierarchy& hierarchy, CachePrecision precision);
   static std::int64_t capacityFor(const Hierarchy& hierarchy, CachePrecision precision,
                                   std::int64_t bytes);
   std::uint64_t lastUse(std::int32_t slot) const
   {
-    return this->LastUse[static_cast<std::size_t>(slot)].load(std::memory_order_relaxed);
+    return this->LastUse[slot].load(std::memory_order_relaxed);
   }
   /// A slot in the order in which slots are evicted: by last use, then by number. A pinned one's
   /// use, with its upper bits gone, is still later than any frame.
@@ -68,27 +85,29 @@ private:
   {
     return this->lastUse(slot) << SlotBits | static_cast<std::uint64_t>(slot);
   }
-  std::uint64_t lastCandidate() const;
-  std::int32_t freeSlot();
-  void findCandidates();
+  std::uint64_t lastCandidate(std::uint64_t frame) const;
+  void findCandidates(std::uint64_t frame);
+  std::int32_t oldest(std::uint64_t frame);
+  void unmap(std::int32_t slot);
+  void fill(std::int32_t slot, BrickKey key, const float* values);
+  void move(std::int32_t from, std::int32_t to);
+  void resize(std::int64_t slots);
 
-  static constexpr std::uint64_t Pinned = ~std::uint64_t{0};
-  static constexpr BrickKey NoBrick = ~BrickKey{0};
   static constexpr int SlotBits = 25; ///< leaves frames for 17 years at a thousand a second
 
   Hierarchy Levels;
+  std::int64_t Capacity;
   BrickPool Pool;
   PageTable Table;
   std::uint64_t Frame = 1;
-  std::int64_t Mapped = 0;
-  std::vector<BrickKey> Owners; ///< of each slot
-  /// Frame in which each slot was last used, 0 = empty.
-  std::unique_ptr<std::atomic<std::uint64_t>[]> LastUse;
+  std::uint64_t LostUse = 0;
+  ReservedArray<BrickKey> Owners;                    ///< of each slot
+  ReservedArray<std::atomic<std::uint64_t>> LastUse; ///< frame in which each slot was last used
   /// The first slots in that order, the very first at the end. Uses only get later, so one not used
   /// since it came in here is still before all others, and all slots are looked at only when the
   /// list has run out.
   std::vector<std::uint64_t> Candidates;
-  std::uint64_t ExhaustedIn = 0; ///< frame in which nothing can be evicted any more
+  std::uint64_t NoneBefore = 0; ///< a frame before which no slot was last used
 };
 
 } // namespace inr

@@ -29,8 +29,8 @@ void LowerPriority()
 } // namespace
 
 BrickLoader::BrickLoader(std::shared_ptr<const BrickSource> source, int threads, std::int64_t room)
-    : Source(std::move(source)), Layers(this->Source->hierarchy().brickDims().z), Room(room),
-      ThreadCount(threads)
+    : Source(std::move(source)), Layers(this->Source->hierarchy().brickDims().z),
+      ThreadCount(threads), Room(room)
 {}
 
 BrickLoader::~BrickLoader()
@@ -48,6 +48,36 @@ BrickLoader::~BrickLoader()
 std::int64_t BrickLoader::bytesFor(const Hierarchy& hierarchy, std::int64_t room)
 {
   return room * hierarchy.voxelsPerBrick() * static_cast<std::int64_t>(sizeof(float));
+}
+
+std::int64_t BrickLoader::begun()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return static_cast<std::int64_t>(this->InWork.size());
+}
+
+std::int64_t BrickLoader::held()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->holding();
+}
+
+void BrickLoader::allow(std::int64_t room)
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Room = std::max(this->Room, room);
+  }
+  this->Wake.notify_all();
+}
+
+void BrickLoader::giveUp()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Wanted.clear();
+  this->Finished.clear();
+  this->Spare.clear();
+  this->Room = this->holding();
 }
 
 void BrickLoader::start()
@@ -94,8 +124,7 @@ BrickLoader::Brick* BrickLoader::claim()
       return brick.get();
     }
   }
-  const std::size_t held = this->InWork.size() + this->Finished.size() + this->HandingOver;
-  if (this->Wanted.empty() || static_cast<std::int64_t>(held) >= this->Room) {
+  if (this->Wanted.empty() || this->holding() >= this->Room) {
     return nullptr;
   }
   auto brick = std::make_unique<Brick>();
@@ -136,6 +165,11 @@ void BrickLoader::finish(Brick& brick)
   }
   this->InWork.erase(place);
   this->Ready.notify_all();
+}
+
+std::int64_t BrickLoader::holding() const
+{
+  return static_cast<std::int64_t>(this->InWork.size() + this->Finished.size() + this->HandingOver);
 }
 
 bool BrickLoader::isAtHand(BrickKey key) const

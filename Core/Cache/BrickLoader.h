@@ -23,15 +23,22 @@ namespace inr {
 class BrickLoader
 {
 public:
-  /// At most `room` bricks, at least 1, are begun and not yet handed over. The threads start with
-  /// the first request; where none can be started, loadFor alone loads.
+  /// At most `room` bricks are begun and not yet handed over. The threads start with the first
+  /// request; where none can be started, loadFor alone loads.
   BrickLoader(std::shared_ptr<const BrickSource> source, int threads, std::int64_t room);
   ~BrickLoader();
   BrickLoader(const BrickLoader&) = delete;
   BrickLoader& operator=(const BrickLoader&) = delete;
 
   static std::int64_t bytesFor(const Hierarchy& hierarchy, std::int64_t room);
-  std::int64_t bytes() const { return bytesFor(this->Source->hierarchy(), this->Room); }
+
+  std::int64_t begun(); ///< bricks that are not finished
+  std::int64_t held();  ///< and those that were not handed over
+  /// Makes room for more.
+  void allow(std::int64_t room);
+  /// Forgets what is wanted and what is finished and gives back what that took: there is only room
+  /// for what is begun.
+  void giveUp();
 
   /// These bricks, in this order, in place of what earlier requests wanted and nobody has begun.
   void request(const std::vector<BrickKey>& keys);
@@ -64,10 +71,10 @@ private:
   void inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock);
   void finish(Brick& brick);
   bool isAtHand(BrickKey key) const;
+  std::int64_t holding() const;
 
   const std::shared_ptr<const BrickSource> Source;
   const std::int64_t Layers; ///< of a brick
-  const std::int64_t Room;
   const int ThreadCount;
 
   std::mutex Mutex;              ///< guards what follows, except the threads
@@ -75,6 +82,7 @@ private:
   std::condition_variable Ready; ///< a brick is finished
   bool Paused = true;
   bool Ended = false;
+  std::int64_t Room;
   std::deque<BrickKey> Wanted;
   std::vector<std::unique_ptr<Brick>> InWork;
   std::vector<std::unique_ptr<Brick>> Finished;

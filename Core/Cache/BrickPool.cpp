@@ -62,24 +62,32 @@ void Quantise(const float* values, std::int64_t count, float low, float step, un
 
 } // namespace
 
-BrickPool::BrickPool(CachePrecision precision, std::int64_t voxelsPerBrick, std::int64_t slots)
+BrickPool::BrickPool(CachePrecision precision, std::int64_t voxelsPerBrick, std::int64_t room)
     : Precision(precision), VoxelsPerBrick(voxelsPerBrick),
       BytesPerBrick(voxelsPerBrick * BytesPerVoxel(precision)),
-      // Not value-initialised: that would touch every page.
-      Voxels(new unsigned char[static_cast<std::size_t>(slots * this->BytesPerBrick + RoomBehind)]),
-      Scales(static_cast<std::size_t>(slots))
+      Voxels(room * this->BytesPerBrick + RoomBehind), Scales(room)
 {}
 
-std::int64_t BrickPool::bytesFor(CachePrecision precision, std::int64_t voxelsPerBrick,
-                                 std::int64_t slots)
+std::int64_t BrickPool::bytesPerSlot(CachePrecision precision, std::int64_t voxelsPerBrick)
 {
-  const auto scale = static_cast<std::int64_t>(sizeof(Scale));
-  return slots * (voxelsPerBrick * BytesPerVoxel(precision) + scale) + RoomBehind;
+  return voxelsPerBrick * BytesPerVoxel(precision) + static_cast<std::int64_t>(sizeof(Scale));
+}
+
+void BrickPool::resize(std::int64_t slots)
+{
+  this->Voxels.resize(slots * this->BytesPerBrick);
+  this->Scales.resize(slots);
+}
+
+void BrickPool::copy(std::int32_t from, std::int32_t to)
+{
+  this->Scales[to] = this->Scales[from];
+  std::memcpy(this->brick(to), this->brick(from), static_cast<std::size_t>(this->BytesPerBrick));
 }
 
 void BrickPool::store(std::int32_t slot, const float* values)
 {
-  Scale& scale = this->Scales[static_cast<std::size_t>(slot)];
+  Scale& scale = this->Scales[slot];
   if (this->Precision == CachePrecision::Float32) {
     scale = {0.0f, 1.0f};
     std::memcpy(this->brick(slot), values, static_cast<std::size_t>(this->BytesPerBrick));
@@ -94,7 +102,7 @@ void BrickPool::store(std::int32_t slot, const float* values)
 
 BrickView BrickPool::view(std::int32_t slot) const
 {
-  const Scale& scale = this->Scales[static_cast<std::size_t>(slot)];
+  const Scale& scale = this->Scales[slot];
   return {this->brick(slot), scale.low, scale.step};
 }
 

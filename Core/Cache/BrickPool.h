@@ -2,10 +2,9 @@
 #pragma once
 
 #include "Core/Cache/CachePrecision.h"
+#include "Core/Cache/ReservedArray.h"
 
 #include <cstdint>
-#include <memory>
-#include <vector>
 
 namespace inr {
 
@@ -17,19 +16,20 @@ struct BrickView
   float step;
 };
 
-/// The memory of a cache: a number of slots, each for the voxels of one brick. Memory is the
-/// operating system's until a slot is stored to.
+/// The memory of a cache: slots, each for the voxels of one brick.
 class BrickPool
 {
 public:
-  BrickPool(CachePrecision precision, std::int64_t voxelsPerBrick, std::int64_t slots);
+  /// Addresses for `room` slots, of which there are none yet.
+  BrickPool(CachePrecision precision, std::int64_t voxelsPerBrick, std::int64_t room);
 
-  /// Bytes that such a pool takes.
-  static std::int64_t bytesFor(CachePrecision precision, std::int64_t voxelsPerBrick,
-                               std::int64_t slots);
+  static std::int64_t bytesPerSlot(CachePrecision precision, std::int64_t voxelsPerBrick);
 
   CachePrecision precision() const { return this->Precision; }
-  std::int64_t slots() const { return static_cast<std::int64_t>(this->Scales.size()); }
+  std::int64_t slots() const { return this->Scales.size(); }
+  /// `slots`: no more than there is room for. The memory of those that go is given back.
+  void resize(std::int64_t slots);
+  void copy(std::int32_t from, std::int32_t to);
   /// `values`: voxelsPerBrick finite ones.
   void store(std::int32_t slot, const float* values);
   BrickView view(std::int32_t slot) const;
@@ -43,14 +43,14 @@ private:
 
   unsigned char* brick(std::int32_t slot) const
   {
-    return this->Voxels.get() + slot * this->BytesPerBrick;
+    return this->Voxels.data() + slot * this->BytesPerBrick;
   }
 
   CachePrecision Precision;
   std::int64_t VoxelsPerBrick;
   std::int64_t BytesPerBrick;
-  std::unique_ptr<unsigned char[]> Voxels; ///< with room behind, for loads of a voxel and the next
-  std::vector<Scale> Scales;
+  ReservedArray<unsigned char> Voxels; ///< with room behind, for loads of a voxel and the next
+  ReservedArray<Scale> Scales;
 };
 
 } // namespace inr

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/BrickStore.h"
 
+#include "Core/Error.h"
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -12,34 +14,67 @@ namespace {
 /// Bricks inferred in one go: they share the threads, and time and abort are looked at in between.
 constexpr std::int64_t BricksAtOnce = 2;
 
-/// Null where there is no room for a queue of more than one brick.
-std::unique_ptr<BrickLoader> MakeLoader(const std::shared_ptr<const BrickSource>& source,
-                                        std::int64_t bytes, int threads)
+/// Bricks in the loader's queue at most, 0 where there is no room for more than one.
+std::int64_t LongestQueueIn(const Hierarchy& hierarchy, std::int64_t bytes)
 {
   constexpr std::int64_t enough = 64;
-  const std::int64_t room = bytes / 8 / BrickLoader::bytesFor(source->hierarchy(), 1);
-  return room > 1 ? std::make_unique<BrickLoader>(source, threads, std::min(room, enough))
-                  : nullptr;
+  const std::int64_t room = bytes / 8 / BrickLoader::bytesFor(hierarchy, 1);
+  return room > 1 ? std::min(room, enough) : 0;
 }
 
 } // namespace
 
-BrickStore::BrickStore(std::shared_ptr<const BrickSource> source, CachePrecision precision,
-                       std::int64_t bytes, bool background, const Arena& arena)
-    : Source(std::move(source)),
-      Loader(background ? MakeLoader(this->Source, bytes, arena.threads()) : nullptr),
+BrickStore::BrickStore(std::shared_ptr<CacheBudget> budget,
+                       std::shared_ptr<const BrickSource> source, CachePrecision precision,
+                       std::int64_t bytes, bool background, int threads)
+    : Budget(std::move(budget)), Source(std::move(source)), Limit(bytes),
+      LongestQueue(background ? LongestQueueIn(this->Source->hierarchy(), bytes) : 0),
+      Loader(this->LongestQueue > 0 ? std::make_unique<BrickLoader>(this->Source, threads, 0)
+                                    : nullptr),
       Cache(this->Source->hierarchy(), precision,
-            bytes - (this->Loader ? this->Loader->bytes() : 0))
+            bytes - BrickLoader::bytesFor(this->Source->hierarchy(), this->LongestQueue))
 {
-  // There is always something to fall back on.
-  const BrickKey coarsest = this->Cache.hierarchy().coarsest();
-  this->load({coarsest}, arena, {});
-  this->Cache.pin(coarsest);
+  const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+  this->Budget->Stores.push_back(this);
+  this->Budget->settle();
 }
 
-std::int64_t BrickStore::bytes() const
+BrickStore::~BrickStore()
 {
-  return this->Cache.bytes() + (this->Loader ? this->Loader->bytes() : 0);
+  {
+    const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+    std::vector<BrickStore*>& stores = this->Budget->Stores;
+    stores.erase(std::find(stores.begin(), stores.end(), this));
+    this->Budget->settle();
+  }
+  this->Budget->TurnEnded.notify_all(); // there may be room now
+}
+
+std::int64_t BrickStore::mapped() const
+{
+  const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+  return this->Cache.mapped();
+}
+
+std::int64_t BrickStore::capacity() const
+{
+  const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+  const std::int64_t room =
+      this->Budget->roomFor(*this) - this->queueBytes() - this->Cache.bytesFor(0);
+  const std::int64_t bricks = room / (this->Cache.bytesFor(1) - this->Cache.bytesFor(0));
+  return std::clamp(bricks, BrickCache::FewestBricks, this->Cache.capacity());
+}
+
+std::uint64_t BrickStore::beginFrame()
+{
+  const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+  this->Cache.beginFrame(++this->Budget->Clock);
+  return this->Cache.frame();
+}
+
+bool BrickStore::hasLostSince(std::uint64_t frame) const
+{
+  return std::max(this->Cache.lostUse(), this->LostQueue) >= frame;
 }
 
 BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Arena& arena,
@@ -59,7 +94,7 @@ BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Are
     this->Source->infer(keys.data() + first, batch, values.data(), arena);
     for (std::int64_t k = 0; k < batch; ++k) {
       const BrickKey key = keys[static_cast<std::size_t>(first + k)];
-      if (!this->Cache.insert(key, values.data() + k * voxels)) {
+      if (!this->insert(key, values.data() + k * voxels)) {
         return {first + k, true};
       }
     }
@@ -69,7 +104,7 @@ BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Are
 
 void BrickStore::loadFor(double seconds, const std::vector<BrickKey>& keys, const Arena& arena)
 {
-  if (!this->Loader) {
+  if (!this->makeQueue(static_cast<std::int64_t>(keys.size()))) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     this->load(keys, arena, [&] {
@@ -88,23 +123,158 @@ void BrickStore::mapLoaded()
 {
   this->Loader->handOver([this](BrickKey key, const float* values) {
     if (this->Cache.find(key) == PageTable::Unmapped) {
-      this->Cache.insert(key, values); // or not, where all is in use
+      this->insert(key, values); // or not, where all is in use
     }
   });
 }
 
-BrickStore::Call::Call(BrickStore& store) : Store(store)
+bool BrickStore::insert(BrickKey key, const float* values)
 {
-  if (this->Store.Loader) {
-    this->Store.Loader->pause();
-    this->Store.mapLoaded();
+  const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+  const std::int64_t mapped = this->Cache.mapped();
+  if (mapped >= this->Cache.capacity()) {
+    return this->Cache.replace(key, values);
+  }
+  const std::int64_t more = this->Cache.bytesFor(mapped + 1) - this->Cache.bytes();
+  while (mapped >= BrickCache::FewestBricks && !this->Budget->fits(more)) {
+    BrickStore* const oldest = this->Budget->oldest(this);
+    if (oldest == nullptr || oldest == this) {
+      return this->Cache.replace(key, values);
+    }
+    oldest->giveOldest();
+  }
+  return this->Cache.insert(key, values);
+}
+
+/// Room for so many bricks in the loader's queue, or as many as there may be; false when there is
+/// none.
+bool BrickStore::makeQueue(std::int64_t bricks)
+{
+  if (!this->Loader) {
+    return false;
+  }
+  const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+  const std::int64_t wanted = std::min(this->LongestQueue, this->Loader->held() + bricks);
+  const std::int64_t more = BrickLoader::bytesFor(this->Source->hierarchy(), 1);
+  while (this->Queue < wanted) {
+    BrickStore* const oldest = this->Budget->fits(more) ? nullptr : this->Budget->oldest(this);
+    if (oldest != nullptr) {
+      oldest->giveOldest();
+    } else if (this->Budget->fits(more)) {
+      ++this->Queue;
+    } else {
+      break;
+    }
+  }
+  this->Loader->allow(this->Queue);
+  return this->Queue > 0;
+}
+
+std::int64_t BrickStore::queueBytes() const
+{
+  return BrickLoader::bytesFor(this->Source->hierarchy(), this->Queue);
+}
+
+std::int64_t BrickStore::least() const { return this->Cache.bytesFor(BrickCache::FewestBricks); }
+
+std::int64_t BrickStore::kept() const
+{
+  return this->queueBytes() +
+         this->Cache.bytesFor(std::max(BrickCache::FewestBricks, this->Cache.mapped()));
+}
+
+std::int64_t BrickStore::cannotGive() const
+{
+  if (this->isInUse()) {
+    return this->kept();
+  }
+  const std::int64_t begun = this->Loader ? this->Loader->begun() : 0;
+  return this->least() + BrickLoader::bytesFor(this->Source->hierarchy(), begun);
+}
+
+bool BrickStore::mayGiveQueue() const
+{
+  return !this->isInUse() && this->Loader && this->Queue > this->Loader->begun();
+}
+
+/// The frame before which bricks may go.
+std::uint64_t BrickStore::evictableBefore() const
+{
+  return this->isInUse() ? this->Cache.frame() : BrickCache::Pinned;
+}
+
+std::uint64_t BrickStore::oldestBrickUse()
+{
+  return this->Cache.mapped() > BrickCache::FewestBricks
+             ? this->Cache.oldestUse(this->evictableBefore())
+             : BrickCache::Pinned;
+}
+
+std::uint64_t BrickStore::oldestUse()
+{
+  const std::uint64_t brick = this->oldestBrickUse();
+  return this->mayGiveQueue() ? std::min(brick, this->Cache.frame()) : brick;
+}
+
+void BrickStore::giveOldest()
+{
+  // The queue is for the latest frame, and what that has used is worth more.
+  if (this->mayGiveQueue() && this->oldestBrickUse() >= this->Cache.frame()) {
+    this->Loader->giveUp();
+    this->Queue = this->Loader->held();
+    this->LostQueue = this->Cache.frame();
+  } else {
+    this->Cache.evict(this->evictableBefore());
+  }
+}
+
+BrickStore::Call::Turn::Turn(BrickStore& store) : Store(store)
+{
+  const auto self = std::this_thread::get_id();
+  CacheBudget& budget = *store.Budget;
+  std::unique_lock<std::mutex> lock(budget.Mutex);
+  const auto isInUse = [](const BrickStore* other) { return other->isInUse(); };
+  const auto isInUseHere = [self](const BrickStore* other) { return other->User == self; };
+  const bool isWithinACall = std::any_of(budget.Stores.begin(), budget.Stores.end(), isInUseHere);
+  if (store.isInUse() && isWithinACall) {
+    throw Error(ErrorCode::Cancelled, "rendering from a cache that is in use by a picture in the "
+                                      "making, which waits for this one");
+  }
+  budget.TurnEnded.wait(lock, [&] {
+    return !store.isInUse() && (isWithinACall || budget.fits(0) ||
+                                std::none_of(budget.Stores.begin(), budget.Stores.end(), isInUse));
+  });
+  store.User = self;
+}
+
+BrickStore::Call::Turn::~Turn()
+{
+  CacheBudget& budget = *this->Store.Budget;
+  {
+    const std::lock_guard<std::mutex> lock(budget.Mutex);
+    this->Store.User = {};
+    budget.settle();
+  }
+  budget.TurnEnded.notify_all();
+}
+
+BrickStore::Call::Call(BrickStore& store, const Arena& arena) : Mine(store)
+{
+  if (store.Loader) {
+    store.Loader->pause();
+    store.mapLoaded();
+  }
+  const BrickKey coarsest = store.Cache.hierarchy().coarsest();
+  if (store.Cache.find(coarsest) == PageTable::Unmapped) {
+    store.load({coarsest}, arena, {});
+    store.Cache.pin(coarsest);
   }
 }
 
 BrickStore::Call::~Call()
 {
-  if (this->Store.Loader) {
-    this->Store.Loader->resume();
+  if (this->Mine.Store.Loader) {
+    this->Mine.Store.Loader->resume();
   }
 }
 

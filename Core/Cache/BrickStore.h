@@ -3,32 +3,44 @@
 
 #include "Core/Cache/BrickCache.h"
 #include "Core/Cache/BrickLoader.h"
+#include "Core/Cache/CacheBudget.h"
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <thread>
 #include <vector>
 
 namespace inr {
 
-/// A cache of bricks with what fills it: threads that wait for bricks, or a loader behind them. The
-/// coarsest level is always there.
+/// A cache of bricks with what fills it: threads that wait for bricks, or a loader behind them.
 ///
-/// For one thread at a time, like the cache's own changes.
+/// Several renderers may have the same one, on several threads. They take turns: all but
+/// capacity(), mapped() and budget() is for who has a Call.
 class BrickStore
 {
 public:
-  /// Cache, tables and the loader's queue stay within `bytes` together. Without `background`, and
-  /// where the queue would need more than an eighth of that, there is no loader, and bricks come in
-  /// only while somebody waits. Throws what BrickCache and inferring throw.
-  BrickStore(std::shared_ptr<const BrickSource> source, CachePrecision precision,
-             std::int64_t bytes, bool background, const Arena& arena);
+  /// Cache, tables and the loader's queue stay within `bytes` together and share them with the
+  /// other stores of `budget`. Without `background`, and where the queue would need more than an
+  /// eighth of that, there is no loader, and bricks come in only while somebody waits. `threads`:
+  /// of the loader. Throws what BrickCache throws.
+  BrickStore(std::shared_ptr<CacheBudget> budget, std::shared_ptr<const BrickSource> source,
+             CachePrecision precision, std::int64_t bytes, bool background, int threads);
+  ~BrickStore();
+  BrickStore(const BrickStore&) = delete;
+  BrickStore& operator=(const BrickStore&) = delete;
 
+  const CacheBudget& budget() const { return *this->Budget; }
   const BrickCache& cache() const { return this->Cache; }
-  std::int64_t bytes() const; ///< of all that is allocated
+  std::int64_t mapped() const; ///< bricks
+  /// Bricks that it may come to hold while the other stores that are in use keep what they have.
+  std::int64_t capacity() const;
 
-  /// See BrickCache.
-  void beginFrame() { this->Cache.beginFrame(); }
+  /// A frame of its own, of which nothing is evicted until the next one begins; its place in time.
+  std::uint64_t beginFrame();
+  std::uint64_t frame() const { return this->Cache.frame(); }
+  /// Whether a brick is lost that was used in that frame or came in for it, or in a later one.
+  bool hasLostSince(std::uint64_t frame) const;
 
   struct Loaded
   {
@@ -43,26 +55,60 @@ public:
   /// when it is not paused.
   void loadFor(double seconds, const std::vector<BrickKey>& keys, const Arena& arena);
 
-  /// The time of one call that renders: the loader is paused, so that a frame has the machine to
-  /// itself, and what it has finished is mapped, in place of nothing that the last frame used.
+  /// The time of one call that renders: others wait, the loader is paused, so that a frame has the
+  /// machine to itself, and what it has finished is mapped, in place of nothing that the last frame
+  /// used. The coarsest level is there.
   class Call
   {
   public:
-    explicit Call(BrickStore& store);
+    /// Throws Error(Cancelled) where waiting would be for ever: to render from a store that is in
+    /// use, in the middle of rendering on the same thread. And what inferring throws.
+    Call(BrickStore& store, const Arena& arena);
     ~Call();
     Call(const Call&) = delete;
     Call& operator=(const Call&) = delete;
 
   private:
-    BrickStore& Store;
+    struct Turn
+    {
+      explicit Turn(BrickStore& store);
+      ~Turn();
+      BrickStore& Store;
+    };
+    Turn Mine;
   };
 
 private:
-  void mapLoaded();
+  friend class CacheBudget;
 
-  std::shared_ptr<const BrickSource> Source;
-  std::unique_ptr<BrickLoader> Loader; ///< may be null
+  void mapLoaded();
+  bool insert(BrickKey key, const float* values);
+  bool makeQueue(std::int64_t bricks);
+
+  // The rest is for who holds the budget's mutex.
+  std::int64_t queueBytes() const;
+  std::int64_t bytes() const { return this->Cache.bytes() + this->queueBytes(); } ///< in use
+  std::int64_t least() const;      ///< that it may need at any time
+  std::int64_t kept() const;       ///< in use, and at least that
+  std::int64_t cannotGive() const; ///< of what is kept
+  bool isInUse() const { return this->User != std::thread::id(); }
+  /// When what it would give back next was last used, BrickCache::Pinned where it has nothing.
+  std::uint64_t oldestUse();
+  /// Gives that back.
+  void giveOldest();
+  std::uint64_t evictableBefore() const;
+  std::uint64_t oldestBrickUse();
+  bool mayGiveQueue() const;
+
+  const std::shared_ptr<CacheBudget> Budget;
+  const std::shared_ptr<const BrickSource> Source;
+  const std::int64_t Limit;
+  const std::int64_t LongestQueue;           ///< bricks
+  const std::unique_ptr<BrickLoader> Loader; ///< may be null
   BrickCache Cache;
+  std::int64_t Queue = 0;      ///< bricks for which the loader has room
+  std::uint64_t LostQueue = 0; ///< the latest frame that lost what the loader had for it
+  std::thread::id User;        ///< of the present call
 };
 
 } // namespace inr

@@ -3,39 +3,26 @@
 
 #include "Core/Random.h"
 
+#include <algorithm>
+
 namespace inr {
 
 namespace {
-
-std::int64_t DirectorySize(std::int64_t pages)
-{
-  std::int64_t size = 16;
-  while (size < 2 * pages) {
-    size *= 2;
-  }
-  return size;
+constexpr std::size_t SmallestDirectory = 16;
 }
-
-} // namespace
 
 // Bricks that share no page are the worst case, and there is room for it.
 PageTable::PageTable(std::int64_t bricks)
-    : Directory(static_cast<std::size_t>(DirectorySize(bricks))),
-      Entries(static_cast<std::size_t>(bricks * EntriesPerPage), Unmapped),
-      Mapped(static_cast<std::size_t>(bricks), 0)
-{
-  // Growing would take more than was asked for.
-  this->Free.reserve(static_cast<std::size_t>(bricks));
-  for (auto page = static_cast<std::int32_t>(bricks); page > 0; --page) {
-    this->Free.push_back(page - 1);
-  }
-}
+    : Directory(SmallestDirectory), Entries(bricks * EntriesPerPage), Keys(bricks), Mapped(bricks)
+{}
 
 std::int64_t PageTable::bytesFor(std::int64_t bricks)
 {
+  constexpr auto bucket = static_cast<std::int64_t>(sizeof(Bucket));
   constexpr auto word = static_cast<std::int64_t>(sizeof(std::int32_t));
-  return DirectorySize(bricks) * static_cast<std::int64_t>(sizeof(Bucket)) +
-         bricks * (EntriesPerPage + 2) * word;
+  constexpr auto key = static_cast<std::int64_t>(sizeof(BrickKey));
+  return static_cast<std::int64_t>(SmallestDirectory) * bucket +
+         bricks * (8 * bucket + (EntriesPerPage + 1) * word + key);
 }
 
 // Both take the key apart where it stands: they are what every brick on a ray's way costs.
@@ -46,14 +33,13 @@ BrickKey PageTable::PageKey(BrickKey key)
   return key & ~all;
 }
 
-std::size_t PageTable::EntryOf(std::int32_t page, BrickKey key)
+std::int64_t PageTable::EntryOf(std::int32_t page, BrickKey key)
 {
   constexpr BrickKey within = (BrickKey{1} << PageBits) - 1;
   const BrickKey x = key & within;
   const BrickKey y = key >> BrickAxisBits & within;
   const BrickKey z = key >> (2 * BrickAxisBits) & within;
-  return static_cast<std::size_t>(page) * EntriesPerPage +
-         (x | y << PageBits | z << (2 * PageBits));
+  return page * EntriesPerPage + static_cast<std::int64_t>(x | y << PageBits | z << (2 * PageBits));
 }
 
 std::size_t PageTable::home(BrickKey page) const
@@ -61,34 +47,27 @@ std::size_t PageTable::home(BrickKey page) const
   return static_cast<std::size_t>(MixBits(page)) & (this->Directory.size() - 1);
 }
 
-std::int32_t PageTable::pageOf(BrickKey page) const
+std::size_t PageTable::bucketOf(BrickKey page) const
 {
   std::size_t bucket = this->home(page);
-  while (this->Directory[bucket].page != page) {
-    if (this->Directory[bucket].page == NoPage) {
-      return -1;
-    }
+  while (this->Directory[bucket].page != page && this->Directory[bucket].page != NoPage) {
     bucket = (bucket + 1) & (this->Directory.size() - 1);
   }
-  return this->Directory[bucket].at;
+  return bucket;
 }
 
-void PageTable::insertPage(BrickKey page, std::int32_t at)
+void PageTable::resizeDirectory(std::size_t size)
 {
-  std::size_t bucket = this->home(page);
-  while (this->Directory[bucket].page != NoPage) {
-    bucket = (bucket + 1) & (this->Directory.size() - 1);
+  std::vector<Bucket> directory(size);
+  this->Directory.swap(directory);
+  for (std::int32_t at = 0; at < this->pages(); ++at) {
+    this->Directory[this->bucketOf(this->Keys[at])] = {this->Keys[at], at};
   }
-  this->Directory[bucket] = {page, at};
 }
 
-void PageTable::erasePage(BrickKey page)
+void PageTable::eraseBucket(std::size_t hole)
 {
   const std::size_t mask = this->Directory.size() - 1;
-  std::size_t hole = this->home(page);
-  while (this->Directory[hole].page != page) {
-    hole = (hole + 1) & mask;
-  }
   // Pages behind the hole move into it unless that would put them before their home.
   for (std::size_t next = (hole + 1) & mask; this->Directory[next].page != NoPage;
        next = (next + 1) & mask) {
@@ -101,27 +80,63 @@ void PageTable::erasePage(BrickKey page)
   this->Directory[hole] = {};
 }
 
+std::int32_t PageTable::makePage(BrickKey page)
+{
+  const auto at = static_cast<std::int32_t>(this->pages());
+  if (2 * (static_cast<std::size_t>(at) + 1) > this->Directory.size()) {
+    this->resizeDirectory(2 * this->Directory.size());
+  }
+  this->Keys.resize(at + 1);
+  this->Mapped.resize(at + 1);
+  this->Entries.resize((at + 1) * EntriesPerPage);
+  this->Keys[at] = page;
+  this->Mapped[at] = 0;
+  std::fill_n(&this->Entries[at * EntriesPerPage], EntriesPerPage, Unmapped);
+  this->Directory[this->bucketOf(page)] = {page, at};
+  return at;
+}
+
+// The last page moves into its place, so that those in use stay together.
+void PageTable::dropPage(std::int32_t at)
+{
+  const auto last = static_cast<std::int32_t>(this->pages() - 1);
+  this->eraseBucket(this->bucketOf(this->Keys[at]));
+  if (at != last) {
+    this->Keys[at] = this->Keys[last];
+    this->Mapped[at] = this->Mapped[last];
+    std::copy_n(&this->Entries[last * EntriesPerPage], EntriesPerPage,
+                &this->Entries[at * EntriesPerPage]);
+    this->Directory[this->bucketOf(this->Keys[at])].at = at;
+  }
+  this->Keys.resize(last);
+  this->Mapped.resize(last);
+  this->Entries.resize(last * EntriesPerPage);
+  const std::size_t size = this->Directory.size();
+  if (size > SmallestDirectory && 8 * static_cast<std::size_t>(last) < size) {
+    this->resizeDirectory(size / 2);
+  }
+}
+
 void PageTable::map(BrickKey key, std::int32_t slot)
 {
   const BrickKey page = PageKey(key);
-  std::int32_t at = this->pageOf(page);
-  if (at < 0) {
-    at = this->Free.back();
-    this->Free.pop_back();
-    this->insertPage(page, at);
-  }
+  const std::int32_t known = this->pageOf(page);
+  const std::int32_t at = known < 0 ? this->makePage(page) : known;
   this->Entries[EntryOf(at, key)] = slot;
-  ++this->Mapped[static_cast<std::size_t>(at)];
+  ++this->Mapped[at];
+}
+
+void PageTable::move(BrickKey key, std::int32_t slot)
+{
+  this->Entries[EntryOf(this->pageOf(PageKey(key)), key)] = slot;
 }
 
 void PageTable::unmap(BrickKey key)
 {
-  const BrickKey page = PageKey(key);
-  const std::int32_t at = this->pageOf(page);
+  const std::int32_t at = this->pageOf(PageKey(key));
   this->Entries[EntryOf(at, key)] = Unmapped;
-  if (--this->Mapped[static_cast<std::size_t>(at)] == 0) {
-    this->erasePage(page);
-    this->Free.push_back(at);
+  if (--this->Mapped[at] == 0) {
+    this->dropPage(at);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Cache/Hierarchy.h"
+#include "Core/Cache/ReservedArray.h"
 
 #include <cstdint>
 #include <vector>
@@ -10,8 +11,8 @@ namespace inr {
 
 /// Where the mapped bricks are: brick -> slot. Virtual: a page covers 4 x 4 x 4 bricks of a level
 /// and exists only while one of them is mapped; a hash table finds the pages. So its memory follows
-/// what is mapped, not the volume. Reading is for any number of threads, changing for one while
-/// nobody reads.
+/// what is mapped at the time, not the volume. Reading is for any number of threads, changing for
+/// one while nobody reads.
 class PageTable
 {
 public:
@@ -19,7 +20,7 @@ public:
 
   /// Room for `bricks` mapped bricks, wherever in the volume they are.
   explicit PageTable(std::int64_t bricks);
-  /// Bytes that such a table takes, all of them from the start.
+  /// Bytes that a table takes at most while so many are mapped.
   static std::int64_t bytesFor(std::int64_t bricks);
 
   std::int32_t find(BrickKey key) const
@@ -29,24 +30,16 @@ public:
   }
   /// `key` must not be mapped yet, and no more bricks than there is room for.
   void map(BrickKey key, std::int32_t slot);
+  /// For a mapped `key` whose brick has moved.
+  void move(BrickKey key, std::int32_t slot);
   /// `key` must be mapped.
   void unmap(BrickKey key);
-  std::int64_t pages() const ///< in use
-  {
-    return static_cast<std::int64_t>(this->Mapped.size() - this->Free.size());
-  }
+  std::int64_t pages() const { return this->Keys.size(); }
 
 private:
   static constexpr int PageBits = 2;
   static constexpr std::int64_t EntriesPerPage = std::int64_t{1} << (3 * PageBits);
   static constexpr BrickKey NoPage = ~BrickKey{0};
-
-  static BrickKey PageKey(BrickKey key);
-  static std::size_t EntryOf(std::int32_t page, BrickKey key);
-  std::size_t home(BrickKey page) const;
-  std::int32_t pageOf(BrickKey page) const;
-  void insertPage(BrickKey page, std::int32_t at);
-  void erasePage(BrickKey page);
 
   struct Bucket
   {
@@ -54,10 +47,21 @@ private:
     std::int32_t at = -1;
   };
 
-  std::vector<Bucket> Directory; ///< open addressing, linear probing, at most half full
-  std::vector<std::int32_t> Entries;
-  std::vector<std::int32_t> Mapped; ///< entries in use, of each page
-  std::vector<std::int32_t> Free;   ///< pages not in use
+  static BrickKey PageKey(BrickKey key);
+  static std::int64_t EntryOf(std::int32_t page, BrickKey key);
+  std::size_t home(BrickKey page) const;
+  /// Of a page's bucket or, where it has none, the one that it would get.
+  std::size_t bucketOf(BrickKey page) const;
+  std::int32_t pageOf(BrickKey page) const { return this->Directory[this->bucketOf(page)].at; }
+  std::int32_t makePage(BrickKey page);
+  void dropPage(std::int32_t at);
+  void eraseBucket(std::size_t hole);
+  void resizeDirectory(std::size_t size);
+
+  std::vector<Bucket> Directory; ///< open addressing, linear probing, an eighth to a half full
+  ReservedArray<std::int32_t> Entries;
+  ReservedArray<BrickKey> Keys;       ///< of the pages
+  ReservedArray<std::int32_t> Mapped; ///< entries in use, of each page
 };
 
 } // namespace inr

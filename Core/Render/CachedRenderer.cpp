@@ -24,14 +24,21 @@ const CacheOptions& Checked(const CacheOptions& options)
   return options;
 }
 
-std::shared_ptr<BrickStore> MakeStore(const std::shared_ptr<const Evaluator>& field,
-                                      const glm::i64vec3& dims, const CacheOptions& options,
-                                      const Arena& arena)
+/// What all renderers of the same field with the same options share.
+std::shared_ptr<BrickStore> StoreFor(const std::shared_ptr<const Evaluator>& field,
+                                     const std::shared_ptr<const void>& identity,
+                                     const glm::i64vec3& dims, const CacheOptions& options,
+                                     const Arena& arena)
 {
-  auto source = MakeBrickSource(field, Hierarchy(dims, options.brickSize));
   const std::int64_t bytes = options.bytes > 0 ? options.bytes : DefaultCacheBytes();
-  return std::make_shared<BrickStore>(std::move(source), options.precision, bytes,
-                                      options.background, arena);
+  const std::shared_ptr<CacheBudget> budget = CacheBudget::ofProcess();
+  const StoreKey key{identity, field->kernel(),   dims, options.brickSize, options.precision,
+                     bytes,    options.background};
+  return budget->storeFor(key, [&] {
+    return std::make_shared<BrickStore>(
+        budget, MakeBrickSource(field, Hierarchy(dims, options.brickSize)), options.precision,
+        bytes, options.background, arena.threads());
+  });
 }
 
 } // namespace
@@ -44,12 +51,15 @@ std::int64_t DefaultCacheBytes()
   return std::min(memory / 4, most);
 }
 
-CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
-                               const CacheOptions& options, const BrickKernel& kernel,
-                               const Arena& arena)
+CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field,
+                               const std::shared_ptr<const void>& identity,
+                               const glm::i64vec3& dims, const CacheOptions& options,
+                               const BrickKernel& kernel, const Arena& arena)
     : Options(Checked(options)), Kernel(kernel), Threads(arena), Field(std::move(field)),
-      Store(MakeStore(this->Field, dims, options, arena))
+      Store(StoreFor(this->Field, identity, dims, options, arena))
 {}
+
+void CachedRenderer::beginFrame() { this->Latest = this->Store->beginFrame(); }
 
 const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double stepLength)
 {
@@ -72,7 +82,7 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
                                        const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
 {
-  const BrickStore::Call call(*this->Store);
+  const BrickStore::Call call(*this->Store, this->Threads);
   if (this->Unfinished && frame.timeLimit > 0 && this->Unfinished->continues(frame)) {
     return this->refine(frame.timeLimit, output, keepGoing);
   }
@@ -92,7 +102,7 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
   double marching = 0;
   while (true) {
     const Timer march;
-    this->Store->beginFrame();
+    this->beginFrame();
     RequestRanking requests;
     pass.advance(this->Threads, keepGoing, output, requests);
     marching += march.seconds();
@@ -121,17 +131,19 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Pas
                                              const std::function<bool()>& keepGoing)
 {
   const Timer timer(scene.frame.timeLimit);
+  // Whoever takes from this picture what it has will do so again.
+  const bool contested = this->Store->hasLostSince(this->Latest);
   const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
   while (true) {
     const Timer march;
-    this->Store->beginFrame();
+    this->beginFrame();
     RequestRanking requests;
     FrameStatistics statistics =
         MarchOnce(scene, onMiss, this->Threads, keepGoing, output, requests);
     statistics.marchSeconds = march.seconds();
     statistics.complete = requests.empty();
-    const bool fits =
-        this->Store->cache().usedInFrame() + requests.count() <= this->Store->cache().capacity();
+    const bool fits = !contested && this->Store->cache().usedInFrame() + requests.count() <=
+                                        this->Store->capacity();
     if (!fits) { // should the same be asked for again
       this->Unfinished.emplace(scene, output);
     }
@@ -149,20 +161,26 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
 {
   const Timer timer(timeLimit);
   double marching = 0;
-  do {
+  // What is loaded here may be gone at the next call, so each one brings some ray further.
+  const std::int64_t before = this->Unfinished->statistics().samples;
+  const auto inTime = [&] { return timer.left() > 0; };
+  while (true) {
     const Timer march;
-    this->Store->beginFrame();
+    this->beginFrame();
     RequestRanking requests;
     this->Unfinished->advance(this->Threads, keepGoing, requests);
     marching += march.seconds();
-    const auto inTime = [&] { return timer.left() > 0; };
+    if (this->Unfinished->done() ||
+        (!inTime() && this->Unfinished->statistics().samples > before)) {
+      break;
+    }
     const std::int64_t most = this->Store->cache().capacity();
     const BrickStore::Loaded loaded =
         this->Store->load(requests.ranked(most, false), this->Threads, inTime);
     if (loaded.full) {
       this->Unfinished->crowd(loaded.bricks);
     }
-  } while (!this->Unfinished->done() && timer.left() > 0);
+  }
   this->Unfinished->copyTo(output);
   FrameStatistics statistics = this->Unfinished->statistics();
   statistics.complete = this->Unfinished->done();
@@ -173,12 +191,13 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
 TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* timer,
                                        const std::function<bool()>& keepGoing)
 {
-  const BrickStore::Call call(*this->Store);
   // Where somebody waits for all of it, what did not fit a moment ago is not tried again.
   const bool guessed = round.first && timer == nullptr && this->InferMisses;
   this->InferMisses = this->InferMisses && (!round.first || guessed);
-  if (round.whole) {
-    this->Store->beginFrame();
+  const bool contested = timer != nullptr && this->Store->hasLostSince(this->Latest);
+  this->InferMisses = this->InferMisses || (contested && !round.first);
+  if (round.whole || this->Store->frame() != this->Latest) {
+    this->beginFrame();
   }
   const bool approach = timer != nullptr && this->Options.preloading;
   const OnPathMiss onMiss = this->InferMisses ? OnPathMiss::Infer
@@ -200,7 +219,7 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* time
 
 std::int64_t CachedRenderer::roomForPaths() const
 {
-  return this->Store->cache().capacity() - this->Store->cache().usedInFrame();
+  return this->Store->capacity() - this->Store->cache().usedInFrame();
 }
 
 void CachedRenderer::loadForPaths(const RequestRanking& requests, const Timer* timer,

@@ -19,7 +19,9 @@ class Timer;
 /// How the cache is made and filled.
 struct CacheOptions
 {
-  std::int64_t bytes = 0; ///< of the whole cache; 0 = DefaultCacheBytes()
+  /// Of the whole cache; 0 = DefaultCacheBytes(). The caches of all renderers of a process stay
+  /// within the largest of these.
+  std::int64_t bytes = 0;
   CachePrecision precision = CachePrecision::Bits16;
   int brickSize = 40;       ///< voxels per side, 4 to 1024
   int maximumRequests = 40; ///< bricks inferred between two looks at what is wanted; above 0
@@ -39,13 +41,16 @@ struct CacheOptions
 /// A quarter of the machine's memory, at most 16 GiB.
 std::int64_t DefaultCacheBytes();
 
-/// Renders through a cache of bricks, which lives from frame to frame.
+/// Renders through a cache of bricks, which lives from frame to frame and which all renderers of
+/// the same field with the same bricks and size of the cache share. The threads that load bricks
+/// are as many as those of the first.
 class CachedRenderer
 {
 public:
-  /// Infers and pins the coarsest level. Throws what Hierarchy and BrickCache throw. `arena` must
-  /// outlive the renderer.
-  CachedRenderer(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
+  /// `identity`: the same object for the same field. Throws what Hierarchy and BrickCache throw.
+  /// `arena` must outlive the renderer.
+  CachedRenderer(std::shared_ptr<const Evaluator> field,
+                 const std::shared_ptr<const void>& identity, const glm::i64vec3& dims,
                  const CacheOptions& options, const BrickKernel& kernel, const Arena& arena);
 
   /// See Renderer::render. The references are for the call only.
@@ -53,9 +58,11 @@ public:
                          const Majorants& majorants, const ColorLookup& colors,
                          const MarchSettings& settings, const Shading* shading,
                          const PassOutput& output, const std::function<bool()>& keepGoing);
-  /// Traces a round of a path-traced picture and brings what its paths missed: in the time that
-  /// `timer` has left or, without one, all of it. Where the cache has no room for what the picture
-  /// wants, the rest is inferred at the paths' points instead.
+  /// Around what follows; see BrickStore.
+  BrickStore::Call call() const { return {*this->Store, this->Threads}; }
+  /// Within a call: traces a round of a path-traced picture and brings what its paths missed: in
+  /// the time that `timer` has left or, without one, all of it. Where the cache has no room for
+  /// what the picture wants, the rest is inferred at the paths' points instead.
   TracedTiles tracePaths(const PathRound& round, const Timer* timer,
                          const std::function<bool()>& keepGoing);
   /// Forgets what was made of the colours; for when they change.
@@ -64,6 +71,7 @@ public:
   const BrickStore& store() const { return *this->Store; }
 
 private:
+  void beginFrame();
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
                                  const std::function<bool()>& keepGoing);
@@ -81,10 +89,11 @@ private:
   const Arena& Threads;
   std::shared_ptr<const Evaluator> Field;
   std::shared_ptr<BrickStore> Store;
+  std::uint64_t Latest = BrickCache::Pinned; ///< of this renderer's frames in the store
   std::optional<StepTable> Steps;
-  /// Of the latest frame, when the cache cannot hold what it wants.
+  /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
   std::optional<Refinement> Unfinished;
-  /// Of the latest path-traced picture: it wants more than the cache can hold.
+  /// Of the latest path-traced picture: it wants more than the cache can hold, or keep for it.
   bool InferMisses = false;
 };
 

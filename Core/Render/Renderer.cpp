@@ -28,10 +28,10 @@ FrameStatistics Sum(const std::vector<FrameStatistics>& tiles)
 
 struct Renderer::Implementation
 {
-  Implementation(std::shared_ptr<const Evaluator> field, VolumeInfo volume, const MacroCells& cells,
-                 RendererOptions options)
-      : Field(std::move(field)), Volume(std::move(volume)), Options(std::move(options)),
-        Threads(this->Options.threads),
+  Implementation(std::shared_ptr<const Evaluator> field, std::shared_ptr<const void> identity,
+                 VolumeInfo volume, const MacroCells& cells, RendererOptions options)
+      : Field(std::move(field)), Identity(std::move(identity)), Volume(std::move(volume)),
+        Options(std::move(options)), Threads(this->Options.threads),
         Cells(this->Options.cached ? Majorants(cells, this->Volume.dims, this->Threads)
                                    : Majorants(cells))
   {}
@@ -48,6 +48,8 @@ struct Renderer::Implementation
                              const std::function<bool()>& keepGoing);
 
   std::shared_ptr<const Evaluator> Field;
+  std::shared_ptr<const void>
+      Identity; ///< of the field: renderers that have the same share a cache
   VolumeInfo Volume;
   RendererOptions Options;
   Arena Threads;
@@ -63,19 +65,20 @@ CachedRenderer& Renderer::Implementation::cached()
 {
   if (!this->Cached) {
     const BrickKernel& kernel = BrickKernelFor(ChooseInstructionSet(this->Options.kernel));
-    this->Cached.emplace(this->Field, this->Volume.dims, this->Options.cache, kernel,
-                         this->Threads);
+    this->Cached.emplace(this->Field, this->Identity, this->Volume.dims, this->Options.cache,
+                         kernel, this->Threads);
   }
   return *this->Cached;
 }
 
 Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
-    : Renderer(MakeEvaluator(model, options.kernel), model->volume, model->macroCells, options)
+    : Self(std::make_unique<Implementation>(MakeEvaluator(model, options.kernel), model,
+                                            model->volume, model->macroCells, options))
 {}
 
 Renderer::Renderer(std::shared_ptr<const Evaluator> field, const VolumeInfo& volume,
                    const MacroCells& cells, const RendererOptions& options)
-    : Self(std::make_unique<Implementation>(std::move(field), volume, cells, options))
+    : Self(std::make_unique<Implementation>(field, field, volume, cells, options))
 {}
 
 Renderer::~Renderer() = default;
@@ -86,12 +89,12 @@ std::int64_t Renderer::majorantBuilds() const { return this->Self->MajorantBuild
 
 std::int64_t Renderer::cacheBytes() const
 {
-  return this->Self->Cached ? this->Self->Cached->store().bytes() : 0;
+  return this->Self->Cached ? this->Self->Cached->store().budget().bytes() : 0;
 }
 
 std::int64_t Renderer::cachedBricks() const
 {
-  return this->Self->Cached ? this->Self->Cached->store().cache().mapped() : 0;
+  return this->Self->Cached ? this->Self->Cached->store().mapped() : 0;
 }
 
 std::string Renderer::kernel() const { return this->Self->Field->kernel(); }
@@ -164,6 +167,7 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
     return this->Paths->advance(frame, medium, trace, output);
   }
   CachedRenderer& cached = this->cached();
+  const BrickStore::Call call = cached.call();
   medium.levels = cached.store().cache().hierarchy().levels();
   const Timer timer(frame.timeLimit);
   const TraceTiles trace = [&](const PathRound& round) {

@@ -31,10 +31,15 @@ struct RendererOptions
 /// Draws an INR by marching rays or tracing paths, through a cache of decoded bricks or straight
 /// from its network.
 ///
-/// A complete frame is a pure function of model, transfer function and Frame: threads, tiles and
-/// the size of the cache do not change a pixel. The exception are paths whose bricks the cache
-/// cannot hold: part of what they meet is then free of interpolation error. Not for use from two
-/// threads at once.
+/// Renderers of the same field (one model or one Evaluator) and CacheOptions share their bricks.
+/// All renderers of the process share the memory of their caches: see CacheBudget.
+///
+/// A complete frame is a pure function of model, transfer function and Frame: threads, tiles, the
+/// size of the cache and what other renderers do change no pixel. The exception are paths whose
+/// bricks the cache cannot hold, or keep until the next call: part of what they meet is then free
+/// of interpolation error. A renderer is not for use from two threads at once; several are, and
+/// those that share bricks take turns. In the middle of rendering (in keepGoing), another that
+/// shares its bricks throws Error(Cancelled).
 class Renderer
 {
 public:
@@ -54,8 +59,10 @@ public:
   /// How often the majorants have been rebuilt (for tests and statistics).
   std::int64_t majorantBuilds() const;
 
-  /// Of the cache, 0 without one or before the first frame: bytes in use and bricks mapped.
+  /// Bytes in use by the caches of all renderers of the process, their tables and queues: at most
+  /// the largest of their CacheOptions::bytes. 0 without a cache or before the first frame.
   std::int64_t cacheBytes() const;
+  /// Bricks in the cache of this renderer and those that it shares them with, 0 as above.
   std::int64_t cachedBricks() const;
 
   /// The instruction set that infers: Evaluator::kernel().

@@ -65,7 +65,7 @@ void Insert(benchmark::State& state, inr::CachePrecision precision)
   }
   std::int64_t next = 0;
   for (auto step : state) {
-    cache.beginFrame();
+    cache.beginFrame(cache.frame() + 1);
     cache.insert(FarApart(next++, levels.bricks(0).x), values.data());
   }
 }
@@ -94,7 +94,7 @@ void EvictForty(benchmark::State& state)
   }
   double longest = 0;
   for (auto step : state) {
-    cache.beginFrame();
+    cache.beginFrame(cache.frame() + 1);
     for (std::int64_t slot = 0; slot < cache.capacity(); slot += 3) {
       cache.touch(static_cast<std::int32_t>(slot));
     }

@@ -99,7 +99,7 @@ TEST_P(BrickLoaderTest, WorksALayerAtLeastAndNoLongerThanItMay)
 TEST_P(BrickLoaderTest, HoldsNoMoreThanItHasRoomFor)
 {
   inr::BrickLoader loader(this->Source, GetParam(), 3);
-  EXPECT_EQ(loader.bytes(), 3 * 512 * 4);
+  EXPECT_EQ(inr::BrickLoader::bytesFor(this->Source->hierarchy(), 3), 3 * 512 * 4);
   loader.request(Bricks(0, 10));
   std::size_t received = 0;
   for (int round = 0; round < 4; ++round) {

@@ -39,6 +39,7 @@ float Stored(const inr::BrickPool& pool, std::int32_t slot, std::int64_t voxel)
 float LargestError(inr::CachePrecision precision, const std::vector<float>& values)
 {
   inr::BrickPool pool(precision, Voxels, 3);
+  pool.resize(3);
   pool.store(1, values.data());
   float largest = 0;
   for (std::int64_t k = 0; k < Voxels; ++k) {
@@ -87,6 +88,7 @@ TEST(BrickPool, FindsTheRangeOfAnyNumberOfVoxels)
       values[static_cast<std::size_t>(at)] = 0.875f;
       values[static_cast<std::size_t>((at + 1) % count)] = count > 1 ? 0.125f : 0.875f;
       inr::BrickPool pool(inr::CachePrecision::Bits8, count, 1);
+      pool.resize(1);
       pool.store(0, values.data());
       for (std::int64_t k = 0; k < count; ++k) {
         ASSERT_NEAR(Stored(pool, 0, k), values[static_cast<std::size_t>(k)],
@@ -100,6 +102,7 @@ TEST(BrickPool, SlotsAreApart)
 {
   for (const auto precision : {inr::CachePrecision::Float32, inr::CachePrecision::Bits8}) {
     inr::BrickPool pool(precision, Voxels, 3);
+    pool.resize(3);
     pool.store(0, RandomBrick(0, 0.1f).data());
     pool.store(2, RandomBrick(0.2f, 0.3f).data());
     pool.store(1, RandomBrick(0.8f, 1).data());

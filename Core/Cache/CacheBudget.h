@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/CachePrecision.h"
+
+#include <glm/gtc/type_precision.hpp>
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace inr {
+
+class BrickStore;
+
+/// What a store's bricks depend on, and how much memory it may take: stores of the same are one.
+struct StoreKey
+{
+  std::weak_ptr<const void> field; ///< a model, or whatever else has the values
+  std::string kernel;              ///< that infers them
+  glm::i64vec3 dims;
+  int brickSize;
+  CachePrecision precision;
+  std::int64_t bytes;
+  bool background;
+
+  bool operator==(const StoreKey& other) const;
+};
+
+/// The memory that stores share. All of them together stay within the most that one of them may
+/// take or, should that be more, within the least that all of them need, FewestBricks each.
+///
+/// A store that needs memory gets what nobody has, then that of the least recently used bricks of
+/// all stores, by a common clock; so the memory of what is no longer looked at goes to what is.
+/// Every store keeps the least that it needs and can do its work whatever the others do. One that
+/// somebody renders from gives nothing to others until that call ends. If that keeps more in use
+/// than a limit allows that has just become lower, or should now hold one more store, then calls on
+/// other threads wait.
+class CacheBudget : public std::enable_shared_from_this<CacheBudget>
+{
+public:
+  /// That of this process, which lasts as long as somebody holds it.
+  static std::shared_ptr<CacheBudget> ofProcess();
+  CacheBudget() = default;
+  ~CacheBudget();
+  CacheBudget(const CacheBudget&) = delete;
+  CacheBudget& operator=(const CacheBudget&) = delete;
+
+  /// The store with this key or, where nobody has one, what `make` makes, in this budget. Throws
+  /// what `make` throws.
+  std::shared_ptr<BrickStore> storeFor(const StoreKey& key,
+                                       const std::function<std::shared_ptr<BrickStore>()>& make);
+
+  std::int64_t total() const;
+  std::int64_t bytes() const; ///< that all stores take at present: tables, queues and bricks
+
+private:
+  friend class BrickStore;
+
+  // All that follows is for who holds the mutex.
+  std::int64_t limit() const;
+  /// What a store can have when all others give what they can.
+  std::int64_t roomFor(const BrickStore& asking) const;
+  bool fits(std::int64_t bytes) const;
+  /// Whose memory goes next, null when there is none; `asking` may be null.
+  BrickStore* oldest(const BrickStore* asking) const;
+  /// Takes memory until the limit is kept again.
+  void settle();
+
+  mutable std::mutex Mutex;
+  std::condition_variable TurnEnded;
+  std::uint64_t Clock = 1; ///< frames begun by all stores
+  std::vector<BrickStore*> Stores;
+
+  std::mutex Making; ///< guards the next; taken before the other
+  std::vector<std::pair<StoreKey, std::weak_ptr<BrickStore>>> Shared;
+};
+
+} // namespace inr

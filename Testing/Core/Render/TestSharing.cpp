@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Several renderers in a process: what they share, and that none sees it in its pictures.
+#include "Core/Error.h"
+#include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Render/VoxelScene.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <thread>
+
+namespace {
+
+const glm::i64vec3 Dims(90, 70, 80);
+
+/// Waves of some length, and how many values of them were asked for.
+class Field
+{
+public:
+  explicit Field(float length) : Asked(std::make_shared<std::atomic<std::int64_t>>(0))
+  {
+    this->Values = std::make_shared<FieldEvaluator>([asked = this->Asked, length](glm::vec3 u) {
+      ++*asked;
+      return Waves(u * length);
+    });
+  }
+  std::int64_t asked() const { return *this->Asked; }
+
+  inr::Renderer renderer(const inr::CacheOptions& cache, int threads = 1) const
+  {
+    inr::RendererOptions options;
+    options.threads = threads;
+    options.cache = cache;
+    inr::Renderer renderer(this->Values, VolumeOf(Dims), {}, options);
+    renderer.setTransferFunction(Colours());
+    return renderer;
+  }
+
+private:
+  std::shared_ptr<std::atomic<std::int64_t>> Asked;
+  std::shared_ptr<const inr::Evaluator> Values;
+};
+
+inr::CacheOptions Cache(std::int64_t bytes, bool background = true)
+{
+  inr::CacheOptions options = Options(inr::CachePrecision::Bits16, 16);
+  options.bytes = bytes;
+  options.background = background;
+  return options;
+}
+
+/// The volume from one side or, a little larger, from the other.
+inr::Frame View(bool other)
+{
+  inr::Frame frame = Oblique(glm::dvec3(Dims));
+  if (other) {
+    const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 2.2, glm::dvec3(0, 1, 0));
+    const glm::dmat4 center = glm::translate(glm::dmat4(1.0), 0.5 * glm::dvec3(Dims));
+    frame.clipToWorld = center * turn * glm::inverse(center) * frame.clipToWorld;
+    frame.clipToWorld[0] *= 0.9;
+  }
+  return frame;
+}
+
+constexpr std::int64_t Enough = 64 << 20;
+constexpr std::int64_t HalfOfAView = 500000; ///< some fifty bricks
+
+std::vector<float> Alone(const Field& field, inr::Frame frame)
+{
+  frame.timeLimit = 0;
+  inr::Renderer renderer = field.renderer(Cache(Enough, false));
+  return Render(renderer, frame).pixels;
+}
+
+TEST(Sharing, ABrickIsInferredOnceForAllViewsOfAVolume)
+{
+  const Field field(1);
+  inr::Renderer first = field.renderer(Cache(Enough));
+  inr::Frame part = View(false);
+  part.clippingPlanes = {glm::dvec4(-1, 0, 0, 30)};
+  const inr::Image image = Render(first, part);
+  const std::int64_t asked = field.asked();
+  const std::int64_t bytes = first.cacheBytes();
+  inr::Renderer second = field.renderer(Cache(Enough), 2);
+  EXPECT_EQ(Render(second, part).pixels, image.pixels);
+  EXPECT_EQ(field.asked(), asked);
+  EXPECT_EQ(second.cacheBytes(), bytes);
+  EXPECT_EQ(second.cachedBricks(), first.cachedBricks());
+  { // what it brings is there for the first
+    const std::vector<float> other = Render(second, View(true)).pixels;
+    EXPECT_GT(field.asked(), asked);
+    const std::int64_t all = field.asked();
+    second = field.renderer(Cache(Enough));
+    EXPECT_EQ(Render(first, View(true)).pixels, other);
+    EXPECT_EQ(field.asked(), all);
+  }
+}
+
+TEST(Sharing, OfOneModelButNotOfTwo)
+{
+  const auto model = RandomModel(SmallDescription());
+  model->volume.dims = Dims;
+  const auto copy = std::make_shared<inr::Model>(*model);
+  inr::RendererOptions options;
+  options.cache = Cache(Enough);
+  const auto bytesWith = [&](const inr::ModelPointer& of, inr::Renderer& before) {
+    inr::Renderer renderer(of, options);
+    renderer.setTransferFunction(Colours());
+    Render(renderer, Oblique(glm::dvec3(model->volume.dims)));
+    EXPECT_EQ(before.cacheBytes(), renderer.cacheBytes());
+    return renderer.cacheBytes();
+  };
+  inr::Renderer first(model, options);
+  first.setTransferFunction(Colours());
+  Render(first, Oblique(glm::dvec3(model->volume.dims)));
+  const std::int64_t alone = first.cacheBytes();
+  EXPECT_EQ(bytesWith(model, first), alone);
+  EXPECT_GT(bytesWith(copy, first), alone * 3 / 2);
+  EXPECT_EQ(first.cacheBytes(), alone);
+}
+
+/// Renders frames of the two in turns until both are complete, and compares with what each is
+/// alone.
+void Alternate(const Field& a, const Field& b, const inr::Frame (&frames)[2], std::int64_t bytes)
+{
+  inr::Renderer renderers[2] = {a.renderer(Cache(bytes)), b.renderer(Cache(bytes))};
+  inr::Image images[2];
+  bool complete[2] = {false, false};
+  for (int k = 0; k < 20000 && !(complete[0] && complete[1]); ++k) {
+    for (const int at : {0, 1}) {
+      complete[at] = renderers[at].render(frames[at], images[at]).complete;
+      ASSERT_LE(renderers[at].cacheBytes(), bytes);
+    }
+  }
+  EXPECT_TRUE(complete[0] && complete[1]);
+  EXPECT_TRUE(images[0].pixels == Alone(a, frames[0]));
+  EXPECT_TRUE(images[1].pixels == Alone(b, frames[1]));
+}
+
+class SharingInTurns : public testing::TestWithParam<double>
+{
+protected:
+  void alternate(const inr::Frame& like, std::int64_t bytes)
+  {
+    inr::Frame frames[2] = {View(false), View(true)};
+    for (inr::Frame& frame : frames) {
+      frame.mode = like.mode;
+      frame.shading = like.shading;
+      frame.lights = like.lights;
+      frame.samplesPerPixel = like.samplesPerPixel;
+      frame.timeLimit = GetParam();
+    }
+    const Field a(1);
+    const Field b(0.7f);
+    {
+      SCOPED_TRACE("two volumes");
+      Alternate(a, b, frames, bytes);
+    }
+    {
+      SCOPED_TRACE("two views of one volume");
+      Alternate(a, a, frames, bytes);
+    }
+  }
+};
+INSTANTIATE_TEST_SUITE_P(TimeLimits, SharingInTurns, testing::Values(0, 1e-9, 0.002));
+
+TEST_P(SharingInTurns, EachHasItsPictureWhereBothFit) { this->alternate({}, Enough); }
+
+TEST_P(SharingInTurns, EachHasItsPictureWhereNoneFits) { this->alternate({}, HalfOfAView); }
+
+TEST_P(SharingInTurns, EachHasItsPictureWhereOneFitsButNotBoth)
+{
+  const Field field(1);
+  std::int64_t bytes = 0;
+  {
+    inr::Renderer alone = field.renderer(Cache(Enough, false));
+    Render(alone, View(true));
+    bytes = alone.cacheBytes();
+  }
+  this->alternate({}, bytes * 3 / 2);
+}
+
+TEST_P(SharingInTurns, EachHasItsShadedPicture)
+{
+  inr::Frame lit;
+  lit.shading = inr::Material{};
+  lit.lights.resize(1);
+  this->alternate(lit, HalfOfAView);
+}
+
+TEST(Sharing, PathsComeToAnEndWhateverTheOtherTakes)
+{
+  const Field fields[2] = {Field(1), Field(0.7f)};
+  inr::Frame frame = View(false);
+  frame.mode = inr::RenderMode::PathTracing;
+  frame.samplesPerPixel = 2;
+  const std::vector<float> truth[2] = {Alone(fields[0], frame), Alone(fields[1], frame)};
+  for (const double timeLimit : {0.0, 1e-9, 0.002}) {
+    frame.timeLimit = timeLimit;
+    for (const std::int64_t bytes : {Enough, 2 * HalfOfAView}) {
+      inr::Renderer renderers[2] = {fields[0].renderer(Cache(bytes)),
+                                    fields[1].renderer(Cache(bytes))};
+      bool complete[2] = {false, false};
+      inr::Image images[2];
+      for (int k = 0; k < 20000 && !(complete[0] && complete[1]); ++k) {
+        complete[0] = renderers[0].render(frame, images[0]).complete;
+        complete[1] = renderers[1].render(frame, images[1]).complete;
+      }
+      EXPECT_TRUE(complete[0] && complete[1]);
+      if (bytes == Enough) {
+        EXPECT_EQ(images[0].pixels, truth[0]);
+        EXPECT_EQ(images[1].pixels, truth[1]);
+      }
+    }
+  }
+}
+
+TEST(Sharing, ASmallCacheBesideALargeOneCompletesItsPicture)
+{
+  const Field fields[2] = {Field(1), Field(0.7f)};
+  inr::Renderer large = fields[0].renderer(Cache(Enough));
+  inr::Renderer small = fields[1].renderer(Cache(HalfOfAView));
+  Render(large, View(false));
+  EXPECT_EQ(Render(small, View(false)).pixels, Alone(fields[1], View(false)));
+  EXPECT_LE(large.cacheBytes(), Enough);
+  EXPECT_GT(large.cacheBytes(), 2 * HalfOfAView);
+}
+
+TEST(Sharing, AnotherMayRenderOrGoInTheMiddleOfAPicture)
+{
+  const Field fields[2] = {Field(1), Field(0.7f)};
+  const std::int64_t bytes = HalfOfAView;
+  inr::Renderer renderer = fields[0].renderer(Cache(bytes));
+  auto other = std::make_unique<inr::Renderer>(fields[1].renderer(Cache(bytes)));
+  inr::Renderer same = fields[0].renderer(Cache(bytes));
+  inr::Image image;
+  inr::Frame soon = View(true);
+  soon.timeLimit = 1e-9;
+  other->render(soon, image); // and now bricks are on their way
+  int step = 0;
+  const auto self = std::this_thread::get_id();
+  const auto keepGoing = [&] {
+    if (std::this_thread::get_id() == self) {
+      inr::Image within;
+      ++step;
+      if (step == 2) {
+        EXPECT_EQ(Render(*other, View(true)).pixels, Alone(fields[1], View(true)));
+        EXPECT_THROW(same.render(View(true), within), inr::Error);
+      } else if (step == 3) {
+        other.reset();
+      }
+    }
+    return true;
+  };
+  renderer.render(View(false), image, nullptr, keepGoing);
+  EXPECT_GE(step, 3);
+  EXPECT_EQ(image.pixels, Alone(fields[0], View(false)));
+  EXPECT_EQ(Render(same, View(true)).pixels, Alone(fields[0], View(true)));
+}
+
+// What ThreadSanitizer is to watch.
+TEST(Sharing, RenderersOnSeveralThreadsHaveTheirPictures)
+{
+  const Field fields[2] = {Field(1), Field(0.7f)};
+  const std::vector<float> truth[2] = {Alone(fields[0], View(false)),
+                                       Alone(fields[1], View(false))};
+  std::atomic<std::int64_t> most{0};
+  const auto work = [&](std::size_t seed) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t at = (seed + k) % 2;
+      inr::Renderer renderer = fields[at].renderer(Cache(HalfOfAView));
+      inr::Frame frame = View(false);
+      frame.timeLimit = k == 1 ? 0.0 : 0.01;
+      inr::Image image;
+      for (int tries = 0; tries < 5000 && !renderer.render(frame, image).complete; ++tries) {
+        most = std::max(most.load(), renderer.cacheBytes());
+      }
+      EXPECT_EQ(image.pixels, truth[at]);
+    }
+  };
+  std::thread first(work, 0);
+  std::thread second(work, 1);
+  work(2);
+  first.join();
+  second.join();
+  EXPECT_LE(most, HalfOfAView);
+}
+
+} // namespace
