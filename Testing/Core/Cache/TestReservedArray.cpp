@@ -9,14 +9,6 @@
 
 namespace {
 
-std::int64_t ResidentBytes()
-{
-  std::int64_t total = 0;
-  std::int64_t resident = 0;
-  std::ifstream("/proc/self/statm") >> total >> resident;
-  return resident * sysconf(_SC_PAGESIZE);
-}
-
 TEST(ReservedArray, KeepsItsElementsWhileItGrowsAndShrinks)
 {
   inr::ReservedArray<std::int64_t> array(1 << 20);
@@ -34,7 +26,15 @@ TEST(ReservedArray, KeepsItsElementsWhileItGrowsAndShrinks)
   }
 }
 
-#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__) // their own memory counts
+std::int64_t ResidentBytes()
+{
+  std::int64_t total = 0;
+  std::int64_t resident = 0;
+  std::ifstream("/proc/self/statm") >> total >> resident;
+  return resident * sysconf(_SC_PAGESIZE);
+}
+
 TEST(ReservedArray, TakesMemoryForWhatItHas)
 {
   constexpr std::int64_t mebibyte = 1 << 20;
