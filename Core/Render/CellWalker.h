@@ -7,7 +7,7 @@
 
 #include <glm/common.hpp>
 
-#include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace inr {
@@ -21,10 +21,19 @@ public:
   /// `scale` and `levels` are LevelOfDetail's.
   INR_HOST_DEVICE CellWalker(const Majorants& majorants, const glm::dvec3& volumeDims,
                              const Ray& ray, double scale, int levels)
-      : All(&majorants), Cells(majorants.grid(0), volumeDims, ray),
-        Footprint(ray.footprint * scale), Growth(ray.footprintGrowth * scale),
-        LastLevel(levels - 1), End(this->endOf(0))
+      : All(&majorants), LastLevel(levels - 1), Scale(scale)
   {
+    this->follow(ray, MakeCellScale(majorants.grid(0), volumeDims));
+  }
+
+  /// Begins anew on another ray; `finest` is of grid 0.
+  INR_HOST_DEVICE void follow(const Ray& ray, const CellScale& finest)
+  {
+    this->Cells.follow(ray, finest);
+    this->Footprint = ray.footprint * this->Scale;
+    this->Growth = ray.footprintGrowth * this->Scale;
+    this->Grid = 0;
+    this->End = this->endOf(0);
     while (this->End < 0) {
       this->coarsen();
     }
@@ -76,7 +85,7 @@ private:
       return never;
     }
     constexpr double early = 1.0 - 1e-12; // whatever rounding says
-    const double largest = early * std::ldexp(1.0, level);
+    const double largest = early * static_cast<double>(std::int64_t{1} << level);
     if (this->Footprint > largest) {
       return -1;
     }
@@ -92,12 +101,13 @@ private:
 
   const Majorants* All;
   GridWalker Cells;
-  double Footprint;
-  double Growth;
+  double Footprint = 0;
+  double Growth = 0;
   int LastLevel;
   int Grid = 0;
   double Begin = 0; ///< t from which the grid is gone by
-  double End;       ///< and up to which
+  double End = 0;   ///< and up to which
+  double Scale;     ///< of footprints
 };
 
 } // namespace inr

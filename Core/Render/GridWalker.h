@@ -11,20 +11,40 @@
 
 namespace inr {
 
+/// A grid of macro-cells over a volume.
+struct CellScale
+{
+  const MajorantGrid* cells;
+  glm::dvec3 edge;     ///< of a cell, in voxels
+  glm::dvec3 perVoxel; ///< 1 / edge
+};
+
+INR_HOST_DEVICE inline CellScale MakeCellScale(const MajorantGrid& cells,
+                                               const glm::dvec3& volumeDims)
+{
+  const glm::dvec3 edge = volumeDims * cells.spacing();
+  return {&cells, edge, 1.0 / edge};
+}
+
 /// A ray's way through a grid of macro-cells, cell by cell. Where the ray enters and leaves a cell
 /// is a function of ray and cell alone, so that a walk may stop and start again anywhere.
 class GridWalker
 {
 public:
+  GridWalker() = default; ///< on no ray yet
   INR_HOST_DEVICE GridWalker(const MajorantGrid& cells, const glm::dvec3& volumeDims,
                              const Ray& ray)
-      : Cells(&cells)
   {
-    const glm::dvec3 edge = volumeDims * cells.spacing();
-    const glm::dvec3 scale = 1.0 / edge;
-    this->Start = (ray.entry + 0.5) * scale;
-    this->Slope = ray.direction * scale;
-    this->Inverse = ray.inverse * edge;
+    this->follow(ray, MakeCellScale(cells, volumeDims));
+  }
+  /// Begins anew on another ray.
+  INR_HOST_DEVICE void follow(const Ray& ray, const CellScale& cells)
+  {
+    this->Cells = cells.cells;
+    this->Start = (ray.entry + 0.5) * cells.perVoxel;
+    this->Slope = ray.direction * cells.perVoxel;
+    this->Inverse = ray.inverse * cells.edge;
+    this->Exit = -1;
   }
 
   /// Begins anew in another grid.
@@ -219,10 +239,10 @@ private:
     return cell;
   }
 
-  const MajorantGrid* Cells;
-  glm::dvec3 Start; ///< in cells, at t = 0
-  glm::dvec3 Slope; ///< cells per unit of t
-  glm::dvec3 Inverse;
+  const MajorantGrid* Cells = nullptr;
+  glm::dvec3 Start{0}; ///< in cells, at t = 0
+  glm::dvec3 Slope{0}; ///< cells per unit of t
+  glm::dvec3 Inverse{0};
   glm::dvec3 AxisExit{0}; ///< where the ray leaves the cell along each axis
   glm::i64vec3 Cell{0};
   std::int64_t Index = 0;

@@ -54,6 +54,16 @@ void Check(const Light& light)
   }
 }
 
+std::vector<PathLight> PathLights(const InnerRays& inner, const std::vector<Light>& lights)
+{
+  std::vector<PathLight> made;
+  for (const Light& light : lights) {
+    Check(light);
+    made.push_back(MakePathLight(inner, light));
+  }
+  return made;
+}
+
 /// The paths of a tile, each asking for one value in a round.
 class TileOfPaths
 {
@@ -62,7 +72,7 @@ public:
   {
     this->Paths.reserve(static_cast<std::size_t>(tile.width) * tile.height);
     for (int k = 0; k < tile.width * tile.height; ++k) {
-      this->Paths.push_back(BeginPath(scene, this->x(k), this->y(k)));
+      this->Paths.emplace_back(scene, this->x(k), this->y(k));
       if (this->Paths.back().ray.length > 0) {
         this->Live.push_back(k);
       }
@@ -73,9 +83,9 @@ public:
   void trace(FieldSampler& sampler)
   {
     for (this->place(); !this->Live.empty(); this->place()) {
-      sampler.sample(this->Points.data(), static_cast<std::int64_t>(this->Points.size()),
-                     this->Values.data());
-      this->Statistics.samples += static_cast<std::int64_t>(this->Points.size());
+      const auto count = static_cast<std::int64_t>(this->Live.size());
+      sampler.sample(this->Points.data(), count, this->Values.data());
+      this->Statistics.samples += count;
       this->collide();
     }
   }
@@ -87,7 +97,7 @@ public:
       const glm::vec4 color(path.radiance, path.collided ? 1.0f : 0.0f);
       std::copy_n(&color.x, 4, rgba.pixel(this->x(k), this->y(k)));
       if (depth != nullptr) {
-        *depth->pixel(this->x(k), this->y(k)) = path.collided ? this->depthOf(k) : 0.0f;
+        *depth->pixel(this->x(k), this->y(k)) = path.collided ? this->depthOf(path) : 0.0f;
       }
     }
   }
@@ -98,23 +108,19 @@ private:
   int x(int k) const { return this->Place.x + k % this->Place.width; }
   int y(int k) const { return this->Place.y + k / this->Place.width; }
 
-  float depthOf(int k) const
+  float depthOf(const PathState& path) const
   {
-    const Ray ray = this->Scene.geometry.ray(this->x(k), this->y(k));
-    const double t = this->Paths[static_cast<std::size_t>(k)].firstCollision;
-    return static_cast<float>(this->Scene.geometry.windowDepth(ray.at(t)));
+    return static_cast<float>(this->Scene.geometry.windowDepth(path.firstCollision));
   }
 
   void place()
   {
-    this->Samples.clear();
-    this->Points.clear();
-    PathSample sample{};
+    this->Samples.resize(this->Live.size());
+    this->Points.resize(this->Live.size());
     std::size_t alive = 0;
     for (const int k : this->Live) {
-      if (PlaceSample(this->Scene, this->Paths[static_cast<std::size_t>(k)], sample)) {
-        this->Samples.push_back(sample);
-        this->Points.push_back(sample.point);
+      if (PlaceSample(this->Scene, this->Paths[static_cast<std::size_t>(k)], this->Samples[alive],
+                      this->Points[alive])) {
         this->Live[alive++] = k;
       }
     }
@@ -179,20 +185,23 @@ void Accumulator::mean(Image& picture) const
 
 PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
                        const Majorants& majorants, const ColorLookup& colors, int levels)
-    : Inner(frame, geometry, dims), Scene{frame,
-                                          geometry,
-                                          this->Inner,
-                                          majorants,
-                                          colors,
-                                          frame.lights.data(),
-                                          static_cast<int>(frame.lights.size()),
-                                          frame.paths,
-                                          glm::dvec3(dims),
-                                          geometry.worldPerUnit() / frame.unitDistance,
-                                          levels}
+    : Inner(frame, geometry, dims),
+      Lights(PathLights(this->Inner, frame.lights)), Scene{frame,
+                                                           geometry,
+                                                           this->Inner,
+                                                           majorants,
+                                                           MakeCellScale(majorants.grid(0),
+                                                                         glm::dvec3(dims)),
+                                                           colors,
+                                                           this->Lights.data(),
+                                                           static_cast<int>(this->Lights.size()),
+                                                           frame.paths,
+                                                           glm::dvec3(dims),
+                                                           geometry.worldPerUnit() /
+                                                               frame.unitDistance,
+                                                           levels}
 {
   Check(frame.paths);
-  std::for_each(frame.lights.begin(), frame.lights.end(), [](const Light& light) { Check(light); });
   Require(levels >= 1, "a field has at least one level");
 }
 

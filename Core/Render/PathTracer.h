@@ -55,6 +55,7 @@ public:
 
 private:
   InnerRays Inner;
+  std::vector<PathLight> Lights;
   PathScene Scene;
 };
 

@@ -21,8 +21,24 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace inr {
+
+/// A light and, of a directional one, what all points have in common.
+struct PathLight
+{
+  const Light& light;
+  Illumination illumination;
+  RayDirection towards;
+};
+
+INR_HOST_DEVICE inline PathLight MakePathLight(const InnerRays& inner, const Light& light)
+{
+  const Illumination everywhere =
+      light.kind == LightKind::Directional ? IlluminationAt(light, {}) : Illumination{};
+  return {light, everywhere, inner.along(everywhere.toLight)};
+}
 
 /// What the stages share within a frame. All read-only.
 struct PathScene
@@ -31,8 +47,9 @@ struct PathScene
   const RayGeometry& geometry;
   const InnerRays& inner;
   const Majorants& majorants;
+  CellScale cells; ///< of its finest grid
   const ColorLookup& colors;
-  const Light* lights;
+  const PathLight* lights;
   int lightCount;
   const PathOptions& options;
   glm::dvec3 dims;  ///< voxels per axis
@@ -48,8 +65,10 @@ INR_HOST_DEVICE inline CellWalker WalkerFor(const PathScene& scene, const Ray& r
 /// Where a path stands: on its way, or between a scattering and a light.
 struct PathState
 {
-  INR_HOST_DEVICE PathState(const PathScene& scene, const Ray& pixelRay, std::uint64_t pixelStream)
-      : ray(pixelRay), walker(WalkerFor(scene, pixelRay)), stream(pixelStream)
+  /// At the beginning; the ray may miss the volume.
+  INR_HOST_DEVICE PathState(const PathScene& scene, int x, int y)
+      : ray(scene.geometry.ray(x, y)), walker(WalkerFor(scene, ray)),
+        stream(PixelStream(scene.frame, x, y)), travel(scene.inner.worldDirection(ray.direction))
   {}
 
   Ray ray; ///< the one that is being followed now
@@ -58,14 +77,14 @@ struct PathState
   std::uint64_t stream; ///< of random numbers
   std::uint64_t drawn = 0;
 
-  glm::dvec3 travel{0.0};     ///< world direction of the path
-  glm::dvec3 vertex{0.0};     ///< point index of the last scattering
-  glm::vec3 throughput{1.0f}; ///< from the camera to here
-  glm::vec3 radiance{0.0f};   ///< gathered
-  double firstCollision = 0;  ///< t on the pixel's ray, once collided
-  glm::vec3 fromLight{0.0f};  ///< on its way to be gathered, if nothing absorbs it
-  float passed = 1;           ///< of it, so far
-  double footprint = 0;       ///< of the pixel at the vertex
+  glm::dvec3 travel{0.0};         ///< world direction of the path
+  glm::dvec3 vertex{0.0};         ///< point index of the last scattering
+  glm::vec3 throughput{1.0f};     ///< from the camera to here
+  glm::vec3 radiance{0.0f};       ///< gathered
+  glm::dvec3 firstCollision{0.0}; ///< point index, once collided
+  glm::vec3 fromLight{0.0f};      ///< on its way to be gathered, if nothing absorbs it
+  float passed = 1;               ///< of it, so far
+  double footprint = 0;           ///< of the pixel at the vertex
   int bounces = 0;
   bool collided = false;
   bool towardsLight = false;
@@ -104,11 +123,14 @@ INR_HOST_DEVICE inline float Roulette(PathState& path, float chance)
   return Draw(path) < chance ? chance : 0.0f;
 }
 
-INR_HOST_DEVICE inline void Follow(const PathScene& scene, PathState& path, const Ray& ray)
+/// Sends the path from its vertex.
+INR_HOST_DEVICE inline void Follow(const PathScene& scene, PathState& path,
+                                   const RayDirection& direction, double limit)
 {
-  path.ray = ray;
+  scene.inner.aim(path.ray, path.vertex, direction, limit);
   path.ray.footprint = path.footprint;
-  path.walker = WalkerFor(scene, path.ray);
+  path.ray.footprintGrowth = 0;
+  path.walker.follow(path.ray, scene.cells);
   path.t = 0;
 }
 
@@ -118,7 +140,27 @@ INR_HOST_DEVICE inline void GoOn(const PathScene& scene, PathState& path)
   const double cosine = SamplePhaseCosine(scene.options.anisotropy, Draw(path));
   path.travel = Turn(path.travel, cosine, Draw(path));
   path.towardsLight = false;
-  Follow(scene, path, scene.inner.ray(path.vertex, path.travel));
+  Follow(scene, path, scene.inner.along(path.travel), std::numeric_limits<double>::infinity());
+}
+
+/// Sends the path towards a light; false where that gives nothing.
+INR_HOST_DEVICE inline bool Illuminate(const PathScene& scene, PathState& path,
+                                       const PathLight& source)
+{
+  const bool distant = source.light.kind == LightKind::Directional;
+  const Illumination light =
+      distant ? source.illumination : IlluminationAt(source.light, scene.inner.world(path.vertex));
+  const double cosine = glm::dot(path.travel, light.toLight);
+  const double phase = PhaseDensity(scene.options.anisotropy, cosine);
+  path.fromLight =
+      path.throughput * light.irradiance * static_cast<float>(phase * scene.lightCount);
+  if (!(Largest(path.fromLight) > 0.0f)) {
+    return false;
+  }
+  path.towardsLight = true;
+  path.passed = 1.0f;
+  Follow(scene, path, distant ? source.towards : scene.inner.along(light.toLight), light.distance);
+  return true;
 }
 
 /// Sends the path towards a light, one of them all at random; or, where that gives nothing, on.
@@ -127,33 +169,16 @@ INR_HOST_DEVICE inline void LookAtLight(const PathScene& scene, PathState& path)
   if (scene.lightCount > 0) {
     const int chosen =
         glm::min(static_cast<int>(Draw(path) * scene.lightCount), scene.lightCount - 1);
-    const Illumination light = IlluminationAt(scene.lights[chosen], scene.inner.world(path.vertex));
-    const double cosine = glm::dot(path.travel, light.toLight);
-    const double phase = PhaseDensity(scene.options.anisotropy, cosine);
-    path.fromLight =
-        path.throughput * light.irradiance * static_cast<float>(phase * scene.lightCount);
-    if (Largest(path.fromLight) > 0.0f) {
-      path.towardsLight = true;
-      path.passed = 1.0f;
-      Follow(scene, path, scene.inner.ray(path.vertex, light.toLight, light.distance));
+    if (Illuminate(scene, path, scene.lights[chosen])) {
       return;
     }
   }
   GoOn(scene, path);
 }
 
-/// A path at the beginning; its ray may miss the volume.
-INR_HOST_DEVICE inline PathState BeginPath(const PathScene& scene, int x, int y)
-{
-  PathState path(scene, scene.geometry.ray(x, y), PixelStream(scene.frame, x, y));
-  path.travel = scene.inner.worldDirection(path.ray.direction);
-  return path;
-}
-
 /// A place where a path may collide, and what decides whether it does.
 struct PathSample
 {
-  FieldPoint point;
   ValueRange range; ///< of its macro-cell
   float majorant;   ///< extinction per opacity unit distance
 };
@@ -199,7 +224,8 @@ INR_HOST_DEVICE inline bool Leave(const PathScene& scene, PathState& path)
 }
 
 /// Where the path asks for the field next; false when it has ended.
-INR_HOST_DEVICE inline bool PlaceSample(const PathScene& scene, PathState& path, PathSample& sample)
+INR_HOST_DEVICE inline bool PlaceSample(const PathScene& scene, PathState& path, PathSample& sample,
+                                        FieldPoint& point)
 {
   while (!NextCollision(scene, path, sample)) {
     if (!Leave(scene, path)) {
@@ -212,7 +238,7 @@ INR_HOST_DEVICE inline bool PlaceSample(const PathScene& scene, PathState& path,
                         ? detail.dithered(path.stream, static_cast<std::int64_t>(path.drawn++))
                         : detail.level();
   const glm::dvec3 inside = glm::clamp(path.ray.at(path.t), glm::dvec3(0.0), scene.dims - 1.0);
-  sample.point = MakeFieldPoint(inside, level);
+  point = MakeFieldPoint(inside, level);
   return true;
 }
 
@@ -270,7 +296,7 @@ INR_HOST_DEVICE inline bool Collide(const PathScene& scene, PathState& path, flo
   }
   if (!path.collided) {
     path.collided = true;
-    path.firstCollision = path.t;
+    path.firstCollision = path.ray.at(path.t);
   }
   const glm::vec3 color(entry);
   if (scene.options.emissionOnly) {

@@ -13,6 +13,13 @@
 
 namespace inr {
 
+/// A direction as rays along it need it.
+struct RayDirection
+{
+  glm::dvec3 perT;    ///< point indices per unit of t
+  glm::dvec3 inverse; ///< 1 / perT
+};
+
 /// Rays that start inside the volume. Directions and lengths are the world's, whatever spacing or
 /// shear lies between it and the grid.
 class InnerRays
@@ -28,9 +35,25 @@ public:
                           double limit = std::numeric_limits<double>::infinity()) const
   {
     Ray ray;
+    this->aim(ray, from, this->along(direction), limit);
+    return ray;
+  }
+
+  /// `direction`: a world unit vector.
+  INR_HOST_DEVICE RayDirection along(const glm::dvec3& direction) const
+  {
+    const glm::dvec3 perT = this->ToIndex * direction * this->WorldPerUnit;
+    return {perT, 1.0 / perT};
+  }
+
+  /// Makes of `ray` the one above, where it stands: copies of what was written a moment ago wait
+  /// for it.
+  INR_HOST_DEVICE void aim(Ray& ray, const glm::dvec3& from, const RayDirection& direction,
+                           double limit = std::numeric_limits<double>::infinity()) const
+  {
     ray.entry = from;
-    ray.direction = this->ToIndex * direction * this->WorldPerUnit;
-    ray.inverse = 1.0 / ray.direction;
+    ray.direction = direction.perT;
+    ray.inverse = direction.inverse;
     ray.length = limit / this->WorldPerUnit;
     for (int axis = 0; axis < 3; ++axis) {
       // A start that rounding has put outside counts as being on the border.
@@ -42,7 +65,6 @@ public:
       Keep(glm::dot(plane, glm::dvec4(from, 1.0)), glm::dot(plane, glm::dvec4(ray.direction, 0.0)),
            ray.length);
     }
-    return ray;
   }
 
   INR_HOST_DEVICE glm::dvec3 world(const glm::dvec3& index) const

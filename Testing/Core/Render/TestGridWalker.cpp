@@ -127,6 +127,24 @@ TEST(GridWalker, StartsAnywhereWithTheSameCell)
   }
 }
 
+TEST(GridWalker, FollowsAnotherRayAsIfItHadNeverGoneElsewhere)
+{
+  for (const Cells& cells : AllCells()) {
+    inr::GridWalker used;
+    for (const inr::Ray& ray : Rays(cells)) {
+      used.follow(ray, inr::MakeCellScale(cells.majorants, cells.dims));
+      inr::GridWalker fresh(cells.majorants, cells.dims, ray);
+      for (const double part : {0.3, 0.6}) {
+        used.moveTo(part * ray.length);
+        fresh.moveTo(part * ray.length);
+        ASSERT_EQ(used.cell(), fresh.cell());
+        ASSERT_EQ(used.enter(), fresh.enter());
+        ASSERT_EQ(used.exit(), fresh.exit());
+      }
+    }
+  }
+}
+
 TEST(GridWalker, SkipsNothingThatCanBeSeen)
 {
   for (const Cells& cells : AllCells()) {
