@@ -19,8 +19,23 @@ struct BrickId
 /// A brick in 62 bits: level, z, y, x. Keys of a level sort by z, then y, then x.
 using BrickKey = std::uint64_t;
 constexpr int BrickAxisBits = 19; ///< x takes the lowest
-BrickKey KeyOf(const BrickId& id);
-BrickId IdOf(BrickKey key);
+
+inline BrickKey KeyOf(const BrickId& id)
+{
+  const auto word = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
+  return (((word(id.level) << BrickAxisBits | word(id.at.z)) << BrickAxisBits | word(id.at.y))
+          << BrickAxisBits) |
+         word(id.at.x);
+}
+
+inline BrickId IdOf(BrickKey key)
+{
+  const auto axis = [key](int place) {
+    constexpr BrickKey mask = (BrickKey{1} << BrickAxisBits) - 1;
+    return static_cast<std::int64_t>(key >> (place * BrickAxisBits) & mask);
+  };
+  return {static_cast<int>(key >> (3 * BrickAxisBits)), {axis(0), axis(1), axis(2)}};
+}
 
 /// The levels of a volume and their bricks.
 ///
@@ -54,7 +69,9 @@ public:
   /// Position p in voxels of level 0 (voxel i at i) is p * scale + bias in voxels of `level`.
   const glm::dvec3& scale(int level) const { return this->at(level).scale; }
   const glm::dvec3& bias(int level) const { return this->at(level).bias; }
-  const glm::dvec3& inverseScale(int level) const { return this->at(level).inverseScale; }
+  /// And p * brickScale + brickBias in bricks, rounded down, is the brick that it lies in.
+  const glm::dvec3& brickScale(int level) const { return this->at(level).brickScale; }
+  const glm::dvec3& brickBias(int level) const { return this->at(level).brickBias; }
 
   struct Location
   {
@@ -64,9 +81,6 @@ public:
   /// Where `level` keeps the field at a position in voxels of level 0, clamped to the voxels.
   Location locate(int level, const glm::dvec3& index) const;
 
-  /// The brick alone.
-  BrickId brickAt(int level, const glm::dvec3& index) const;
-
 private:
   struct Level
   {
@@ -74,7 +88,8 @@ private:
     glm::i64vec3 bricks;
     glm::dvec3 scale;
     glm::dvec3 bias;
-    glm::dvec3 inverseScale; ///< 1 / scale
+    glm::dvec3 brickScale;
+    glm::dvec3 brickBias;
   };
   const Level& at(int level) const { return this->Levels[static_cast<std::size_t>(level)]; }
 

@@ -22,9 +22,10 @@ struct BrickFormat
   int lastCell[3]; ///< largest first corner of an interpolation cell
 };
 
-/// Colours and opacities for the sample lengths of one frame: table + multiple * rows holds, for
-/// samples of 2^multiple steps, `rows` entries of straight RGB and the opacity of the whole sample.
-/// Entry 0 and 1 hold what is below the transfer function's range, the last two what is above.
+/// Colours and opacities for the sample lengths of one frame: table + length * rows holds, for
+/// samples of StepsOf(length) steps (StepTable.h), `rows` entries of straight RGB and the opacity
+/// of the whole sample. Entry 0 and 1 hold what is below the transfer function's range, the last
+/// two what is above.
 struct StepLookup
 {
   const float* entries; ///< RGBA
@@ -34,7 +35,7 @@ struct StepLookup
 };
 
 /// A ray's way through one brick: local coordinate = clamp(origin + along * direction, 0, last),
-/// voxel i at i.
+/// voxel i at i; `along` counts steps.
 struct BrickPath
 {
   const void* voxels; ///< x fastest
@@ -45,19 +46,41 @@ struct BrickPath
   float last[3];
 };
 
+/// Samples of a ray that differ in nothing but their place, in a brick or, chosen at random as
+/// LevelOfDetail does, in one of two of neighbouring levels: sample k is
+/// (start + k * spacing) + offset along its path, exactly that wherever the run begins.
+struct SampleRun
+{
+  float start[2]; ///< on either path
+  float spacing;  ///< in steps
+  float offset;
+  int ways;       ///< 1, or 2 where levels are dithered
+  int path[2];    ///< in SampleBatch::paths: of the finer level and of the coarser one
+  float fraction; ///< of the samples where the finer path begins that are on the coarser one
+  float growth;   ///< of that, per step
+  std::uint32_t seed;
+  std::uint32_t counter; ///< of the first sample
+  std::uint32_t stride;  ///< of the counters
+  int count;
+  int length; ///< what each stands for, see StepLookup
+  float low;  ///< range of their macro-cell, to which values are clamped
+  float high;
+};
+
 /// Samples of a ray, front to back. The arrays have room for kernels to write past the last sample.
 struct SampleBatch
 {
   static constexpr int Capacity = 32;
   static constexpr int Room = Capacity + 16;
-  BrickPath paths[Capacity + 2];
+  BrickPath paths[2 * Capacity + 2];
+  SampleRun runs[Capacity];
   std::int32_t path[Room]; ///< of each sample, in `paths`
   float along[Room];       ///< its path
-  float low[Room];         ///< range of the sample's macro-cell, to which its value is clamped
+  float low[Room];         ///< see SampleRun
   float high[Room];
-  std::int32_t multiple[Room]; ///< log2 of its length in steps
-  float value[Room];           ///< out of `sample`
-  float opacity[Room];         ///< out of `composite`: accumulated before the sample
+  std::int32_t length[Room];
+  float value[Room];   ///< out of `sample` and `sampleRuns`
+  float opacity[Room]; ///< out of `composite`: accumulated before the sample
 };
 
 /// What a ray has gathered.
@@ -70,7 +93,11 @@ struct RayColor
 /// The inner loops of cached ray marching, for one instruction set.
 struct BrickKernel
 {
-  /// Finds the trilinear values of the first `count` samples.
+  /// Lays out the samples of the first `runs` runs, at most Capacity in all, and finds their
+  /// values.
+  void (*sampleRuns)(const BrickFormat& format, SampleBatch& batch, int runs);
+
+  /// Finds the trilinear values of the first `count` samples, by `path` and `along`.
   void (*sample)(const BrickFormat& format, SampleBatch& batch, int count);
 
   /// Composites `count` samples front to back until transmittance falls to `opaque`; returns how

@@ -4,7 +4,7 @@
 #include "Core/Inference/KernelTable.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 namespace inr {
 
@@ -17,59 +17,44 @@ BrickFormat FormatOf(const BrickCache& cache)
   return {bytes, dims.x, dims.x * dims.y, {dims.x - 2, dims.y - 2, dims.z - 2}};
 }
 
-BrickSpan SpanAt(const Hierarchy& hierarchy, int level, const Ray& ray, double t)
+BrickWay::BrickWay(const Hierarchy& hierarchy, int level, const Ray& ray)
+    : Level(level), Stride(hierarchy.brickDims() - 1),
+      LastVoxel(hierarchy.size(level) - std::int64_t{1})
 {
-  const BrickId brick = hierarchy.brickAt(level, ray.at(t));
-  const glm::i64vec3& bricks = hierarchy.bricks(level);
-  const glm::dvec3 stride(hierarchy.brickDims() - 1);
-  const glm::dvec3 first(hierarchy.firstVoxel(brick));
-  const glm::dvec3 begin = ray.entry * hierarchy.scale(level) + hierarchy.bias(level) - first;
-  BrickSpan span{KeyOf(brick), 0.0, std::numeric_limits<double>::infinity(), {}, {}};
-  span.direction = ray.direction * hierarchy.scale(level);
-  const glm::dvec3 inverse = ray.inverse * hierarchy.inverseScale(level);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double slope = span.direction[axis];
-    if (slope == 0.0) {
-      continue;
-    }
-    const bool hasLower = brick.at[axis] > 0;
-    const bool hasUpper = brick.at[axis] + 1 < bricks[axis];
-    const double toLower = -begin[axis] * inverse[axis];
-    const double toUpper = (stride[axis] - begin[axis]) * inverse[axis];
-    if (slope > 0 ? hasLower : hasUpper) {
-      span.enter = std::max(span.enter, slope > 0 ? toLower : toUpper);
-    }
-    if (slope > 0 ? hasUpper : hasLower) {
-      span.exit = std::min(span.exit, slope > 0 ? toUpper : toLower);
-    }
-  }
-  span.origin = begin + span.enter * span.direction;
-  return span;
+  const glm::dvec3& scale = hierarchy.brickScale(level);
+  const glm::dvec3 start = ray.entry * scale + hierarchy.brickBias(level);
+  this->Bricks =
+      LatticeWalker(hierarchy.bricks(level), start, ray.direction * scale, ray.inverse / scale);
 }
 
-void BrickRun::open(int level, const BrickSpan& wanted, const BrickSpan& served,
-                    const BrickView& view, const Hierarchy& hierarchy)
+BrickPath BrickWay::path(const BrickView& view, double t, double step) const
 {
-  this->Level = level;
-  this->Enter = std::max(wanted.enter, served.enter);
-  this->Exit = std::min(wanted.exit, served.exit);
-  this->Reference = served.enter;
-  this->Exact = wanted.key == served.key;
-  this->Served = served.key;
-  this->Wish = wanted.key;
-  this->Count = 0;
-  this->Path.voxels = view.voxels;
-  this->Path.base = view.low;
-  this->Path.quantum = view.step;
-  const BrickId id = IdOf(served.key);
-  const glm::i64vec3 data = hierarchy.size(id.level) - hierarchy.firstVoxel(id);
-  const glm::ivec3& dims = hierarchy.brickDims();
+  const glm::dvec3 cell(this->Bricks.cell());
+  const glm::dvec3 origin = (this->Bricks.at(t) - cell) * this->Stride;
+  const glm::dvec3 direction = this->Bricks.slope() * (this->Stride * step);
+  const glm::dvec3 last = glm::min(this->Stride, this->LastVoxel - cell * this->Stride);
+  BrickPath path{view.voxels, view.low, view.step, {}, {}, {}};
   for (int axis = 0; axis < 3; ++axis) {
-    this->Path.origin[axis] = static_cast<float>(served.origin[axis]);
-    this->Path.direction[axis] = static_cast<float>(served.direction[axis]);
-    const std::int64_t last = std::min<std::int64_t>(dims[axis], data[axis]) - 1;
-    this->Path.last[axis] = static_cast<float>(last);
+    path.origin[axis] = static_cast<float>(origin[axis]);
+    path.direction[axis] = static_cast<float>(direction[axis]);
+    path.last[axis] = static_cast<float>(last[axis]);
   }
+  return path;
+}
+
+void BrickRun::open(const BrickWay& wanted, const BrickWay& served, const BrickView& view,
+                    double step)
+{
+  const double inverse = 1.0 / step;
+  this->Level = wanted.level();
+  this->Enter = std::max(wanted.enter(), served.enter()) * inverse;
+  this->Exit = std::min(wanted.exit(), served.exit()) * inverse;
+  this->Reference = std::floor(served.enter() * inverse);
+  this->Served = served.brick();
+  this->ServedLevel = served.level();
+  this->Wish = wanted.brick();
+  this->Count = 0;
+  this->Path = served.path(view, this->Reference * step, step);
 }
 
 } // namespace inr

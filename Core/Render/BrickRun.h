@@ -3,6 +3,7 @@
 
 #include "Core/Cache/BrickCache.h"
 #include "Core/Render/BrickKernel.h"
+#include "Core/Render/LatticeWalker.h"
 #include "Core/Render/Ray.h"
 
 namespace inr {
@@ -10,33 +11,43 @@ namespace inr {
 /// What kernels need to know about the bricks of a cache.
 BrickFormat FormatOf(const BrickCache& cache);
 
-/// The part [enter, exit) of a ray that one brick covers.
-struct BrickSpan
+/// A ray's way through the bricks of one level.
+class BrickWay
 {
-  BrickKey key;
-  double enter;
-  double exit;
-  glm::dvec3 origin;    ///< the brick's local coordinates at `enter`
-  glm::dvec3 direction; ///< and their change per unit of t
+public:
+  BrickWay() = default; ///< of no level
+  BrickWay(const Hierarchy& hierarchy, int level, const Ray& ray);
+
+  int level() const { return this->Level; }
+  /// To the brick at t, which does not fall from call to call.
+  void moveTo(double t) { this->Bricks.moveTo(t); }
+  BrickKey brick() const { return KeyOf({this->Level, this->Bricks.cell()}); }
+  /// Where the ray enters and leaves it. The outermost bricks reach as far as the ray does.
+  double enter() const { return this->Bricks.enter(); }
+  double exit() const { return this->Bricks.exit(); }
+  /// The way through the brick, stored in `view`, from t on; `along` in units of `step`.
+  BrickPath path(const BrickView& view, double t, double step) const;
+
+private:
+  int Level = -1;
+  glm::dvec3 Stride{0};    ///< voxels from brick to brick
+  glm::dvec3 LastVoxel{0}; ///< of the level
+  LatticeWalker Bricks;
 };
 
-/// The brick of `level` at t, and the ray's way through it. The outermost bricks reach as far as
-/// the ray does. A function of ray and brick only: where in the brick t lies makes no difference.
-BrickSpan SpanAt(const Hierarchy& hierarchy, int level, const Ray& ray, double t);
-
-/// Samples of one ray that fall into one brick.
+/// Samples of one ray that fall into one brick. Places on the ray count steps of `t`.
 class BrickRun
 {
 public:
-  /// Whether a sample of `level` at t belongs here.
-  bool covers(int level, double t) const
+  /// Whether a sample of `level` at a place belongs here.
+  bool covers(int level, double place) const
   {
-    return level == this->Level && t >= this->Enter && t < this->Exit;
+    return level == this->Level && place >= this->Enter && place < this->Exit;
   }
-  /// An empty run of samples that want `wanted` of `level` and are read from `served` (the same, or
-  /// of a coarser level), a mapped brick in `view`.
-  void open(int level, const BrickSpan& wanted, const BrickSpan& served, const BrickView& view,
-            const Hierarchy& hierarchy);
+  /// An empty run of samples that want the brick at which `wanted` is and are read from that at
+  /// which `served` is, the same or one of a coarser level, which is mapped and in `view`. `step`
+  /// is the t between places.
+  void open(const BrickWay& wanted, const BrickWay& served, const BrickView& view, double step);
   void close()
   {
     this->Level = -1;
@@ -44,8 +55,10 @@ public:
   }
 
   double exit() const { return this->Exit; }
-  /// Length along `path()` at t.
-  float along(double t) const { return static_cast<float>(t - this->Reference); }
+  /// Place where `path()` begins, a whole number.
+  double reference() const { return this->Reference; }
+  /// Steps along `path()` at a place that is a whole number.
+  float along(double place) const { return static_cast<float>(place - this->Reference); }
   void count(int samples) { this->Count += samples; }
 
   const BrickPath& path() const { return this->Path; }
@@ -54,7 +67,8 @@ public:
   void setPlace(int place) { this->Place = place; }
 
   int level() const { return this->Level; }
-  bool exact() const { return this->Exact; } ///< served == wanted
+  bool exact() const { return this->ServedLevel == this->Level; } ///< served == wanted
+  int servedLevel() const { return this->ServedLevel; }
   BrickKey served() const { return this->Served; }
   /// The brick to load, which is the wanted one unless said otherwise.
   BrickKey wish() const { return this->Wish; }
@@ -63,12 +77,12 @@ public:
 
 private:
   int Level = -1;
-  double Enter = 0;
+  double Enter = 0; ///< places
   double Exit = 0;
-  double Reference = 0; ///< t at the origin
+  double Reference = 0; ///< place of the path's origin, a whole number
   BrickPath Path{};
   int Place = 0;
-  bool Exact = false;
+  int ServedLevel = -1;
   BrickKey Served = 0;
   BrickKey Wish = 0;
   int Count = 0;

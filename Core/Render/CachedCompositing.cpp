@@ -2,6 +2,7 @@
 //
 // What CachedMarcher does with the values of a batch.
 #include "Core/Render/CachedMarcher.h"
+#include "Core/Render/StepTable.h"
 
 #include <cmath>
 #include <limits>
@@ -36,7 +37,7 @@ void CachedMarcher::composite(CachedRay& state)
     while (k + 1 < used && this->Batch.opacity[k + 1] < 0.5f) {
       ++k;
     }
-    state.halfOpaqueAt = this->T[k];
+    state.halfOpaqueAt = this->timeOf(state, k);
   }
   if (this->LastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
     this->Batch.value[this->Count] = last;
@@ -49,7 +50,8 @@ void CachedMarcher::compositeLast(CachedRay& state)
   float value = this->Batch.value[this->Count];
   const ValueRange range{this->Batch.low[this->Count], this->Batch.high[this->Count]};
   ClampToRange(range, value);
-  this->compositeColor(state, this->Scene.colors.at(value), this->LastLength, this->T[this->Count]);
+  this->compositeColor(state, this->Scene.colors.at(value), this->LastLength,
+                       this->timeOf(state, this->Count));
 }
 
 void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
@@ -75,17 +77,17 @@ void CachedMarcher::clampToRanges()
   }
 }
 
-void CachedMarcher::compositeShaded(CachedRay& state, const glm::vec4* colors, int count)
+void CachedMarcher::compositeShaded(CachedRay& state, const glm::vec4* colors, const double* t,
+                                    int count)
 {
   const double step = this->Scene.settings.step * this->Scene.settings.unitsPerT;
   for (int k = 0; k < count && state.color.transmittance > OpaqueTransmittance; ++k) {
     const bool isLast = this->LastLength > 0 && k + 1 == this->Count;
     const float length =
         isLast ? this->LastLength
-               : static_cast<float>(
-                     step * static_cast<double>(std::int64_t{1} << this->Batch.multiple[k]));
+               : static_cast<float>(step * static_cast<double>(StepsOf(this->Batch.length[k])));
     if (colors[k].w > 0.0f) {
-      this->compositeColor(state, colors[k], length, this->T[k]);
+      this->compositeColor(state, colors[k], length, t[k]);
     }
   }
 }

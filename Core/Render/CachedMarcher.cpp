@@ -1,40 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/CachedMarcher.h"
 
+#include "Core/Render/StepTable.h"
+
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace inr {
 
 namespace {
 
-/// How often 2 divides k; more than enough for 0.
-int PowerOfTwoIn(std::int64_t k)
+/// How many of 0, 1, 2 ... are below a number; at least 1, at most a batch.
+int CountBelow(double end)
 {
-  return k == 0 ? 62 : __builtin_ctzll(static_cast<std::uint64_t>(k));
-}
-
-/// value * 2^power.
-double Doubled(double value, int power)
-{
-  return value * static_cast<double>(std::int64_t{1} << power);
+  const double enough = std::min(end, static_cast<double>(SampleBatch::Capacity));
+  const int whole = static_cast<int>(enough);
+  return std::max(1, whole + (static_cast<double>(whole) < enough ? 1 : 0));
 }
 
 } // namespace
 
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
-    : ray(scene.geometry.ray(x, y)),
-      detail(this->ray, scene.frame.levelOfDetailScale, scene.cache.hierarchy().levels()),
-      walker(scene.majorants, scene.settings.dims, this->ray, scene.frame.levelOfDetailScale,
-             scene.cache.hierarchy().levels()),
-      stream(PixelStream(scene.frame, x, y)), jitter(JitterOf(this->stream))
-{
-  this->detail.moveTo(0);
-}
+    : ray(scene.geometry.ray(x, y)), stream(PixelStream(scene.frame, x, y)),
+      samples(scene.majorants, scene.settings, this->ray, scene.frame.levelOfDetailScale,
+              scene.cache.hierarchy().levels(), JitterOf(this->stream))
+{}
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
-    : Scene(scene), Missing(onMiss), StepsPerT(1.0 / scene.settings.step)
+    : Scene(scene), Missing(onMiss)
 {
   if (scene.shading != nullptr) {
     this->Shader.emplace(*scene.shading, scene.colors,
@@ -53,12 +45,13 @@ bool CachedMarcher::march(CachedRay& state)
 {
   this->Ended = false;
   this->Waiting = false;
+  this->Ways[0] = this->Ways[1] = {};
   while (!this->Ended && !this->Waiting) {
     if (this->Shader) {
       this->advanceShaded(state);
     } else {
       this->place(state);
-      this->Scene.kernel.sample(this->Scene.format, this->Batch, this->Count);
+      this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
       this->composite(state);
     }
     this->Ended = this->Ended || state.color.transmittance <= OpaqueTransmittance;
@@ -70,8 +63,8 @@ bool CachedMarcher::march(CachedRay& state)
 
 void CachedMarcher::place(CachedRay& state)
 {
-  const double step = this->Scene.settings.step;
   this->Count = 0;
+  this->RunCount = 0;
   this->Paths = 0;
   this->LastLength = 0;
   for (BrickRun& run : this->Runs) {
@@ -79,250 +72,162 @@ void CachedMarcher::place(CachedRay& state)
       this->enlist(run);
     }
   }
-  while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
-    if (static_cast<double>(state.next) * step >= state.ray.length) {
-      this->Ended = true;
-      return;
-    }
-    state.walker.moveTo(this->firstPlace(state, state.next));
-    if (state.walker.extinction() > 0.0f) {
-      this->fill(state);
-    } else if (state.walker.moveToVisible(state.ray.length)) {
-      this->skipTo(state, state.walker.enter());
-    } else {
-      this->Ended = true;
-    }
-  }
-}
-
-int CachedMarcher::shortest(const CachedRay& state, std::int64_t k)
-{
-  return std::min(state.detail.coarsest(), PowerOfTwoIn(k));
-}
-
-double CachedMarcher::firstPlace(const CachedRay& state, std::int64_t k) const
-{
-  const double intervals = static_cast<double>(k) + Doubled(state.jitter, shortest(state, k));
-  return std::min(intervals * this->Scene.settings.step, state.ray.length);
-}
-
-void CachedMarcher::skipTo(CachedRay& state, double t) const
-{
-  this->lookFrom(state, t);
-  const int level = state.detail.coarsest();
-  const double length = Doubled(this->Scene.settings.step, level);
-  const auto first = static_cast<std::int64_t>(std::ceil(t / length - state.jitter));
-  state.next = std::max(state.next + 1, first * (std::int64_t{1} << level));
-}
-
-void CachedMarcher::lookFrom(CachedRay& state, double t)
-{
-  state.detail.moveTo(t);
-  state.lookedFrom = t;
-}
-
-CachedMarcher::Segment CachedMarcher::segmentAt(CachedRay& state) const
-{
   const MarchSettings& settings = this->Scene.settings;
-  const int adaptive =
-      settings.adaptive ? 2 : 0; // at most 4 times as long where little can be seen
-  const double depth = state.walker.extinction() * settings.unitsPerT * settings.step;
-  this->lookFrom(state, state.walker.enter());
-  int longest = state.detail.coarsest();
-  for (int k = 0; k < adaptive && Doubled(depth, longest + 1) <= FaintDepth; ++k) {
-    ++longest;
-  }
-  return {state.walker.exit(), longest};
-}
-
-CachedMarcher::Sampling CachedMarcher::samplingAt(const CachedRay& state, const Segment& segment,
-                                                  int shortest) const
-{
-  const double limit = std::min(segment.exit, state.ray.length);
-  // Longer samples than the level's own start at multiples of their length and end inside the cell.
-  int multiple = std::max(std::min(segment.longest, PowerOfTwoIn(state.next)), shortest);
-  const auto sampling = [](int multiple) {
-    const double intervals = Doubled(1.0, multiple);
-    return Sampling{multiple, intervals, 1.0 / intervals};
-  };
-  while (multiple > shortest && this->endOf(state, sampling(multiple), 0) > limit) {
-    --multiple;
-  }
-  return sampling(multiple);
-}
-
-void CachedMarcher::fill(CachedRay& state)
-{
-  // The first sample's cell was found by what the ray looked at before.
-  int shortest = CachedMarcher::shortest(state, state.next);
-  double lookedFrom = state.lookedFrom;
-  const Segment segment = this->segmentAt(state);
-  while (this->Count < SampleBatch::Capacity) {
-    const Sampling sampling = this->samplingAt(state, segment, shortest);
-    const bool isLast = this->endOf(state, sampling, 0) > state.ray.length;
-    const int most = this->likeSamples(state, segment, sampling, shortest);
-    const int count = state.detail.isDithered() ? this->addDithered(state, sampling, most)
-                                                : this->addAlike(state, sampling, most);
-    if (this->Shader) {
-      this->remember(state, sampling, lookedFrom, count);
-    }
-    if (isLast && count > 0) {
-      this->LastLength = static_cast<float>((state.ray.length - this->endOf(state, sampling, -1)) *
-                                            this->Scene.settings.unitsPerT);
+  while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
+    if (!state.samples.moveToVisible(settings)) {
       this->Ended = true;
-    }
-    state.next += static_cast<std::int64_t>(count) << sampling.multiple;
-    const double begin = static_cast<double>(state.next) * this->Scene.settings.step;
-    if (this->Waiting || this->Ended || begin >= state.ray.length ||
-        this->firstPlace(state, state.next) >= segment.exit) {
       return;
     }
-    shortest = CachedMarcher::shortest(state, state.next);
-    lookedFrom = state.lookedFrom;
+    const AlikeSamples alike = state.samples.alike();
+    const int count = this->add(state, alike);
+    if (alike.last && count > 0) {
+      this->LastLength =
+          static_cast<float>(state.samples.rest() * settings.step * settings.unitsPerT);
+      this->Ended = true;
+    }
+    state.samples.pass(alike, count);
   }
 }
 
-void CachedMarcher::remember(const CachedRay& state, const Sampling& sampling, double lookedFrom,
-                             int count)
+int CachedMarcher::add(const CachedRay& state, const AlikeSamples& alike)
 {
-  for (int k = 0; k < count; ++k) {
-    const int sample = this->Count - count + k;
-    this->Intervals[sample] = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
-    this->LookedFrom[sample] = lookedFrom;
-  }
-}
-
-int CachedMarcher::likeSamples(const CachedRay& state, const Segment& segment,
-                               const Sampling& sampling, int shortest) const
-{
-  if (sampling.multiple < segment.longest) {
-    return 1;
-  }
-  // Samples of the level's own length may reach out of the cell that they begin in.
-  const bool reachesOut = sampling.multiple <= shortest;
-  const auto fits = [&](int k) {
-    const double end = this->endOf(state, sampling, k);
-    return end <= state.ray.length &&
-           (reachesOut ? this->placeOf(state, sampling, k) < segment.exit : end <= segment.exit);
-  };
-  const double first = this->endOf(state, sampling, 0);
-  const double beyond = reachesOut ? first - this->placeOf(state, sampling, 0) : 0.0;
-  const double room = std::min(segment.exit + beyond, state.ray.length) - first;
-  const int most = SampleBatch::Capacity - this->Count;
-  return 1 + this->largest(sampling, room, most - 1, fits);
-}
-
-template <typename Fits>
-int CachedMarcher::largest(const Sampling& sampling, double room, int most, const Fits& fits) const
-{
-  // A guess by division, made good by what decides: where a batch begins must not matter.
-  const double guess = room * (this->StepsPerT * sampling.inverse);
-  int count = static_cast<int>(std::clamp(guess, 0.0, static_cast<double>(most)));
-  while (count > 0 && !fits(count)) {
-    --count;
-  }
-  while (count < most && fits(count + 1)) {
-    ++count;
-  }
-  return count;
-}
-
-double CachedMarcher::placeOf(const CachedRay& state, const Sampling& sampling, int k) const
-{
-  const double interval = static_cast<double>(state.next) + k * sampling.intervals; // exact
-  return (interval + state.jitter * sampling.intervals) * this->Scene.settings.step;
-}
-
-double CachedMarcher::endOf(const CachedRay& state, const Sampling& sampling, int k) const
-{
-  const double interval = static_cast<double>(state.next) + (k + 1) * sampling.intervals;
-  return interval * this->Scene.settings.step;
-}
-
-int CachedMarcher::addAlike(const CachedRay& state, const Sampling& sampling, int most)
-{
-  const double first = this->placeOf(state, sampling, 0);
-  BrickRun* run = this->runFor(state, state.detail.level(), std::min(first, state.ray.length));
-  if (run == nullptr) {
+  const LevelOfDetail& detail = state.samples.detail();
+  const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
+  BrickRun* fine = this->runFor(state, detail.level(), place);
+  BrickRun* coarse = detail.isDithered() ? this->runFor(state, detail.level() + 1, place) : fine;
+  if (fine == nullptr || coarse == nullptr) {
     this->Waiting = true;
     return 0;
   }
-  const int count = 1 + this->largest(sampling, run->exit() - first, most - 1, [&](int k) {
-    return this->placeOf(state, sampling, k) < run->exit();
-  });
-  double* t = this->T + this->Count;
-  for (int k = 0; k < count; ++k) {
-    t[k] = std::min(this->placeOf(state, sampling, k), state.ray.length);
+  int count = std::min(alike.count, SampleBatch::Capacity - this->Count);
+  if (count > 1) {
+    const double exit = std::min(fine->exit(), coarse->exit());
+    count = std::min(count, CountBelow((exit - place) / static_cast<double>(alike.steps())));
   }
-  this->fillIn(state, *run, sampling.multiple, count);
-  run->count(count);
+  this->addRun(state, alike, count, *fine, *coarse);
+  countUse(state, this->Batch.runs[this->RunCount - 1], *fine, *coarse);
   return count;
 }
 
-int CachedMarcher::addDithered(const CachedRay& state, const Sampling& sampling, int most)
+void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
+                           const BrickRun& fine, const BrickRun& coarse)
 {
-  for (int k = 0; k < most; ++k) {
-    const std::int64_t at = state.next + (static_cast<std::int64_t>(k) << sampling.multiple);
-    const double t = std::min(this->placeOf(state, sampling, k), state.ray.length);
-    BrickRun* run = this->runFor(state, state.detail.dithered(state.stream, at), t);
-    if (run == nullptr) {
-      this->Waiting = true;
-      return k;
-    }
-    this->T[this->Count] = t;
-    this->fillIn(state, *run, sampling.multiple, 1);
-    run->count(1);
-  }
-  return most;
-}
-
-void CachedMarcher::fillIn(const CachedRay& state, const BrickRun& run, int multiple, int count)
-{
-  const ValueRange range =
-      run.exact() ? state.walker.range() : state.walker.range(IdOf(run.served()).level);
-  for (int k = this->Count; k < this->Count + count; ++k) {
-    this->Batch.along[k] = run.along(this->T[k]);
-    this->Batch.path[k] = run.place();
-    this->Batch.multiple[k] = multiple;
-    this->Batch.low[k] = range.low;
-    this->Batch.high[k] = range.high;
-  }
+  const SampleWalker& samples = state.samples;
+  const SampleStretch& stretch = samples.stretch();
+  // A coarser brick than the one wanted may hold anything.
+  const bool exact = fine.exact() && coarse.exact();
+  const ValueRange range = exact ? stretch.range : ValueRange{0.0f, 1.0f};
+  const double offset = samples.offset(alike);
+  const auto begin = static_cast<double>(samples.next());
+  const double growth = samples.detail().fractionGrowth() * this->Scene.settings.step;
+  const double fraction = samples.detail().fractionAtEntry() + growth * fine.reference();
+  SampleRun& run = this->Batch.runs[this->RunCount];
+  run.start[0] = fine.along(begin);
+  run.start[1] = coarse.along(begin);
+  run.spacing = static_cast<float>(alike.steps());
+  run.offset = static_cast<float>(offset);
+  run.ways = samples.detail().isDithered() ? 2 : 1;
+  run.path[0] = fine.place();
+  run.path[1] = coarse.place();
+  run.fraction = static_cast<float>(fraction);
+  run.growth = static_cast<float>(growth);
+  run.seed = DitherSeed(state.stream);
+  run.counter = static_cast<std::uint32_t>(samples.next());
+  run.stride = static_cast<std::uint32_t>(alike.steps());
+  run.count = count;
+  run.length = LengthOf(alike.joined, alike.power);
+  run.low = range.low;
+  run.high = range.high;
+  this->Origins[this->RunCount++] = {this->Count, offset, samples.next(), alike.steps(), stretch};
   this->Count += count;
 }
 
-BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double t)
+void CachedMarcher::countUse(const CachedRay& state, const SampleRun& samples, BrickRun& fine,
+                             BrickRun& coarse)
+{
+  if (fine.exact() && coarse.exact()) { // nobody asks which it was
+    fine.count(samples.count);
+    return;
+  }
+  const LevelOfDetail& detail = state.samples.detail();
+  for (int k = 0; k < samples.count; ++k) {
+    const std::int64_t interval = state.samples.next() + k * std::int64_t{samples.stride};
+    const bool isFine = detail.dithered(state.stream, interval) == fine.level();
+    (isFine ? fine : coarse).count(1);
+  }
+}
+
+const CachedMarcher::Origin& CachedMarcher::originOf(int sample) const
+{
+  int run = this->RunCount - 1;
+  while (this->Origins[run].sample > sample) {
+    --run;
+  }
+  return this->Origins[run];
+}
+
+double CachedMarcher::timeOf(const CachedRay& state, int sample) const
+{
+  const Origin& origin = this->originOf(sample);
+  const std::int64_t interval = origin.interval + (sample - origin.sample) * origin.steps;
+  const double t = (static_cast<double>(interval) + origin.offset) * this->Scene.settings.step;
+  return std::min(t, state.ray.length);
+}
+
+BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double place)
 {
   BrickRun& run = this->Runs[level & 1];
-  if (run.covers(level, t)) {
+  if (run.covers(level, place)) {
     return &run;
   }
   this->close(run, state.color.transmittance);
-  return this->open(run, state.ray, level, t) ? &run : nullptr;
+  return this->open(run, state.ray, level, place) ? &run : nullptr;
 }
 
-bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double t)
+bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
 {
   const BrickCache& cache = this->Scene.cache;
   const Hierarchy& hierarchy = cache.hierarchy();
-  const BrickSpan wanted = SpanAt(hierarchy, level, ray, t);
-  BrickSpan served = wanted;
-  std::int32_t slot = cache.find(wanted.key);
-  if (slot < 0 && this->Missing == OnMiss::Stop) {
-    this->Requests.add(wanted.key, 1, 1.0f);
-    return false;
+  const double t = place * this->Scene.settings.step;
+  BrickWay& wanted = this->Ways[level & 1];
+  if (wanted.level() != level) {
+    wanted = BrickWay(hierarchy, level, ray);
   }
-  for (int coarser = level + 1; slot < 0 && coarser < hierarchy.levels(); ++coarser) {
-    served = SpanAt(hierarchy, coarser, ray, t);
-    slot = cache.find(served.key);
+  wanted.moveTo(t);
+  const BrickKey key = wanted.brick();
+  std::int32_t slot = cache.find(key);
+  if (slot >= 0) {
+    run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
+  } else if (this->Missing == OnMiss::Stop) {
+    this->Requests.add(key, 1, 1.0f);
+    return false;
+  } else {
+    slot = this->openCoarser(run, ray, wanted, t);
   }
   cache.touch(slot);
-  run.open(level, wanted, served, cache.view(slot), hierarchy);
-  if (this->Missing == OnMiss::Approach && !run.exact()) {
-    const int next = IdOf(served.key).level - 1;
-    run.wishFor(KeyOf(hierarchy.brickAt(next, ray.at(t))));
-  }
   this->enlist(run);
   return true;
+}
+
+std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted,
+                                        double t)
+{
+  const BrickCache& cache = this->Scene.cache;
+  const Hierarchy& hierarchy = cache.hierarchy();
+  BrickKey wish = wanted.brick();
+  for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
+    BrickWay served(hierarchy, level, ray);
+    served.moveTo(t);
+    const std::int32_t slot = cache.find(served.brick());
+    if (slot >= 0) {
+      run.open(wanted, served, cache.view(slot), this->Scene.settings.step);
+      if (this->Missing == OnMiss::Approach) {
+        run.wishFor(wish);
+      }
+      return slot;
+    }
+    wish = served.brick();
+  }
 }
 
 void CachedMarcher::enlist(BrickRun& run)
@@ -347,31 +252,35 @@ void CachedMarcher::advanceShaded(CachedRay& state)
 {
   const CachedRay before = state; // gradients may ask for bricks that are not there
   this->place(state);
-  this->Scene.kernel.sample(this->Scene.format, this->Batch, this->Count);
+  this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
   this->clampToRanges();
+  double t[SampleBatch::Capacity];
+  for (int k = 0; k < this->Count; ++k) {
+    t[k] = this->timeOf(state, k);
+  }
   const bool stops = this->Missing == OnMiss::Stop;
   const SampleShader::Request request{
       state.ray, stops ? BrickGradients::Missing::Stop : BrickGradients::Missing::OneSided,
-      state.color.transmittance};
+      state.color.transmittance, this->Bricks, t};
   const std::size_t asked = this->Requests.entries().size();
   glm::vec4 colors[SampleBatch::Capacity];
-  const int known = this->Shader->shade(this->Batch, this->Bricks, this->T, this->Count, request,
-                                        this->Requests, colors);
+  const int known = this->Shader->shade(this->Batch, this->Count, request, this->Requests, colors);
   if (!stops) {
     this->Statistics.missed += static_cast<std::int64_t>(this->Requests.entries().size() - asked);
   }
-  this->compositeShaded(state, colors, known);
+  this->compositeShaded(state, colors, t, known);
   if (known < this->Count && state.color.transmittance > OpaqueTransmittance) {
     this->goBackTo(known, before, state);
   }
 }
 
-void CachedMarcher::goBackTo(int k, const CachedRay& before, CachedRay& state)
+void CachedMarcher::goBackTo(int sample, const CachedRay& before, CachedRay& state)
 {
-  state.next = this->Intervals[k];
-  state.walker = before.walker;
-  this->lookFrom(state, this->LookedFrom[k]);
-  this->Statistics.samples -= this->Count - k; // they will be counted again
+  const Origin& origin = this->originOf(sample);
+  state.samples = before.samples;
+  state.samples.resume(origin.interval + (sample - origin.sample) * origin.steps, origin.stretch,
+                       this->Scene.settings);
+  this->Statistics.samples -= this->Count - sample; // they will be counted again
   this->Waiting = true;
   this->Ended = false;
 }

@@ -12,8 +12,9 @@ namespace inr {
 
 namespace {
 
-/// log2 of the longest sample in steps: the coarsest level's, four times as long where it is faint.
-int StepMultiples(int levels) { return levels + 2; }
+/// How many lengths samples may have: up to the coarsest level's, four times as long where it is
+/// faint.
+int SampleLengths(int levels) { return LengthOf(4, levels - 1) + 1; }
 
 const CacheOptions& Checked(const CacheOptions& options)
 {
@@ -63,9 +64,9 @@ void CachedRenderer::beginFrame() { this->Latest = this->Store->beginFrame(); }
 
 const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double stepLength)
 {
-  const int multiples = StepMultiples(this->Store->cache().hierarchy().levels());
-  if (!this->Steps || !this->Steps->fits(stepLength, multiples)) {
-    this->Steps.emplace(colors, stepLength, multiples);
+  const int lengths = SampleLengths(this->Store->cache().hierarchy().levels());
+  if (!this->Steps || !this->Steps->fits(stepLength, lengths)) {
+    this->Steps.emplace(colors, stepLength, lengths);
   }
   return this->Steps->lookup();
 }

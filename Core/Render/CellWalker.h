@@ -12,9 +12,9 @@
 
 namespace inr {
 
-/// A ray's way through the macro-cells. Where its samples come from coarser levels, as
-/// LevelOfDetail has it for the place where the ray enters a cell, the walk goes on in a grid that
-/// bounds those. Which cell it is in depends on ray and t only.
+/// A ray's way through the macro-cells. Where LevelOfDetail lets samples come from levels too
+/// coarse for a grid's cells, the walk goes on in a grid that bounds those. Which cell it is in
+/// depends on ray and t only.
 class CellWalker
 {
 public:
@@ -43,11 +43,10 @@ public:
   /// Moves to t, which does not fall from call to call.
   INR_HOST_DEVICE void moveTo(double t)
   {
-    this->Cells.moveTo(t);
-    while (this->Cells.enter() >= this->End || (t >= this->End && this->extinction() <= 0.0f)) {
+    while (t >= this->End) {
       this->coarsen();
-      this->Cells.moveTo(t);
     }
+    this->Cells.moveTo(t);
   }
 
   /// Moves to the first cell from here on that can be seen; false when none begins before `end`.
@@ -65,15 +64,10 @@ public:
 
   INR_HOST_DEVICE float extinction() const { return this->Cells.extinction(); }
   INR_HOST_DEVICE const ValueRange& range() const { return this->Cells.range(); }
-  /// A bound on samples of `level`, be it coarser than what the place deserves.
-  INR_HOST_DEVICE const ValueRange& range(int level) const
-  {
-    return this->All->rangeAround(this->Grid, this->Cells.cell(), level);
-  }
-  /// Where the ray enters the cell, or begins to go by it; and where it leaves it: the outermost
-  /// cells reach as far as any ray.
+  /// Where the ray enters the cell, or begins to go by it; and where it leaves it or goes on by
+  /// another: the outermost cells reach as far as any ray.
   INR_HOST_DEVICE double enter() const { return glm::max(this->Cells.enter(), this->Begin); }
-  INR_HOST_DEVICE double exit() const { return this->Cells.exit(); }
+  INR_HOST_DEVICE double exit() const { return glm::min(this->Cells.exit(), this->End); }
 
 private:
   /// t up to which a grid bounds what LevelOfDetail chooses.

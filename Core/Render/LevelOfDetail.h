@@ -6,8 +6,15 @@
 #include "Core/Render/Ray.h"
 
 #include <cstdint>
+#include <limits>
 
 namespace inr {
+
+/// What chooses between levels, RandomUnit32 of this and the sample's number, for a ray's stream.
+INR_HOST_DEVICE inline std::uint32_t DitherSeed(std::uint64_t stream)
+{
+  return static_cast<std::uint32_t>(stream);
+}
 
 /// The cache level that a place on a ray deserves: a level's voxel should be as large as the
 /// pixel's footprint there. Between two levels the choice is random, in proportion, so that no
@@ -36,6 +43,16 @@ public:
     this->Fraction = between ? static_cast<float>(footprint / this->Voxel - 1.0) : 0.0f;
   }
 
+  /// t up to which level() and coarsest() stay as they are, while t grows.
+  INR_HOST_DEVICE double exit() const
+  {
+    if (this->Level == this->Last || this->Growth <= 0.0) {
+      return std::numeric_limits<double>::infinity();
+    }
+    const double footprint = this->isDithered() ? 2.0 * this->Voxel : this->Voxel;
+    return (footprint - this->Footprint) / this->Growth;
+  }
+
   /// The finer of the two levels in question.
   INR_HOST_DEVICE int level() const { return this->Level; }
   /// The coarser one.
@@ -47,9 +64,13 @@ public:
     if (this->Fraction <= 0.0f) {
       return this->Level;
     }
-    const float random = RandomUnit(stream, static_cast<std::uint64_t>(counter));
+    const float random = RandomUnit32(DitherSeed(stream), static_cast<std::uint32_t>(counter));
     return random < this->Fraction ? this->Level + 1 : this->Level;
   }
+  /// The part of the samples at t that come from the coarser one, while the levels stay: this plus
+  /// t times the other.
+  INR_HOST_DEVICE double fractionAtEntry() const { return this->Footprint / this->Voxel - 1.0; }
+  INR_HOST_DEVICE double fractionGrowth() const { return this->Growth / this->Voxel; }
 
 private:
   double Footprint;

@@ -36,7 +36,7 @@ int CoarsestLevelIn(const MacroCells& cells, const glm::i64vec3& volumeDims)
 
 Majorants::Majorants(const MacroCells& cells)
 {
-  this->Grids.push_back({MajorantGrid(WithoutHoles(cells)), 0, EveryLevel});
+  this->Grids.push_back({MajorantGrid(WithoutHoles(cells)), EveryLevel});
 }
 
 Majorants::Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, const Arena& arena)
@@ -47,14 +47,12 @@ Majorants::Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, co
   }
   this->Grids.front().coarsestLevel = 0;
   MacroCells ranges = cells;
-  int size = 0;
   while (this->Grids.back().coarsestLevel != EveryLevel) {
     const int coarsest = CoarsestLevelIn(ranges, volumeDims);
     if (coarsest > this->Grids.back().coarsestLevel) {
-      this->Grids.push_back({MajorantGrid(Dilated(ranges, arena)), size, coarsest});
+      this->Grids.push_back({MajorantGrid(Dilated(ranges, arena)), coarsest});
     }
     ranges = Joined(ranges, arena);
-    ++size;
   }
 }
 
@@ -63,17 +61,6 @@ void Majorants::update(const ColorTable& colors, const Arena& arena)
   for (Grid& grid : this->Grids) {
     grid.cells.update(colors, arena);
   }
-}
-
-const ValueRange& Majorants::rangeAround(int grid, const glm::i64vec3& cell, int level) const
-{
-  const int size = this->at(grid).size;
-  while (this->coarsestLevel(grid) < level) {
-    ++grid;
-  }
-  const Grid& around = this->at(grid);
-  const glm::i64vec3 at = cell >> std::int64_t{around.size - size};
-  return around.cells.range(around.cells.index(at));
 }
 
 } // namespace inr

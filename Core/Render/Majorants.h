@@ -30,14 +30,11 @@ public:
   const MajorantGrid& grid(int number) const { return this->at(number).cells; }
   /// The coarsest level that a grid bounds; it bounds all finer ones too. The last grid bounds all.
   int coarsestLevel(int grid) const { return this->at(grid).coarsestLevel; }
-  /// Bounds samples of `level` in a cell of a grid.
-  const ValueRange& rangeAround(int grid, const glm::i64vec3& cell, int level) const;
 
 private:
   struct Grid
   {
     MajorantGrid cells;
-    int size; ///< log2 of a cell's edge over that of grid 0
     int coarsestLevel;
   };
   const Grid& at(int number) const { return this->Grids[static_cast<std::size_t>(number)]; }

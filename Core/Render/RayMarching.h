@@ -5,8 +5,8 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Random.h"
-#include "Core/Render/MajorantGrid.h"
 #include "Core/Render/Ray.h"
+#include "Core/Render/SampleWalker.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -16,22 +16,11 @@
 
 namespace inr {
 
-/// What the stages share within a frame.
-struct MarchSettings
-{
-  glm::dvec3 dims{1.0};   ///< voxels per axis
-  double step = 0.5;      ///< t between samples
-  double unitsPerT = 1.0; ///< opacity unit distances per unit of t
-  bool adaptive = true;   ///< Frame::adaptiveSampling
-};
-
-/// Where a ray stands. Its samples sit on a lattice of its own, t = (k + jitter) * step, so that
-/// what is skipped does not move what follows.
+/// Where a ray stands.
 struct MarchState
 {
   Ray ray;
-  double jitter = 0;        ///< in [0, 1)
-  std::int64_t next = 0;    ///< lattice interval to look at next
+  SampleWalker samples;
   glm::vec4 color{0};       ///< premultiplied, so far
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
 };
@@ -54,48 +43,14 @@ INR_HOST_DEVICE inline double JitterOf(std::uint64_t stream)
 struct MarchSample
 {
   glm::vec3 position; ///< in the unit cube
-  ValueRange range;   ///< of its macro-cell
+  ValueRange range;   ///< of its macro-cells
   float length;       ///< it stands for, in opacity unit distances
   float t;
 };
 
-/// Optical depth that needs no finer sampling.
-constexpr double FaintDepth = 0.05;
-
 /// Opacity at which the rest of a ray no longer shows.
 constexpr float OpaqueEnough = 0.999f;
 constexpr float OpaqueTransmittance = 1.0f - OpaqueEnough;
-
-/// The macro-cell of a point in the unit cube, and where the ray leaves it.
-struct CellVisit
-{
-  float extinction; ///< see MajorantGrid
-  ValueRange range;
-  double exit; ///< t, above the t of the visit
-};
-
-INR_HOST_DEVICE inline CellVisit VisitCell(const MajorantGrid& majorants,
-                                           const MarchSettings& settings, const Ray& ray, double t)
-{
-  const glm::dvec3 u = (ray.at(t) + 0.5) / settings.dims;
-  glm::i64vec3 at;
-  double exit = ray.length;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double edge = majorants.spacing()[axis];
-    const auto last = static_cast<double>(majorants.dims()[axis] - 1);
-    const double cell = glm::clamp(std::floor(u[axis] / edge), 0.0, last);
-    at[axis] = static_cast<std::int64_t>(cell);
-    const double slope = ray.direction[axis] / settings.dims[axis];
-    // The outermost cells reach as far as the ray does.
-    if (slope > 0 && cell < last) {
-      exit = glm::min(exit, t + ((cell + 1.0) * edge - u[axis]) / slope);
-    } else if (slope < 0 && cell > 0) {
-      exit = glm::min(exit, t + (cell * edge - u[axis]) / slope);
-    }
-  }
-  const std::int64_t cell = majorants.index(at);
-  return {majorants.extinction(cell), majorants.range(cell), exit};
-}
 
 /// Where a field is asked for at a point of a ray: inside a slab of a single voxel, always at it.
 INR_HOST_DEVICE inline glm::vec3 FieldPosition(const MarchSettings& settings,
@@ -105,58 +60,28 @@ INR_HOST_DEVICE inline glm::vec3 FieldPosition(const MarchSettings& settings,
   return glm::vec3((inside + 0.5) / settings.dims);
 }
 
-/// How many lattice intervals one sample may stand for: more where little can be seen. The interval
-/// must start on a multiple of its size and end inside the cell.
-INR_HOST_DEVICE inline int StepsAtOnce(const MarchSettings& settings, std::int64_t k,
-                                       float extinction, double exit)
-{
-  const int most = settings.adaptive ? 4 : 1;
-  int steps = 1;
-  while (steps < most) {
-    const int doubled = 2 * steps;
-    const double length = doubled * settings.step * settings.unitsPerT;
-    if (k % doubled != 0 || static_cast<double>(k + doubled) * settings.step > exit ||
-        extinction * length > FaintDepth) {
-      break;
-    }
-    steps = doubled;
-  }
-  return steps;
-}
-
 /// Places up to `most` samples of a ray, skipping what cannot be seen; fewer only at the ray's end.
-INR_HOST_DEVICE inline int PlaceSamples(const MajorantGrid& majorants,
-                                        const MarchSettings& settings, MarchState& state, int most,
+INR_HOST_DEVICE inline int PlaceSamples(const MarchSettings& settings, MarchState& state, int most,
                                         MarchSample* samples)
 {
   const Ray& ray = state.ray;
+  SampleWalker& walker = state.samples;
   int count = 0;
-  while (count < most) {
-    const double begin = static_cast<double>(state.next) * settings.step;
-    if (begin >= ray.length) {
-      break;
-    }
-    const double t = glm::min(begin + state.jitter * settings.step, ray.length);
-    const CellVisit visit = VisitCell(majorants, settings, ray, t);
-    if (visit.extinction <= 0.0f) {
-      const double past = std::ceil(visit.exit / settings.step - state.jitter);
-      state.next = glm::max(state.next + 1, static_cast<std::int64_t>(past));
-      continue;
-    }
-    const int steps = StepsAtOnce(settings, state.next, visit.extinction, visit.exit);
-    const double end =
-        glm::min(static_cast<double>(state.next + steps) * settings.step, ray.length);
-    const double at = glm::min(begin + state.jitter * steps * settings.step, ray.length);
-    samples[count++] = {FieldPosition(settings, ray.at(at)), visit.range,
-                        static_cast<float>((end - begin) * settings.unitsPerT),
-                        static_cast<float>(at)};
-    state.next += steps;
+  while (count < most && walker.moveToVisible(settings)) {
+    const AlikeSamples alike = walker.alike();
+    const auto steps = alike.last ? walker.rest() : static_cast<double>(alike.steps());
+    const double place = static_cast<double>(walker.next()) + walker.offset(alike);
+    const double t = glm::min(place * settings.step, ray.length);
+    samples[count++] = {FieldPosition(settings, ray.at(t)), walker.stretch().range,
+                        static_cast<float>(steps * settings.step * settings.unitsPerT),
+                        static_cast<float>(t)};
+    walker.pass(alike, 1);
   }
   return count;
 }
 
-/// Moves a network output into its macro-cell's range, so that the majorant holds; tells whether it
-/// was outside.
+/// Moves a network output into the range of its macro-cells, so that the majorant holds; tells
+/// whether it was outside.
 INR_HOST_DEVICE inline bool ClampToRange(const ValueRange& range, float& value)
 {
   const float inside = value > range.low ? (value < range.high ? value : range.high) : range.low;

@@ -121,9 +121,8 @@ FrameStatistics Renderer::Implementation::renderUncached(
     const Shading* shading, const PassOutput& output, const std::function<bool()>& keepGoing) const
 {
   const Timer timer;
-  const MarchScene scene{
-      frame,    geometry, this->Cells.grid(0), this->Colors->lookup(), *this->Field,
-      settings, shading};
+  const MarchScene scene{frame,        geometry, this->Cells, this->Colors->lookup(),
+                         *this->Field, settings, shading};
   const Tiling tiling(frame.width, frame.height);
   std::vector<FrameStatistics> tiles(static_cast<std::size_t>(tiling.count()));
   ForEachTile(this->Threads, tiling.count(), keepGoing, [&](std::int64_t k) {

@@ -3,8 +3,8 @@
 
 namespace inr {
 
-int SampleShader::shade(const SampleBatch& batch, const BrickKey* bricks, const double* t,
-                        int count, const Request& request, RequestList& requests, glm::vec4* colors)
+int SampleShader::shade(const SampleBatch& batch, int count, const Request& request,
+                        RequestList& requests, glm::vec4* colors)
 {
   int visible[SampleBatch::Capacity];
   int seen = 0;
@@ -18,13 +18,13 @@ int SampleShader::shade(const SampleBatch& batch, const BrickKey* bricks, const 
     return count;
   }
   glm::vec3 gradients[SampleBatch::Capacity];
-  const int found = this->Gradients.find(batch, bricks, visible, seen, request.missing,
+  const int found = this->Gradients.find(batch, request.bricks, visible, seen, request.missing,
                                          request.transmittance, requests, gradients);
   const Shading::View view = this->Lighting.viewAlong(request.ray);
   for (int k = 0; k < found; ++k) {
     glm::vec4& color = colors[visible[k]];
-    const glm::vec3 lit =
-        this->Lighting.shade(glm::vec3(color), view, request.ray.at(t[visible[k]]), gradients[k]);
+    const glm::vec3 lit = this->Lighting.shade(glm::vec3(color), view,
+                                               request.ray.at(request.t[visible[k]]), gradients[k]);
     color = glm::vec4(lit, color.w);
   }
   return found < seen ? visible[found] : count;

@@ -23,14 +23,16 @@ public:
   {
     const Ray& ray;
     BrickGradients::Missing missing;
-    float transmittance; ///< of the ray so far
+    float transmittance;    ///< of the ray so far
+    const BrickKey* bricks; ///< of the batch's paths
+    const double* t;        ///< of the samples
   };
 
   /// Straight RGB and opacity per unit distance of the first `count` samples of `batch`, whose
-  /// values have been found and moved into their ranges; sample k is at t[k], path p in brick
-  /// bricks[p]. Returns for how many of them it is known: fewer only with Missing::Stop.
-  int shade(const SampleBatch& batch, const BrickKey* bricks, const double* t, int count,
-            const Request& request, RequestList& requests, glm::vec4* colors);
+  /// values have been found and moved into their ranges. Returns for how many of them it is known:
+  /// fewer only with Missing::Stop.
+  int shade(const SampleBatch& batch, int count, const Request& request, RequestList& requests,
+            glm::vec4* colors);
 
 private:
   const Shading& Lighting;

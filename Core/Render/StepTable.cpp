@@ -26,14 +26,14 @@ bool IsTooLong(double begin, double end, double length)
 }
 
 /// Rows between two entries of the colour table.
-int Refinement(const ColorLookup& colors, double stepLength, int multiples)
+int Refinement(const ColorLookup& colors, double shortest, double longest)
 {
   int pieces = 1;
   for (int k = 0; k + 1 < colors.count; ++k) {
     const double begin = colors.entries[k].w;
     const double end = colors.entries[k + 1].w;
     // The power bends most where opacity is high for short samples and where it is low for long.
-    for (const double length : {stepLength, std::ldexp(stepLength, multiples - 1)}) {
+    for (const double length : {shortest, longest}) {
       const double rise = end - begin;
       while (pieces * 2 * (colors.count - 1) <= MaximumRows &&
              (IsTooLong(begin, begin + rise / pieces, length) ||
@@ -52,19 +52,22 @@ glm::vec4 Corrected(const glm::vec4& entry, double length)
 
 } // namespace
 
-StepTable::StepTable(const ColorLookup& colors, double stepLength, int multiples)
-    : StepLength(stepLength), Multiples(multiples)
+StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
+    : StepLength(stepLength), Lengths(lengths)
 {
-  const int pieces = Refinement(colors, stepLength, multiples);
+  const auto lengthOf = [&](int length) {
+    return stepLength * static_cast<double>(StepsOf(length));
+  };
+  const int pieces = Refinement(colors, stepLength, lengthOf(lengths - 1));
   const int nodes = (colors.count - 1) * pieces + 1;
   this->Lookup.rows = nodes + 4;
   // A logarithm is taken before the lookup; what comes here is the coordinate itself.
   const auto rows = static_cast<float>(pieces);
   this->Lookup.scale = colors.logarithmic ? rows : rows * colors.scale;
   this->Lookup.bias = (colors.logarithmic ? 0.0f : rows * colors.bias) + 2.0f;
-  this->Entries.reserve(static_cast<std::size_t>(this->Lookup.rows) * multiples);
-  for (int multiple = 0; multiple < multiples; ++multiple) {
-    const double length = std::ldexp(stepLength, multiple);
+  this->Entries.reserve(static_cast<std::size_t>(this->Lookup.rows) * lengths);
+  for (int number = 0; number < lengths; ++number) {
+    const double length = lengthOf(number);
     this->Entries.insert(this->Entries.end(), 2, Corrected(colors.below, length));
     for (int k = 0; k < nodes; ++k) {
       const int cell = std::min(k / pieces, colors.count - 2);

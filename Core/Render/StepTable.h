@@ -4,30 +4,41 @@
 #include "Core/Render/BrickKernel.h"
 #include "Core/Render/ColorTable.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace inr {
 
-/// A colour table with its opacities corrected for samples of 1, 2, 4, ... steps:
+/// Numbers the lengths of samples: 1, 3, 2, 6, 4, 12, 8 ... steps. This is that of `count`, 1 to 4,
+/// times 2^power steps.
+constexpr int LengthOf(int count, int power)
+{
+  return 2 * power + (count == 3 ? 1 : count == 4 ? 4 : 2 * (count - 1));
+}
+constexpr std::int64_t StepsOf(int length)
+{
+  return std::int64_t{length % 2 == 0 ? 1 : 3} << (length / 2);
+}
+
+/// A colour table with its opacities corrected for samples of 1, 3, 2, 6, ... steps:
 /// 1 - (1 - opacity)^length. Between the entries of the colour table as many are put as linear
 /// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows.
 class StepTable
 {
 public:
-  /// `stepLength` in opacity unit distances, above 0; `multiples` tables, for samples of
-  /// 1 ... 2^(multiples - 1) steps.
-  StepTable(const ColorLookup& colors, double stepLength, int multiples);
+  /// `stepLength` in opacity unit distances, above 0; for the first `lengths` lengths.
+  StepTable(const ColorLookup& colors, double stepLength, int lengths);
 
   /// Over normalised values, or over ColorLookup::coordinate for a logarithmic colour table.
   const StepLookup& lookup() const { return this->Lookup; }
-  bool fits(double stepLength, int multiples) const
+  bool fits(double stepLength, int lengths) const
   {
-    return this->StepLength == stepLength && this->Multiples == multiples;
+    return this->StepLength == stepLength && this->Lengths == lengths;
   }
 
 private:
   double StepLength;
-  int Multiples;
+  int Lengths;
   std::vector<glm::vec4> Entries;
   StepLookup Lookup{};
 };

@@ -25,15 +25,16 @@ FrameStatistics TileMarcher::march(const Tile& tile, Image& rgba, Image* depth)
 void TileMarcher::generateRays(const Tile& tile)
 {
   const Frame& frame = this->Scene.frame;
-  this->Rays.assign(static_cast<std::size_t>(tile.width) * tile.height, MarchState{});
+  this->Rays.clear();
   this->Live.clear();
   for (int k = 0; k < tile.width * tile.height; ++k) {
     const int x = tile.x + k % tile.width;
     const int y = tile.y + k / tile.width;
-    MarchState& state = this->Rays[static_cast<std::size_t>(k)];
-    state.ray = this->Scene.geometry.ray(x, y);
-    state.jitter = JitterOf(PixelStream(frame, x, y));
-    if (state.ray.length > 0) {
+    const Ray ray = this->Scene.geometry.ray(x, y);
+    const double jitter = JitterOf(PixelStream(frame, x, y));
+    const SampleWalker samples(this->Scene.majorants, this->Scene.settings, ray, 0, 1, jitter);
+    this->Rays.push_back({ray, samples});
+    if (ray.length > 0) {
       this->Live.push_back(k);
     }
   }
@@ -46,9 +47,8 @@ void TileMarcher::placeSamples()
   this->SampleEnds.clear();
   MarchSample placed[SamplesPerRound];
   for (const int k : this->Live) {
-    const int count =
-        PlaceSamples(this->Scene.majorants, this->Scene.settings,
-                     this->Rays[static_cast<std::size_t>(k)], SamplesPerRound, placed);
+    const int count = PlaceSamples(this->Scene.settings, this->Rays[static_cast<std::size_t>(k)],
+                                   SamplesPerRound, placed);
     this->Samples.insert(this->Samples.end(), placed, placed + count);
     this->SampleEnds.push_back(static_cast<int>(this->Samples.size()));
   }

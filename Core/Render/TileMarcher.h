@@ -16,7 +16,7 @@ struct MarchScene
 {
   const Frame& frame;
   const RayGeometry& geometry;
-  const MajorantGrid& majorants;
+  const Majorants& majorants;
   const ColorLookup& colors;
   const Evaluator& evaluator;
   MarchSettings settings;

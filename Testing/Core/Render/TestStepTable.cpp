@@ -8,8 +8,8 @@
 
 namespace {
 
-/// RGBA of a sample of 2^multiple steps, read as the compositing kernels do.
-glm::vec4 Read(const inr::StepLookup& lookup, float y, int multiple)
+/// RGBA of a sample of one of the lengths, read as the compositing kernels do.
+glm::vec4 Read(const inr::StepLookup& lookup, float y, int length)
 {
   float position = lookup.scale * y + lookup.bias;
   int row = 0;
@@ -20,7 +20,7 @@ glm::vec4 Read(const inr::StepLookup& lookup, float y, int multiple)
   } else if (position > 2) {
     row = lookup.rows - 2;
   }
-  const float* first = lookup.entries + 4 * (multiple * lookup.rows + row);
+  const float* first = lookup.entries + 4 * (length * lookup.rows + row);
   glm::vec4 entry;
   for (int k = 0; k < 4; ++k) {
     entry[k] = first[k] + (first[k + 4] - first[k]) * weight;
@@ -35,11 +35,12 @@ TEST(StepTable, FollowsThePowerBetweenEntries)
   const inr::ColorTable colors(function, inr::VolumeInfo{});
   for (const double length : {0.1, 1.0, 7.0}) {
     const inr::StepTable table(colors.lookup(), length, 4);
-    for (int multiple = 0; multiple < 4; ++multiple) {
+    for (int number = 0; number < 4; ++number) {
       for (float y = 0; y <= 1; y += 1.0f / 1237) {
         const glm::vec4 entry = colors.lookup().at(y);
-        const double exact = 1 - std::pow(1.0 - entry.w, std::ldexp(length, multiple));
-        const glm::vec4 read = Read(table.lookup(), y, multiple);
+        const double exact =
+            1 - std::pow(1.0 - entry.w, length * static_cast<double>(inr::StepsOf(number)));
+        const glm::vec4 read = Read(table.lookup(), y, number);
         // Short samples of nearly opaque values bend without limit next to 1.
         EXPECT_NEAR(read.w, exact, entry.w < 0.99f ? 2e-3 : 0.1) << y << " " << length;
         EXPECT_NEAR(read.x, entry.x, 1e-4);
@@ -57,12 +58,12 @@ TEST(StepTable, StepsAtTheEndsOfTheRange)
   function.below = {0, 0, 0, 0};
   function.above = {1, 0, 0, 0.75f};
   const inr::ColorTable colors(function, inr::VolumeInfo{});
-  const inr::StepTable table(colors.lookup(), 1.0, 2);
+  const inr::StepTable table(colors.lookup(), 1.0, 3);
   EXPECT_EQ(Read(table.lookup(), 0.2f, 0).w, 0.0f);
   EXPECT_FLOAT_EQ(Read(table.lookup(), 0.3f, 0).w, 0.5f);
-  EXPECT_FLOAT_EQ(Read(table.lookup(), 0.3f, 1).w, 0.75f);
+  EXPECT_FLOAT_EQ(Read(table.lookup(), 0.3f, 2).w, 0.75f);
   EXPECT_FLOAT_EQ(Read(table.lookup(), 0.8f, 0).w, 0.75f);
-  EXPECT_FLOAT_EQ(Read(table.lookup(), 0.8f, 1).w, 0.9375f);
+  EXPECT_FLOAT_EQ(Read(table.lookup(), 0.8f, 2).w, 0.9375f);
 }
 
 } // namespace

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/HostDevice.h"
+
+#include <glm/common.hpp>
+#include <glm/gtc/type_precision.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <limits>
+
+namespace inr {
+
+/// A ray's way through the cells of a regular lattice, cell by cell. Where the ray enters and
+/// leaves a cell is a function of ray and cell alone, so that a walk may stop and start again
+/// anywhere. The outermost cells reach as far as any ray.
+class LatticeWalker
+{
+public:
+  LatticeWalker() = default;
+  /// `dims` cells; at t the ray is in cell start + t * slope, rounded down. `inverse` is 1 / slope.
+  INR_HOST_DEVICE LatticeWalker(const glm::i64vec3& dims, const glm::dvec3& start,
+                                const glm::dvec3& slope, const glm::dvec3& inverse)
+      : Last(dims - std::int64_t{1}), Start(start), Slope(slope), Inverse(inverse)
+  {}
+
+  /// Moves to t, which does not fall from call to call.
+  INR_HOST_DEVICE void moveTo(double t)
+  {
+    constexpr int near = 4; // further cells are found sooner from scratch
+    for (int steps = 0; t >= this->Exit; ++steps) {
+      if (steps == near || this->Exit < 0) {
+        this->enterAt(t);
+        return;
+      }
+      this->advance();
+    }
+  }
+
+  INR_HOST_DEVICE const glm::i64vec3& cell() const { return this->Cell; }
+  INR_HOST_DEVICE double enter() const { return this->Enter; }
+  INR_HOST_DEVICE double exit() const { return this->Exit; }
+  /// Where the ray is at t, in cells, and how far it comes per unit of t.
+  INR_HOST_DEVICE glm::dvec3 at(double t) const { return this->Start + t * this->Slope; }
+  INR_HOST_DEVICE const glm::dvec3& slope() const { return this->Slope; }
+
+private:
+  static constexpr double Never = std::numeric_limits<double>::infinity();
+
+  /// t at which the ray crosses the plane below cell `plane`.
+  INR_HOST_DEVICE double faceAt(int axis, std::int64_t plane) const
+  {
+    return (static_cast<double>(plane) - this->Start[axis]) * this->Inverse[axis];
+  }
+
+  INR_HOST_DEVICE void findAxisExit(int axis)
+  {
+    const bool forward = this->Slope[axis] > 0;
+    const std::int64_t cell = this->Cell[axis];
+    const double face = this->faceAt(axis, cell + (forward ? 1 : 0));
+    // Which way a ray goes is anybody's guess, so better no branches.
+    const bool open = static_cast<int>(this->Slope[axis] == 0) |
+                      static_cast<int>(cell == (forward ? this->Last[axis] : 0));
+    this->AxisExit[axis] = open ? Never : face;
+  }
+
+  INR_HOST_DEVICE void findExit()
+  {
+    this->Exit = glm::min(glm::min(this->AxisExit[0], this->AxisExit[1]), this->AxisExit[2]);
+  }
+
+  /// The cell that holds t, by the planes that `advance` goes by.
+  INR_HOST_DEVICE void enterAt(double t)
+  {
+    this->Enter = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t last = this->Last[axis];
+      const double place = this->Start[axis] + this->Slope[axis] * t;
+      this->Cell[axis] = place > 0 ? glm::min(static_cast<std::int64_t>(place), last) : 0;
+      this->findAxisExit(axis);
+      if (this->Slope[axis] != 0) {
+        this->settle(axis, t);
+      }
+    }
+    this->findExit();
+  }
+
+  /// Makes good what rounding did to the cell along an axis.
+  INR_HOST_DEVICE void settle(int axis, double t)
+  {
+    const std::int64_t forward = this->Slope[axis] > 0 ? 1 : 0;
+    const std::int64_t direction = 2 * forward - 1;
+    const std::int64_t first = forward != 0 ? 0 : this->Last[axis];
+    std::int64_t& cell = this->Cell[axis];
+    while (t >= this->AxisExit[axis]) {
+      cell += direction;
+      this->findAxisExit(axis);
+    }
+    while (cell != first && t < this->faceAt(axis, cell + 1 - forward)) {
+      cell -= direction;
+      this->findAxisExit(axis);
+    }
+    if (cell != first) {
+      this->Enter = glm::max(this->Enter, this->faceAt(axis, cell + 1 - forward));
+    }
+  }
+
+  /// Into the next cell; there is one while Exit is not Never.
+  INR_HOST_DEVICE void advance()
+  {
+    const glm::dvec3& exits = this->AxisExit;
+    const int axis =
+        exits[0] <= exits[1] ? (exits[0] <= exits[2] ? 0 : 2) : (exits[1] <= exits[2] ? 1 : 2);
+    this->Cell[axis] += this->Slope[axis] > 0 ? 1 : -1;
+    this->Enter = this->Exit;
+    this->findAxisExit(axis);
+    this->findExit();
+  }
+
+  glm::i64vec3 Last{0};
+  glm::dvec3 Start{0};
+  glm::dvec3 Slope{0};
+  glm::dvec3 Inverse{0};
+  glm::dvec3 AxisExit{0}; ///< where the ray leaves the cell along each axis
+  glm::i64vec3 Cell{0};
+  double Enter = 0;
+  double Exit = -1; ///< below 0: nowhere yet
+};
+
+} // namespace inr

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/HostDevice.h"
+#include "Core/Render/CellWalker.h"
+#include "Core/Render/LevelOfDetail.h"
+
+#include <glm/common.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace inr {
+
+/// What the stages of ray marching share within a frame.
+struct MarchSettings
+{
+  glm::dvec3 dims{1.0};   ///< voxels per axis
+  double step = 0.5;      ///< t between samples of level 0
+  double unitsPerT = 1.0; ///< opacity unit distances per unit of t
+  bool adaptive = true;   ///< Frame::adaptiveSampling
+};
+
+/// Optical depth that needs no finer sampling.
+constexpr double FaintDepth = 0.05;
+
+/// log2 of how many samples of optical depth `depth` each may be taken at once: at most 4.
+INR_HOST_DEVICE inline int FaintSamples(const MarchSettings& settings, double depth)
+{
+  const bool two = settings.adaptive && 2.0 * depth <= FaintDepth;
+  const bool four = settings.adaptive && 4.0 * depth <= FaintDepth;
+  return static_cast<int>(two) + static_cast<int>(four);
+}
+
+/// 2^power, for the exponents of ordinary numbers.
+INR_HOST_DEVICE inline double PowerOfTwo(int power)
+{
+  const auto bits = static_cast<std::uint64_t>(1023 + power) << 52;
+  double value;
+  std::memcpy(&value, &bits, sizeof(value));
+  return value;
+}
+
+/// Samples of a ray that differ in nothing but their place: sample k stands for `steps()` steps,
+/// from interval k * steps() after the first one's on.
+struct AlikeSamples
+{
+  int count;
+  int joined; ///< 1 to 4: samples of the level, 2^power steps apart, that each is taken for
+  int power;
+  bool last; ///< a single one, which the ray's end cuts short
+
+  INR_HOST_DEVICE std::int64_t steps() const { return std::int64_t{this->joined} << this->power; }
+};
+
+/// A stretch of a ray whose samples are as far apart and as much joined as each other's: through
+/// macro-cells that can be seen.
+struct SampleStretch
+{
+  double exit = -1;     ///< samples at this place or behind it do not belong to it
+  double levelEnd = -1; ///< nor do those whose steps begin here or later
+  int level = 0;        ///< the steps between samples are 2^level
+  int faint = 0;        ///< 2^faint of them may be taken at once
+  ValueRange range;     ///< of the cells
+};
+
+/// Where the samples of a ray are: every 2^l steps where it deserves level l of the cache and the
+/// one before; up to four such at once where little can be seen; nowhere in cells that are
+/// invisible. Places count steps of t, and samples sit on a lattice of the ray's own: one that
+/// stands for n steps from interval k on is at place k + jitter * n. So what is skipped does not
+/// move what follows, and where a walk was interrupted makes no difference.
+class SampleWalker
+{
+public:
+  /// `scale` and `levels` are LevelOfDetail's; `jitter` is in [0, 1).
+  INR_HOST_DEVICE SampleWalker(const Majorants& majorants, const MarchSettings& settings,
+                               const Ray& ray, double scale, int levels, double jitter)
+      : Detail(ray, scale, levels), Cells(majorants, settings.dims, ray, scale, levels),
+        Jitter(jitter), End(ray.length / settings.step)
+  {}
+
+  /// Moves on to the next sample that may be seen; false when there is none before the ray ends.
+  INR_HOST_DEVICE bool moveToVisible(const MarchSettings& settings)
+  {
+    while (static_cast<double>(this->Next) < this->End) {
+      if (static_cast<double>(this->Next) < this->Stretch.levelEnd &&
+          this->firstPlace() < this->Stretch.exit) {
+        return true;
+      }
+      this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
+      this->Cells.moveTo(this->firstPlace() * settings.step);
+      if (this->Cells.extinction() > 0.0f) {
+        this->beginStretch(settings);
+        return true;
+      }
+      if (!this->Cells.moveToVisible(this->End * settings.step)) {
+        return false;
+      }
+      this->skipTo(this->Cells.enter(), settings);
+    }
+    return false;
+  }
+
+  /// The samples from here on, as far as they lie in the stretch and on the ray; there is one.
+  INR_HOST_DEVICE AlikeSamples alike() const
+  {
+    const int power = this->shortest();
+    const double inverse = PowerOfTwo(-power);
+    const auto begin = static_cast<double>(this->Next);
+    const double onRay = (this->End - begin) * inverse;
+    if (onRay < 1.0) {
+      return {1, 1, power, true};
+    }
+    if (power < this->Stretch.level) { // up to the next interval of the level
+      return {1, 1, power, false};
+    }
+    const double inCells = (this->Stretch.exit - begin) * inverse - this->Jitter;
+    const double inLevel = (this->Stretch.levelEnd - begin) * inverse;
+    const int count =
+        glm::min(CountBelow(glm::min(inCells, inLevel)), static_cast<int>(glm::min(onRay, Plenty)));
+    const int joined = count >> this->Stretch.faint;
+    return joined == 0 ? AlikeSamples{1, count, power, false}
+                       : AlikeSamples{joined, 1 << this->Stretch.faint, power, false};
+  }
+
+  /// Goes past `count` of such samples.
+  INR_HOST_DEVICE void pass(const AlikeSamples& samples, int count)
+  {
+    this->Next += count * samples.steps();
+  }
+
+  /// From the first one's interval to the place of such samples.
+  INR_HOST_DEVICE double offset(const AlikeSamples& samples) const
+  {
+    const double offset = this->Jitter * static_cast<double>(samples.steps());
+    return samples.last ? glm::min(offset, this->End - static_cast<double>(this->Next)) : offset;
+  }
+  /// Steps that the ray's last sample stands for.
+  INR_HOST_DEVICE double rest() const { return this->End - static_cast<double>(this->Next); }
+
+  INR_HOST_DEVICE std::int64_t next() const { return this->Next; } ///< lattice interval
+  INR_HOST_DEVICE double end() const { return this->End; }         ///< place where the ray ends
+  INR_HOST_DEVICE const SampleStretch& stretch() const { return this->Stretch; }
+  INR_HOST_DEVICE const LevelOfDetail& detail() const { return this->Detail; }
+
+  /// Goes back to `interval` of a stretch, from where this walk came by when it was as it is.
+  INR_HOST_DEVICE void resume(std::int64_t interval, const SampleStretch& stretch,
+                              const MarchSettings& settings)
+  {
+    this->Next = interval;
+    this->Stretch = stretch;
+    this->Detail.moveTo(static_cast<double>(interval) * settings.step);
+  }
+
+private:
+  static constexpr double Plenty = 1024;    ///< more samples than anybody asks for at once
+  static constexpr double BlockLength = 64; ///< samples that are looked ahead for
+
+  /// How many of 0, 1, 2 ... are below a number; at least 1.
+  INR_HOST_DEVICE static int CountBelow(double end)
+  {
+    const double enough = glm::min(end, Plenty);
+    const int whole = static_cast<int>(enough);
+    return glm::max(1, whole + (static_cast<double>(whole) < enough ? 1 : 0));
+  }
+
+  /// log2 of the steps that the next sample stands for at least: those of the level, if the lattice
+  /// has such an interval here.
+  INR_HOST_DEVICE int shortest() const
+  {
+    constexpr int any = 62;
+    const auto bits = static_cast<std::uint64_t>(this->Next);
+    return glm::min(this->Detail.coarsest(), bits == 0 ? any : LowestBit(bits));
+  }
+
+  INR_HOST_DEVICE static int LowestBit(std::uint64_t bits)
+  {
+#ifdef __CUDA_ARCH__
+    return __ffsll(static_cast<long long>(bits)) - 1;
+#else
+    return __builtin_ctzll(bits);
+#endif
+  }
+
+  INR_HOST_DEVICE double firstPlace() const
+  {
+    const double place =
+        static_cast<double>(this->Next) + this->Jitter * PowerOfTwo(this->shortest());
+    return glm::min(place, this->End);
+  }
+
+  /// To the first sample at t or behind it.
+  INR_HOST_DEVICE void skipTo(double t, const MarchSettings& settings)
+  {
+    this->Detail.moveTo(t);
+    const double place = t / settings.step;
+    const int level = this->Detail.coarsest();
+    const auto first =
+        static_cast<std::int64_t>(std::ceil(place * PowerOfTwo(-level) - this->Jitter));
+    this->Next = glm::max(this->Next + 1, first * (std::int64_t{1} << level));
+    // Between two levels' intervals the first sample may turn out to be a shorter one.
+    this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
+    while (this->firstPlace() < glm::min(place, this->End)) {
+      this->Next += std::int64_t{1} << this->shortest();
+      this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
+    }
+  }
+
+  INR_HOST_DEVICE void beginStretch(const MarchSettings& settings)
+  {
+    const int level = this->Detail.coarsest();
+    const double length = settings.step * PowerOfTwo(level);
+    const double depth = length * settings.unitsPerT;
+    const int faint = FaintSamples(settings, this->Cells.extinction() * depth);
+    const double end = this->Detail.exit();
+    ValueRange range = this->Cells.range();
+    double exit = this->Cells.exit();
+    // As far as the end of a block of the lattice: further ones the ray may never see.
+    const double block = BlockLength * length;
+    const double begin = static_cast<double>(this->Next) * settings.step;
+    const double enough = glm::min((std::floor(begin / block) + 1.0) * block,
+                                   glm::min(end, this->End * settings.step));
+    while (exit < enough) {
+      this->Cells.moveTo(exit);
+      const float extinction = this->Cells.extinction();
+      if (extinction <= 0.0f || FaintSamples(settings, extinction * depth) != faint) {
+        break;
+      }
+      range.extend(this->Cells.range().low);
+      range.extend(this->Cells.range().high);
+      exit = this->Cells.exit();
+    }
+    const double stepsPerT = 1.0 / settings.step;
+    this->Stretch = {exit * stepsPerT, end * stepsPerT, level, faint, range};
+  }
+
+  LevelOfDetail Detail;
+  CellWalker Cells;
+  SampleStretch Stretch;
+  double Jitter;
+  double End;
+  std::int64_t Next = 0; ///< lattice interval that comes next
+};
+
+} // namespace inr
