@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Runs of samples, laid out and interpolated by every kernel, against double precision one sample
+// at a time.
+#include "Core/Random.h"
+#include "Core/Render/BrickKernel.h"
+#include "Testing/Core/Kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+namespace {
+
+constexpr int Dims[3] = {7, 6, 5};
+constexpr int Bricks = 4;
+
+struct Voxels
+{
+  inr::BrickFormat format;
+  std::vector<unsigned char> bytes;
+  std::vector<double> values; ///< as they are stored
+  int perBrick = Dims[0] * Dims[1] * Dims[2];
+};
+
+Voxels MakeVoxels(inr::VoxelBytes bytes)
+{
+  Voxels voxels;
+  voxels.format = {bytes, Dims[0], Dims[0] * Dims[1], {Dims[0] - 2, Dims[1] - 2, Dims[2] - 2}};
+  const auto size = static_cast<std::size_t>(bytes);
+  voxels.bytes.resize(static_cast<std::size_t>(Bricks * voxels.perBrick) * size + 64);
+  for (int k = 0; k < Bricks * voxels.perBrick; ++k) {
+    const float value = inr::RandomUnit(1, static_cast<std::uint64_t>(k));
+    const auto word =
+        static_cast<std::uint32_t>(value * std::ldexp(1.0f, 8 * static_cast<int>(size % 4)));
+    unsigned char* to = voxels.bytes.data() + static_cast<std::size_t>(k) * size;
+    if (bytes == inr::VoxelBytes::Four) {
+      std::memcpy(to, &value, size);
+      voxels.values.push_back(value);
+    } else {
+      std::memcpy(to, &word, size); // little endian, as all that kernels are built for
+      voxels.values.push_back(word);
+    }
+  }
+  return voxels;
+}
+
+float Random(float low, float high)
+{
+  static std::uint64_t counter = 0;
+  return low + (high - low) * inr::RandomUnit(2, ++counter);
+}
+
+int RandomInt(int low, int high)
+{
+  return static_cast<int>(Random(0, 0.9999f) * static_cast<float>(high - low + 1)) + low;
+}
+
+inr::BrickPath RandomPath(const Voxels& voxels)
+{
+  inr::BrickPath path;
+  const int brick = RandomInt(0, Bricks - 1);
+  path.voxels = voxels.bytes.data() + static_cast<std::size_t>(brick * voxels.perBrick) *
+                                          static_cast<std::size_t>(voxels.format.bytes);
+  path.base = Random(-1, 1);
+  path.quantum = voxels.format.bytes == inr::VoxelBytes::Four ? 1.0f : Random(0, 1e-3f);
+  for (int axis = 0; axis < 3; ++axis) {
+    path.origin[axis] = Random(-1, 5);
+    path.direction[axis] = Random(-0.1f, 0.2f);
+    path.last[axis] = static_cast<float>(RandomInt(1, Dims[axis] - 1));
+  }
+  return path;
+}
+
+inr::SampleRun RandomRun(int count, int paths)
+{
+  inr::SampleRun run;
+  run.start[0] = std::floor(Random(0, 20));
+  run.start[1] = std::floor(Random(0, 20));
+  run.stride = 1u << RandomInt(0, 3);
+  run.spacing = static_cast<float>(run.stride);
+  run.offset = Random(0, run.spacing);
+  run.ways = RandomInt(1, 2);
+  run.path[0] = RandomInt(0, paths - 1);
+  run.path[1] = (run.path[0] + RandomInt(1, paths - 1)) % paths;
+  run.fraction = Random(-0.2f, 1);
+  run.growth = Random(0, 0.02f);
+  run.seed = static_cast<std::uint32_t>(inr::RandomBits(3, static_cast<std::uint64_t>(count)));
+  run.counter = static_cast<std::uint32_t>(RandomInt(0, 100000));
+  run.count = count;
+  run.length = RandomInt(0, 9);
+  run.low = Random(-1, 0);
+  run.high = Random(0, 1);
+  return run;
+}
+
+double Trilinear(const Voxels& voxels, const inr::BrickPath& path, double along)
+{
+  const auto offset = static_cast<const unsigned char*>(path.voxels) - voxels.bytes.data();
+  const auto first = static_cast<int>(offset) / static_cast<int>(voxels.format.bytes);
+  int cell[3];
+  double weight[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double place =
+        std::clamp<double>(path.origin[axis] + along * path.direction[axis], 0, path.last[axis]);
+    cell[axis] = std::min(static_cast<int>(place), Dims[axis] - 2);
+    weight[axis] = place - cell[axis];
+  }
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double share = 1;
+    int at[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const int up = corner >> axis & 1;
+      at[axis] = cell[axis] + up;
+      share *= up != 0 ? weight[axis] : 1 - weight[axis];
+    }
+    const int index = at[0] + Dims[0] * (at[1] + Dims[1] * at[2]);
+    sum += share * voxels.values[static_cast<std::size_t>(first + index)];
+  }
+  return path.base + path.quantum * sum;
+}
+
+/// Checks the samples of a run, which begin at `at` in the batch; how many were on the second path.
+int Check(const Voxels& voxels, const inr::SampleBatch& batch, const inr::SampleRun& run, int at)
+{
+  int second = 0;
+  for (int k = 0; k < run.count; ++k) {
+    const int sample = at + k;
+    const double fine = static_cast<double>(run.start[0]) + k * run.spacing + run.offset;
+    const float random =
+        inr::RandomUnit32(run.seed, run.counter + static_cast<std::uint32_t>(k) * run.stride);
+    const double fraction = run.fraction + run.growth * fine;
+    const int way = batch.path[sample] == run.path[0] ? 0 : 1;
+    EXPECT_EQ(batch.path[sample], run.path[way]);
+    if (std::abs(random - fraction) > 1e-6) {
+      EXPECT_EQ(way, run.ways > 1 && random < fraction ? 1 : 0);
+    }
+    second += way;
+    const double along = way == 0 ? fine : run.start[1] + k * run.spacing + run.offset;
+    // Places are rounded to float: at a slope of 2 per voxel in the worst case.
+    const inr::BrickPath& path = batch.paths[batch.path[sample]];
+    const double steepest =
+        path.quantum * (voxels.format.bytes == inr::VoxelBytes::Four ? 1.0 : 65536.0);
+    EXPECT_NEAR(batch.value[sample], Trilinear(voxels, path, along),
+                1e-5 * std::max(1.0, steepest));
+    EXPECT_EQ(batch.low[sample], run.low);
+    EXPECT_EQ(batch.high[sample], run.high);
+    EXPECT_EQ(batch.length[sample], run.length);
+  }
+  return second;
+}
+
+class BrickKernels : public testing::TestWithParam<std::string>
+{};
+
+TEST_P(BrickKernels, LayOutRuns)
+{
+  const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
+  int second = 0;
+  for (const auto bytes : {inr::VoxelBytes::One, inr::VoxelBytes::Two, inr::VoxelBytes::Four}) {
+    const Voxels voxels = MakeVoxels(bytes);
+    for (int round = 0; round < 200; ++round) {
+      const auto batch = std::make_unique<inr::SampleBatch>();
+      constexpr int paths = 6;
+      std::generate_n(batch->paths, paths, [&] { return RandomPath(voxels); });
+      int count = 0;
+      int runs = 0;
+      const int most = RandomInt(1, inr::SampleBatch::Capacity);
+      while (count < most) {
+        batch->runs[runs] = RandomRun(RandomInt(1, most - count), paths);
+        count += batch->runs[runs++].count;
+      }
+      kernel.sampleRuns(voxels.format, *batch, runs);
+      int at = 0;
+      for (int run = 0; run < runs; ++run) {
+        second += Check(voxels, *batch, batch->runs[run], at);
+        at += batch->runs[run].count;
+      }
+      // The same samples, one by one.
+      std::vector<float> values(batch->value, batch->value + count);
+      kernel.sample(voxels.format, *batch, count);
+      EXPECT_EQ(values, std::vector<float>(batch->value, batch->value + count));
+    }
+  }
+  EXPECT_GT(second, 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, BrickKernels, testing::ValuesIn(UsableKernels()),
+                         [](const auto& info) { return info.param; });
+
+} // namespace

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where samples are, against what the macro-cells and the levels of detail say point by point.
+#include "Core/Parallel.h"
+#include "Core/Random.h"
+#include "Core/Render/SampleWalker.h"
+#include "Testing/Core/Render/Scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace {
+
+constexpr int Levels = 6;
+const glm::i64vec3 VolumeDims(150, 90, 120);
+
+/// Half of the cells cannot be seen, the others are faint or not.
+inr::Majorants MakeMajorants()
+{
+  inr::MacroCells cells = inr::MakeMacroCells(VolumeDims, 16);
+  for (std::size_t k = 0; k < cells.ranges.size(); ++k) {
+    const std::uint64_t kind = inr::RandomBits(11, k) % 6;
+    const float value = kind < 3 ? 0.1f : kind == 3 ? 0.5f : kind == 4 ? 0.6f : 0.9f;
+    cells.ranges[k] = {value, value};
+  }
+  inr::TransferFunction function;
+  for (const float opacity : {0.0f, 0.0f, 0.0f, 0.0f, 0.008f, 0.015f, 0.02f, 0.5f, 0.5f}) {
+    function.table.emplace_back(1, 1, 1, opacity);
+  }
+  inr::Majorants majorants(cells, VolumeDims, inr::Arena(1));
+  majorants.update(inr::ColorTable(function, inr::VolumeInfo{}), inr::Arena(1));
+  return majorants;
+}
+
+inr::Ray RandomRay(std::uint64_t number)
+{
+  const auto random = [&](std::uint64_t k) {
+    return 2.0 * inr::RandomUnit(7, 10 * number + k) - 1;
+  };
+  const glm::dvec3 dims(VolumeDims);
+  inr::Ray ray;
+  ray.direction = glm::normalize(glm::dvec3(random(0), random(1), random(2)));
+  ray.entry =
+      dims * (0.5 + 0.3 * glm::dvec3(random(3), random(4), random(5))) - 60.0 * ray.direction;
+  ray.inverse = 1.0 / ray.direction;
+  ray.length = 120.0 + 5.0 * random(6);
+  ray.footprint = 1.5 + 1.4 * random(7);
+  ray.footprintGrowth = 0.02 * (1 + random(8));
+  return ray;
+}
+
+struct Sample
+{
+  std::int64_t interval;
+  std::int64_t steps;
+  double place;
+  float low; ///< of its range
+
+  bool operator==(const Sample& other) const
+  {
+    return this->interval == other.interval && this->steps == other.steps &&
+           this->place == other.place && this->low == other.low;
+  }
+};
+
+inr::SampleWalker WalkerOn(const inr::Ray& ray, const inr::Majorants& majorants,
+                           const inr::MarchSettings& settings, double jitter)
+{
+  return {majorants, settings, ray, 1.0, Levels, jitter};
+}
+
+/// All samples of a ray, taken `most` at a time.
+std::vector<Sample> Walk(inr::SampleWalker walker, const inr::MarchSettings& settings, int most)
+{
+  std::vector<Sample> samples;
+  while (walker.moveToVisible(settings)) {
+    const inr::AlikeSamples alike = walker.alike();
+    EXPECT_GE(alike.count, 1);
+    const int count = std::min(most, alike.count);
+    for (int k = 0; k < count; ++k) {
+      const std::int64_t interval = walker.next() + k * alike.steps();
+      samples.push_back({interval, alike.steps(),
+                         static_cast<double>(interval) + walker.offset(alike),
+                         walker.stretch().range.low});
+    }
+    walker.pass(alike, count);
+  }
+  return samples;
+}
+
+inr::MarchSettings Settings()
+{
+  inr::MarchSettings settings;
+  settings.dims = glm::dvec3(VolumeDims);
+  settings.step = 0.5;
+  return settings;
+}
+
+TEST(SampleWalker, StopsWherePleasesWithoutChange)
+{
+  const inr::Majorants majorants = MakeMajorants();
+  const inr::MarchSettings settings = Settings();
+  for (std::uint64_t number = 0; number < 200; ++number) {
+    const inr::Ray ray = RandomRay(number);
+    const inr::SampleWalker walker = WalkerOn(ray, majorants, settings, inr::RandomUnit(8, number));
+    const std::vector<Sample> all = Walk(walker, settings, 1000);
+    EXPECT_EQ(Walk(walker, settings, 1), all) << number;
+    EXPECT_EQ(Walk(walker, settings, 3), all) << number;
+  }
+}
+
+TEST(SampleWalker, ResumesFromWhereItOnceWas)
+{
+  const inr::Majorants majorants = MakeMajorants();
+  const inr::MarchSettings settings = Settings();
+  for (std::uint64_t number = 0; number < 100; ++number) {
+    const inr::SampleWalker before =
+        WalkerOn(RandomRay(number), majorants, settings, inr::RandomUnit(8, number));
+    const std::vector<Sample> all = Walk(before, settings, 1000);
+    inr::SampleWalker walker = before;
+    for (std::size_t passed = 0; walker.moveToVisible(settings); ++passed) {
+      inr::SampleWalker resumed = before;
+      resumed.resume(walker.next(), walker.stretch(), settings);
+      const std::vector<Sample> rest(all.begin() + static_cast<std::ptrdiff_t>(passed), all.end());
+      ASSERT_EQ(Walk(resumed, settings, 1000), rest) << number;
+      walker.pass(walker.alike(), 1);
+    }
+  }
+}
+
+/// What the macro-cells say at t: whether it can be seen, and how deep a sample of `steps` is.
+struct CellAt
+{
+  bool visible;
+  double depth;
+};
+
+CellAt LookAt(const inr::Ray& ray, const inr::Majorants& majorants,
+              const inr::MarchSettings& settings, double t, std::int64_t steps)
+{
+  inr::CellWalker cells(majorants, settings.dims, ray, 1.0, Levels);
+  cells.moveTo(t);
+  return {cells.extinction() > 0,
+          cells.extinction() * settings.step * static_cast<double>(steps) * settings.unitsPerT};
+}
+
+TEST(SampleWalker, TakesWhatCanBeSeenAndNothingTwice)
+{
+  const inr::Majorants majorants = MakeMajorants();
+  const inr::MarchSettings settings = Settings();
+  int joined = 0;
+  for (std::uint64_t number = 0; number < 200; ++number) {
+    const inr::Ray ray = RandomRay(number);
+    const double jitter = inr::RandomUnit(8, number);
+    inr::LevelOfDetail detail(ray, 1.0, Levels);
+    std::int64_t end = 0; // of what the samples before stood for
+    for (const Sample& sample : Walk(WalkerOn(ray, majorants, settings, jitter), settings, 1000)) {
+      EXPECT_GE(sample.interval, end);
+      // What was left out cannot be seen where its own samples would have been.
+      for (std::int64_t k = end; k < sample.interval; ++k) {
+        detail.moveTo(static_cast<double>(k) * settings.step);
+        const std::int64_t level = std::int64_t{1} << detail.coarsest();
+        if (k % level == 0 && k + level <= sample.interval) {
+          const double t =
+              (static_cast<double>(k) + jitter * static_cast<double>(level)) * settings.step;
+          EXPECT_FALSE(LookAt(ray, majorants, settings, t, 1).visible) << number << " " << k;
+        }
+      }
+      detail.moveTo(static_cast<double>(sample.interval) * settings.step);
+      const std::int64_t level = std::int64_t{1} << detail.coarsest();
+      const CellAt cell =
+          LookAt(ray, majorants, settings, sample.place * settings.step, sample.steps);
+      EXPECT_TRUE(cell.visible) << number << " " << sample.place;
+      if (sample.steps > level) { // only where little can be seen
+        EXPECT_LE(cell.depth, inr::FaintDepth + 1e-9);
+        EXPECT_EQ(sample.steps % level, 0);
+        ++joined;
+      }
+      end = sample.interval + sample.steps;
+    }
+  }
+  EXPECT_GT(joined, 200);
+}
+
+TEST(SampleWalker, EndsWithTheRay)
+{
+  const inr::MacroCells none;
+  inr::Majorants majorants(none);
+  majorants.update(inr::ColorTable(UniformMedium(0.5f), inr::VolumeInfo{}), inr::Arena(1));
+  const inr::MarchSettings settings = Settings();
+  for (std::uint64_t number = 0; number < 100; ++number) {
+    const inr::Ray ray = RandomRay(number);
+    inr::SampleWalker walker = WalkerOn(ray, majorants, settings, inr::RandomUnit(8, number));
+    double end = 0;
+    while (walker.moveToVisible(settings)) {
+      const inr::AlikeSamples alike = walker.alike();
+      EXPECT_EQ(static_cast<double>(walker.next()), end); // without a gap
+      const double length = alike.last ? walker.rest() : static_cast<double>(alike.steps());
+      EXPECT_LE(static_cast<double>(walker.next()) + walker.offset(alike), walker.end());
+      end += length;
+      walker.pass(alike, 1);
+    }
+    EXPECT_NEAR(end, ray.length / settings.step, 1e-9);
+  }
+}
+
+} // namespace
