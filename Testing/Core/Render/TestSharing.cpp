@@ -54,7 +54,7 @@ inr::CacheOptions Cache(std::int64_t bytes, bool background = true)
 /// The volume from one side or, a little larger, from the other.
 inr::Frame View(bool other)
 {
-  inr::Frame frame = Oblique(glm::dvec3(Dims));
+  inr::Frame frame = Oblique(glm::dvec3(Dims), 24);
   if (other) {
     const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 2.2, glm::dvec3(0, 1, 0));
     const glm::dmat4 center = glm::translate(glm::dmat4(1.0), 0.5 * glm::dvec3(Dims));
