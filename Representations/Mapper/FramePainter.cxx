@@ -190,7 +190,6 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   if (!last.statistics.complete && rate < ImageReduction::StillRate) {
     this->Refine.request(window);
   }
-  last.cacheBytes = this->Caster->cacheBytes();
   this->Reduction.record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
   return this->Blender.blend(renderer, viewport, last.rgba);
 }

@@ -52,7 +52,6 @@ struct PaintedFrame
   Image rgba;
   Image depth;
   FrameStatistics statistics;
-  std::int64_t cacheBytes = 0;
   std::string backend; ///< "CPU avx512", ...
   double seconds = 0;  ///< from the mapper's call to the blended picture
   int reduction = 0;   ///< viewport size / image size
@@ -68,6 +67,8 @@ public:
   std::string paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                     const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Last; }
+  /// See Renderer.
+  std::int64_t cacheBytes() const { return this->Caster ? this->Caster->cacheBytes() : 0; }
   void release(vtkWindow* window)
   {
     this->Refine.cancel();

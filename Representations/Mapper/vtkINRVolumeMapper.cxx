@@ -68,7 +68,7 @@ double vtkINRVolumeMapper::GetCacheHitRate() const
 
 double vtkINRVolumeMapper::GetCacheUsed() const
 {
-  return static_cast<double>(this->Self->Painter.last().cacheBytes) / (1 << 20);
+  return static_cast<double>(this->Self->Painter.cacheBytes()) / (1 << 20);
 }
 
 const char* vtkINRVolumeMapper::GetBackendInUse() const

@@ -147,9 +147,12 @@ public:
 
   ///@{
   /**
-   * Memory for decoded bricks and their tables in MiB. 0, the default, is a quarter of the
-   * machine's memory, at most 16 GiB; memory is taken as bricks come in. A change empties the
-   * cache.
+   * Memory for decoded bricks, their tables and those on their way in MiB. 0, the default, is a
+   * quarter of the machine's memory, at most 16 GiB; memory is taken as bricks come in. All mappers
+   * of a process together stay within the largest CacheSize among them (or what eight bricks for
+   * each volume take, should that be more): what was not looked at for longest makes room. Mappers
+   * of one model that agree in this, CachePrecision and BrickSize share their bricks. A change
+   * empties the cache unless another mapper shares it.
    */
   vtkSetClampMacro(CacheSize, int, 0, VTK_INT_MAX);
   vtkGetMacro(CacheSize, int);
@@ -237,7 +240,8 @@ public:
   /**
    * About the last frame and the cache: whether every sample came from the level it asked for and,
    * of path tracing, SamplesPerPixel were taken; the part of the samples that did (0 to 1), and the
-   * memory in use in MiB.
+   * memory in MiB that the caches of all mappers of the process have in use now (0 while this one
+   * has none).
    */
   bool GetConverged() const;
   double GetCacheHitRate() const;

@@ -58,3 +58,50 @@ for _ in range(50):
     if value("Converged") == 1:
         break
 check(value("Converged") == 1, "interactive pictures do not converge:", value("CacheHitRate"))
+
+# Another view of the volume takes no more memory; another volume and its own take what there is.
+display.BrickSize = 12
+display.CacheSize = 16
+simple.SetActiveView(view)
+first = shown("first")
+used = value("CacheUsed")
+check(0 < used <= 16, "one view takes", used)
+views = [view]
+displays = [display]
+
+
+def add(source, name):
+    """Shows `source` in a view of its own with the same settings and camera."""
+    views.append(show_view())
+    displays.append(simple.Show(source, views[-1]))
+    for key in ("BrickSize", "CacheSize", "CachePrecision", "LevelOfDetailScale"):
+        setattr(displays[-1], key, getattr(display, key))
+    look_at(views[-1])
+    pixels = picture(views[-1], "cache-" + name)
+    for each in displays:
+        each.UpdatePropertyInformation()
+    check(displays[-1].GetPropertyValue("Converged") == 1, name, "does not converge")
+    totals = [each.GetPropertyValue("CacheUsed") for each in displays]
+    check(len(set(totals)) == 1, "the views do not agree in what is in use:", totals)
+    return pixels
+
+
+second = add(simple.GetActiveSource(), "second")
+check(np.array_equal(first, second), "two views of a volume differ")
+check(value("CacheUsed") == used, "a second view of a volume takes more:", value("CacheUsed"))
+third = add(simple.OpenDataFile(MODEL), "third")
+check(np.array_equal(first, third), "two volumes of a file differ")
+check(used < value("CacheUsed") <= 16, "a second volume:", value("CacheUsed"), "after", used)
+
+# All in a budget that is too small for one, in turns.
+for each in displays:
+    each.CacheSize = 1
+for k in range(2):
+    for each, name in zip(views, ("first", "second", "third")):
+        check(np.array_equal(picture(each, "cache-" + name + "-small"), first), "small", name, k)
+        display.UpdatePropertyInformation()
+        # The first round still has views that may take 16 MiB.
+        check(value("CacheUsed") <= (1 if k else 16), "in turns:", value("CacheUsed"))
+simple.Delete(displays.pop())
+simple.Delete(views.pop())
+check(np.array_equal(picture(view, "cache-last"), first), "a view changes when another is deleted")
