@@ -120,7 +120,7 @@ BrickStore* CacheBudget::oldest(const BrickStore* asking) const
   BrickStore* oldest = nullptr;
   std::uint64_t oldestUse = BrickCache::Pinned;
   for (BrickStore* store : this->Stores) {
-    const bool mayBeTaken = store == asking || !store->isInUse();
+    const bool mayBeTaken = !store->isInUse() || store == asking;
     const std::uint64_t use = mayBeTaken ? store->oldestUse() : BrickCache::Pinned;
     if (use < oldestUse) {
       oldest = store;

@@ -76,7 +76,7 @@ Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
                                             model->volume, model->macroCells, options))
 {}
 
-Renderer::Renderer(std::shared_ptr<const Evaluator> field, const VolumeInfo& volume,
+Renderer::Renderer(const std::shared_ptr<const Evaluator>& field, const VolumeInfo& volume,
                    const MacroCells& cells, const RendererOptions& options)
     : Self(std::make_unique<Implementation>(field, field, volume, cells, options))
 {}

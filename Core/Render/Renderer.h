@@ -45,7 +45,7 @@ class Renderer
 public:
   explicit Renderer(const ModelPointer& model, const RendererOptions& options = {});
   /// Any field: normalised values over the unit cube, with a volume's dimensions and value range.
-  Renderer(std::shared_ptr<const Evaluator> field, const VolumeInfo& volume,
+  Renderer(const std::shared_ptr<const Evaluator>& field, const VolumeInfo& volume,
            const MacroCells& cells, const RendererOptions& options = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/SampleShader.h"
 
+#include <algorithm>
+
 namespace inr {
 
 int SampleShader::shade(const SampleBatch& batch, int count, const Request& request,
@@ -18,8 +20,9 @@ int SampleShader::shade(const SampleBatch& batch, int count, const Request& requ
     return count;
   }
   glm::vec3 gradients[SampleBatch::Capacity];
-  const int found = this->Gradients.find(batch, request.bricks, visible, seen, request.missing,
-                                         request.transmittance, requests, gradients);
+  const int found =
+      std::min(seen, this->Gradients.find(batch, request.bricks, visible, seen, request.missing,
+                                          request.transmittance, requests, gradients));
   const Shading::View view = this->Lighting.viewAlong(request.ray);
   for (int k = 0; k < found; ++k) {
     glm::vec4& color = colors[visible[k]];
