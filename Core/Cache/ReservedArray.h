@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -27,15 +28,14 @@ private:
   std::size_t Bytes;
 };
 
-/// An array that never moves and takes memory for the elements that it has. New ones have no value.
+/// An array that never moves and takes memory for the elements that it has, and some kilobytes that
+/// it had. New ones have no value.
 template <typename Element> class ReservedArray
 {
   static_assert(std::is_trivially_destructible_v<Element>);
 
 public:
-  explicit ReservedArray(std::int64_t room)
-      : Memory(room * static_cast<std::int64_t>(sizeof(Element)))
-  {}
+  explicit ReservedArray(std::int64_t room) : Memory(room * Bytes) {}
 
   std::int64_t size() const { return this->Count; }
   Element* data() const { return static_cast<Element*>(this->Memory.data()); }
@@ -43,16 +43,22 @@ public:
   /// `count`: no more than there is room for.
   void resize(std::int64_t count)
   {
-    constexpr auto bytes = static_cast<std::int64_t>(sizeof(Element));
-    if (count < this->Count) {
-      this->Memory.giveBack(count * bytes, this->Count * bytes);
+    // Not at once: one that goes is often followed by one that comes.
+    constexpr std::int64_t kept = 16 << 10;
+    if ((this->Touched - count) * Bytes > kept) {
+      this->Memory.giveBack(count * Bytes, this->Touched * Bytes);
+      this->Touched = count;
     }
+    this->Touched = std::max(this->Touched, count);
     this->Count = count;
   }
 
 private:
+  static constexpr auto Bytes = static_cast<std::int64_t>(sizeof(Element));
+
   ReservedMemory Memory;
   std::int64_t Count = 0;
+  std::int64_t Touched = 0; ///< elements whose memory was not given back
 };
 
 } // namespace inr
