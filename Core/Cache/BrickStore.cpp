@@ -102,6 +102,14 @@ BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Are
   return {count, false};
 }
 
+void BrickStore::clear()
+{
+  const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+  while (this->Cache.oldestUse(BrickCache::Pinned) != BrickCache::Pinned) {
+    this->Cache.evict(BrickCache::Pinned);
+  }
+}
+
 void BrickStore::loadFor(double seconds, const std::vector<BrickKey>& keys, const Arena& arena)
 {
   if (!this->makeQueue(static_cast<std::int64_t>(keys.size()))) {

@@ -51,6 +51,8 @@ public:
   /// without progress. Requests to the loader are forgotten.
   Loaded load(const std::vector<BrickKey>& keys, const Arena& arena,
               const std::function<bool()>& keepGoing);
+  /// Drops all bricks but the coarsest level, those of the current frame included.
+  void clear();
   /// Infers and maps bricks for so many seconds, together with the loader, which goes on with them
   /// when it is not paused.
   void loadFor(double seconds, const std::vector<BrickKey>& keys, const Arena& arena);

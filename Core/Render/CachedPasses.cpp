@@ -92,6 +92,7 @@ void CompletePass::advance(const Arena& arena, const std::function<bool()>& keep
   }
   const std::size_t most = this->Alone ? 1 : this->Window;
   const auto count = static_cast<std::int64_t>(std::min(this->Active.size(), most));
+  const std::int64_t before = this->Statistics.samples;
   std::vector<FrameStatistics> statistics(static_cast<std::size_t>(count));
   std::vector<RequestList> lists(static_cast<std::size_t>(count));
   ForEachTile(arena, count, keepGoing, [&](std::int64_t k) {
@@ -110,7 +111,7 @@ void CompletePass::advance(const Arena& arena, const std::function<bool()>& keep
     this->Statistics.add(statistics[k]);
     requests.add(lists[k]);
   }
-  this->Alone = false;
+  this->Alone = this->Alone && this->Statistics.samples == before && !requests.empty();
   const auto finished = [](const ActiveTile& tile) { return tile.waiting.empty(); };
   this->Active.erase(std::remove_if(this->Active.begin(), this->Active.end(), finished),
                      this->Active.end());

@@ -39,8 +39,10 @@ public:
   void advance(const Arena& arena, const std::function<bool()>& keepGoing, const PassOutput& output,
                RequestRanking& requests);
   /// Says that only `loaded` of the latest requests fitted, for the rest of the cache holds what
-  /// rays that wait have used. Few: fewer tiles go on. None: the first ray does, alone.
+  /// rays that wait have used. Few: fewer tiles go on. None: the first ray does, alone until it has
+  /// come further; the last request is then for its next sample.
   void crowd(std::int64_t loaded);
+  bool isAlone() const { return this->Alone; }
   bool done() const { return this->Active.empty() && this->Next == this->Tiles.count(); }
   const FrameStatistics& statistics() const { return this->Statistics; }
 

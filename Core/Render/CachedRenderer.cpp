@@ -110,14 +110,7 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
     if (pass.done()) {
       break;
     }
-    // Room for what waits now must not be taken from what was loaded a moment ago for the same
-    // rays.
-    const std::int64_t most = this->Store->cache().capacity() - 1;
-    const BrickStore::Loaded loaded =
-        this->Store->load(requests.ranked(most, false), this->Threads, keepGoing);
-    if (loaded.full) {
-      pass.crowd(loaded.bricks);
-    }
+    this->loadForPass(pass, requests, keepGoing);
     if (keepGoing && !keepGoing()) {
       throw Error(ErrorCode::Cancelled, "rendering stopped on request");
     }
@@ -126,6 +119,26 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
   statistics.complete = true;
   statistics.marchSeconds = marching;
   return statistics;
+}
+
+void CachedRenderer::loadForPass(CompletePass& pass, const RequestRanking& requests,
+                                 const std::function<bool()>& keepGoing)
+{
+  // Room for what waits now must not be taken from what was loaded a moment ago for the same rays.
+  const std::int64_t most = this->Store->cache().capacity() - 1;
+  std::vector<BrickKey> keys = requests.ranked(most, false);
+  if (pass.isAlone()) {
+    keys = {keys.back()};
+  }
+  const BrickStore::Loaded loaded = this->Store->load(keys, this->Threads, keepGoing);
+  if (loaded.full && pass.isAlone()) {
+    // A batch of one ray's samples has used all that there is and waits for more: its first sample
+    // can have what it needs when the others have nothing.
+    this->Store->clear();
+  }
+  if (loaded.full) {
+    pass.crowd(loaded.bricks);
+  }
 }
 
 FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const PassOutput& output,
@@ -175,12 +188,7 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
         (!inTime() && this->Unfinished->statistics().samples > before)) {
       break;
     }
-    const std::int64_t most = this->Store->cache().capacity();
-    const BrickStore::Loaded loaded =
-        this->Store->load(requests.ranked(most, false), this->Threads, inTime);
-    if (loaded.full) {
-      this->Unfinished->crowd(loaded.bricks);
-    }
+    this->loadForPass(this->Unfinished->pass(), requests, inTime);
   }
   this->Unfinished->copyTo(output);
   FrameStatistics statistics = this->Unfinished->statistics();

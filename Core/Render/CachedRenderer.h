@@ -79,6 +79,8 @@ private:
                                const std::function<bool()>& keepGoing);
   FrameStatistics refine(double timeLimit, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
+  void loadForPass(CompletePass& pass, const RequestRanking& requests,
+                   const std::function<bool()>& keepGoing);
   /// Bricks that may come without any of the present sample having to go.
   std::int64_t roomForPaths() const;
   void loadForPaths(const RequestRanking& requests, const Timer* timer,

@@ -26,8 +26,8 @@ public:
   /// One round of the complete pass; the bricks that it waits for come out of `requests`.
   void advance(const Arena& arena, const std::function<bool()>& keepGoing,
                RequestRanking& requests);
-  /// See CompletePass::crowd.
-  void crowd(std::int64_t loaded) { this->Pass.crowd(loaded); }
+  /// For what it waits for.
+  CompletePass& pass() { return this->Pass; }
   bool done() const { return this->Pass.done(); }
   void copyTo(const PassOutput& output) const;
   const FrameStatistics& statistics() const { return this->Pass.statistics(); }
