@@ -137,8 +137,10 @@ INR_HOST_DEVICE inline void Follow(const PathScene& scene, PathState& path,
 /// Sends the path on from its vertex.
 INR_HOST_DEVICE inline void GoOn(const PathScene& scene, PathState& path)
 {
-  const double cosine = SamplePhaseCosine(scene.options.anisotropy, Draw(path));
-  path.travel = Turn(path.travel, cosine, Draw(path));
+  const double u = Draw(path);
+  const double turn = Draw(path);
+  const double g = scene.options.anisotropy;
+  path.travel = g == 0 ? AnyDirection(u, turn) : Turn(path.travel, SamplePhaseCosine(g, u), turn);
   path.towardsLight = false;
   Follow(scene, path, scene.inner.along(path.travel), std::numeric_limits<double>::infinity());
 }

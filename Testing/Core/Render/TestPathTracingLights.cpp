@@ -168,4 +168,34 @@ TEST(PathTracingLights, TurnsAreAboutTheDirection)
   }
 }
 
+TEST(PathTracingLights, AnglesAreThoseOfTheLibrary)
+{
+  for (int k = 0; k < 1000; ++k) {
+    const double turn = k / 1000.0;
+    const inr::SineCosine angle = inr::OfTurn(turn);
+    EXPECT_NEAR(angle.sine, std::sin(2 * Pi * turn), 1e-13) << turn;
+    EXPECT_NEAR(angle.cosine, std::cos(2 * Pi * turn), 1e-13) << turn;
+  }
+}
+
+TEST(PathTracingLights, AnyDirectionIsAsLikelyAsAnother)
+{
+  constexpr int steps = 200;
+  glm::dvec3 mean(0.0);
+  glm::dmat3 squares(0.0);
+  for (int k = 0; k < steps * steps; ++k) {
+    const double u = (k / steps + 0.5) / steps;
+    const glm::dvec3 way = inr::AnyDirection(u, (k % steps + 0.5) / steps);
+    EXPECT_NEAR(glm::length(way), 1.0, 1e-12);
+    mean += way / static_cast<double>(steps * steps);
+    squares += glm::outerProduct(way, way) / static_cast<double>(steps * steps);
+  }
+  EXPECT_LT(glm::length(mean), 1e-9);
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 third(0.0);
+    third[axis] = 1.0 / 3; // the sphere's
+    EXPECT_LT(glm::length(squares[axis] - third), 1e-4);
+  }
+}
+
 } // namespace
