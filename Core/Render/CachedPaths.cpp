@@ -175,26 +175,36 @@ RequestList CachedSampler::requests() const
 }
 
 TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
-                              const Evaluator& field, OnPathMiss onMiss, const Arena& arena,
-                              const std::function<bool()>& keepGoing, RequestRanking& requests)
+                              const Evaluator& field, OnPathMiss onMiss, const Timer* timer,
+                              const Arena& arena, const std::function<bool()>& keepGoing,
+                              RequestRanking& requests)
 {
-  const Timer timer;
+  constexpr std::size_t tilesBetweenLooks = 8; // at the timer
+  const Timer clock;
   const Tiling tiling(round.output.rgba.width, round.output.rgba.height);
   TracedTiles traced;
   traced.tiles.resize(round.tiles.size());
   std::vector<RequestList> lists(round.tiles.size());
-  ForEachTile(arena, static_cast<std::int64_t>(round.tiles.size()), keepGoing, [&](std::int64_t i) {
-    const auto k = static_cast<std::size_t>(i);
+  const auto trace = [&](std::size_t k) {
     CachedSampler sampler(cache, field, onMiss);
     const Tile tile = tiling.tile(round.tiles[k]);
     traced.tiles[k] = round.tracer.trace(tile, sampler, round.output.rgba, round.output.depth);
     traced.tiles[k].missed = sampler.missed();
     lists[k] = sampler.requests();
-  });
+  };
+  const std::size_t atOnce = timer != nullptr ? tilesBetweenLooks : round.tiles.size();
+  std::size_t done = 0;
+  while (done < round.tiles.size() && (done == 0 || timer->left() > 0)) {
+    const std::size_t count = std::min(atOnce, round.tiles.size() - done);
+    ForEachTile(arena, static_cast<std::int64_t>(count), keepGoing,
+                [&](std::int64_t k) { trace(done + static_cast<std::size_t>(k)); });
+    done += count;
+  }
+  traced.tiles.resize(done);
   for (const RequestList& list : lists) {
     requests.add(list);
   }
-  traced.seconds = timer.seconds();
+  traced.seconds = clock.seconds();
   return traced;
 }
 

@@ -13,6 +13,7 @@
 namespace inr {
 
 class Arena;
+class Timer;
 
 /// What a path gets where the brick it wants is not there.
 enum class OnPathMiss {
@@ -82,11 +83,13 @@ private:
   std::vector<float> AbsentValues;
 };
 
-/// Traces a round's tiles with what is in the cache. What was missing is added to `requests` in the
-/// order of the tiles. Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
+/// Traces a round's tiles with what is in the cache; with a timer, the first few and then more
+/// while it has time left. What was missing is added to `requests` in the order of the tiles.
+/// Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
 TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
-                              const Evaluator& field, OnPathMiss onMiss, const Arena& arena,
-                              const std::function<bool()>& keepGoing, RequestRanking& requests);
+                              const Evaluator& field, OnPathMiss onMiss, const Timer* timer,
+                              const Arena& arena, const std::function<bool()>& keepGoing,
+                              RequestRanking& requests);
 
 /// Traces a round's tiles with the field itself.
 TracedTiles TraceWithNetwork(const PathRound& round, const Evaluator& field,

@@ -212,8 +212,10 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* time
   const OnPathMiss onMiss = this->InferMisses ? OnPathMiss::Infer
                             : approach        ? OnPathMiss::Approach
                                               : OnPathMiss::UseCoarser;
+  // Inferring takes many times as long as the round before that said how long a round is.
+  const Timer* limit = this->InferMisses && !round.first ? timer : nullptr;
   RequestRanking requests;
-  TracedTiles traced = TraceThroughCache(round, this->Store->cache(), *this->Field, onMiss,
+  TracedTiles traced = TraceThroughCache(round, this->Store->cache(), *this->Field, onMiss, limit,
                                          this->Threads, keepGoing, requests);
   if (guessed && requests.count() <= this->roomForPaths()) {
     this->InferMisses = false; // a wrong guess: bricks for them all, and once more

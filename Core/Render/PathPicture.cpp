@@ -44,7 +44,7 @@ void PathPicture::start(const Frame& frame)
 void PathPicture::finishTiles(const TracedTiles& traced)
 {
   const Tiling tiling(this->Picture.width, this->Picture.height);
-  if (static_cast<std::int64_t>(this->Pending.size()) == tiling.count()) {
+  if (static_cast<std::int64_t>(traced.tiles.size()) == tiling.count()) {
     this->Latest.marchSeconds = traced.seconds;
   }
   FrameStatistics unfinished;
@@ -56,7 +56,9 @@ void PathPicture::finishTiles(const TracedTiles& traced)
       this->Pending[pending++] = this->Pending[k];
     }
   }
-  this->Pending.resize(pending);
+  // What was not reached stays, behind what was not finished.
+  const auto unreached = this->Pending.begin() + static_cast<std::ptrdiff_t>(traced.tiles.size());
+  this->Pending.erase(this->Pending.begin() + static_cast<std::ptrdiff_t>(pending), unreached);
   unfinished.add(this->Finished);
   unfinished.marchSeconds = this->Latest.marchSeconds;
   this->Latest = unfinished;

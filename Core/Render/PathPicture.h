@@ -31,7 +31,8 @@ struct PathRound
 
 struct TracedTiles
 {
-  /// In the order of the round's tiles. Tiles that missed something are asked for again.
+  /// In the order of the round's tiles: all of them or, where time ran out, the first ones. Tiles
+  /// that missed something, and those that are not here, are asked for again.
   std::vector<FrameStatistics> tiles;
   double seconds = 0; ///< of tracing, without what was loaded
 };

@@ -287,6 +287,18 @@ TEST(PathPicture, EndsInPartsEvenWhereTheCacheIsTooSmall)
   EXPECT_LT(RenderInParts(renderer, LitFrame(), image), 300);
 }
 
+TEST(PathPicture, InfersNoMoreTilesThanThereIsTimeFor)
+{
+  inr::CacheOptions options = SmallBricks();
+  options.bytes = 60000;
+  inr::Renderer renderer = MakeRenderer(true, 2, options);
+  const inr::Frame frame = LitFrame(64); // 16 tiles, more than between two looks at the time
+  inr::Image image;
+  const int calls = RenderInParts(renderer, frame, image);
+  EXPECT_GE(calls, 2 * frame.samplesPerPixel);
+  EXPECT_LT(calls, 300);
+}
+
 TEST(PathPicture, GoesOnOnlyWithTheSamePicture)
 {
   const std::vector<float> depth(24 * 24, 0.5f);
