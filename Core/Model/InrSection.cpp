@@ -157,6 +157,19 @@ TrainingRecord ParseTraining(const JsonSection& section)
 // BSON has signed integers only: the whole range survives as two's complement.
 std::int64_t AsSigned(std::uint64_t value) { return static_cast<std::int64_t>(value); }
 
+std::int64_t ParseApron(const JsonSection& section, MacroCellProvenance provenance)
+{
+  constexpr std::int64_t most = 1024;
+  const std::int64_t unsaid = provenance == MacroCellProvenance::Decoded ? 1 : 0;
+  const std::int64_t apron = section.integer("macrocell_apron", unsaid);
+  if (apron < 0 || apron > most) {
+    throw Error(ErrorCode::InvalidModel, "an apron of " + std::to_string(apron) +
+                                             " voxels around macro-cells; it must be 0 to " +
+                                             std::to_string(most));
+  }
+  return apron;
+}
+
 } // namespace
 
 glm::i64vec3 ParseDims(const JsonSection& section)
@@ -181,6 +194,7 @@ InrSection ParseInrSection(const JsonSection& section)
   result.volume = ParseVolume(section);
   result.rule = section.choice("hash_rule", RuleNames);
   result.provenance = section.choice("macrocell_provenance", ProvenanceNames);
+  result.apron = ParseApron(section, result.provenance);
   result.checksum = ParseChecksum(section);
   if (const JsonSection quality = section.section("quality"); quality.present()) {
     result.quality = ParseQuality(quality);
@@ -205,6 +219,8 @@ json InrSectionToJson(const Model& model, std::uint32_t checksum)
                   {"data_range", {{"low", volume.low}, {"high", volume.high}}},
                   {"hash_rule", NameOf(RuleNames, model.description.grid.rule)},
                   {"macrocell_provenance", NameOf(ProvenanceNames, model.macroCells.provenance)},
+                  {"macrocell_apron",
+                   std::llround(model.macroCells.apron.x * static_cast<double>(volume.dims.x))},
                   {"checksum", ChecksumToText(checksum)}};
   if (model.quality) {
     section["quality"] = {{"psnr", RealToJson(model.quality->psnr)},

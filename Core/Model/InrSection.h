@@ -18,6 +18,7 @@ struct InrSection
   VolumeInfo volume;
   HashRule rule = HashRule::Wrapping;
   MacroCellProvenance provenance = MacroCellProvenance::File;
+  std::int64_t apron = 0;     ///< of macro-cells, in voxels
   std::uint32_t checksum = 0; ///< CRC-32 of the parameter blob followed by the macro-cell blob
   std::optional<Quality> quality;
   std::optional<TrainingRecord> training;

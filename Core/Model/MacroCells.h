@@ -26,7 +26,7 @@ struct ValueRange
 
 /// Where the ranges come from, in falling order of trust.
 enum class MacroCellProvenance {
-  Decoded,  ///< every voxel of the stored network, with an apron of one voxel
+  Decoded,  ///< every voxel of the stored network, with an apron
   Training, ///< training samples, widened by the measured maximum error
   File      ///< whatever the writing program put there (upstream)
 };
@@ -38,6 +38,7 @@ struct MacroCells
 {
   glm::i64vec3 dims{0};
   glm::dvec3 spacing{0}; ///< cell edge in the unit cube
+  glm::dvec3 apron{0};   ///< ranges hold what is so close to their cell, too; in the unit cube
   MacroCellProvenance provenance = MacroCellProvenance::File;
   std::vector<ValueRange> ranges; ///< x fastest
 

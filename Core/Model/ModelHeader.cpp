@@ -137,6 +137,8 @@ void ReadOwnSection(const JsonSection& root, ModelHeader& header)
   header.model.volume = std::move(own.volume);
   header.model.description.grid.rule = own.rule;
   header.model.macroCells.provenance = own.provenance;
+  header.model.macroCells.apron =
+      static_cast<double>(own.apron) / glm::dvec3(header.model.volume.dims);
   header.model.quality = own.quality;
   header.model.training = std::move(own.training);
   header.encoding = CellEncoding::Offset;

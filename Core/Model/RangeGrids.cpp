@@ -35,6 +35,7 @@ MacroCells LikeWith(const MacroCells& cells, const glm::i64vec3& dims, const glm
   MacroCells like;
   like.dims = dims;
   like.spacing = spacing;
+  like.apron = cells.apron;
   like.provenance = cells.provenance;
   like.ranges.resize(static_cast<std::size_t>(dims.x * dims.y * dims.z));
   return like;

@@ -14,22 +14,24 @@ constexpr int EveryLevel = std::numeric_limits<int>::max();
 
 MacroCells WithoutHoles(const MacroCells& cells)
 {
-  return cells.empty() ? MacroCells{glm::i64vec3(1), glm::dvec3(1.0), {}, {{0.0f, 1.0f}}} : cells;
+  return cells.empty() ? MacroCells{glm::i64vec3(1), glm::dvec3(1.0), {}, {}, {{0.0f, 1.0f}}}
+                       : cells;
 }
 
-/// The coarsest level whose samples in a cell show nothing beyond the neighbouring cells; below 0
-/// where even those of level 0 do.
-int CoarsestLevelIn(const MacroCells& cells, const glm::i64vec3& volumeDims)
+/// The coarsest level whose samples in a cell show nothing that is further than `distance` (in the
+/// unit cube) from it; below 0 where even those of level 0 do.
+int CoarsestLevelWithin(const glm::dvec3& distance, const MacroCells& cells,
+                        const glm::i64vec3& volumeDims)
 {
-  constexpr double reach = 1.5; // in voxels of the level, which are at most 2^level native ones
-  int coarsest = EveryLevel;
+  constexpr double reach = 1.25; // in voxels of the level, which are at most 2^level native ones
+  double levels = EveryLevel;
   for (int axis = 0; axis < 3; ++axis) {
     if (cells.dims[axis] > 1) {
-      const double edge = cells.spacing[axis] * static_cast<double>(volumeDims[axis]);
-      coarsest = glm::min(coarsest, static_cast<int>(std::floor(std::log2(edge / reach))));
+      const double voxels = distance[axis] * static_cast<double>(volumeDims[axis]);
+      levels = glm::min(levels, std::floor(std::log2(glm::max(voxels, 0.1) / reach)));
     }
   }
-  return coarsest;
+  return static_cast<int>(levels);
 }
 
 } // namespace
@@ -45,10 +47,11 @@ Majorants::Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, co
   if (cells.empty()) {
     return;
   }
-  this->Grids.front().coarsestLevel = 0;
+  this->Grids.front().coarsestLevel =
+      glm::max(0, CoarsestLevelWithin(cells.apron, cells, volumeDims));
   MacroCells ranges = cells;
   while (this->Grids.back().coarsestLevel != EveryLevel) {
-    const int coarsest = CoarsestLevelIn(ranges, volumeDims);
+    const int coarsest = CoarsestLevelWithin(ranges.spacing, ranges, volumeDims);
     if (coarsest > this->Grids.back().coarsestLevel) {
       this->Grids.push_back({MajorantGrid(Dilated(ranges, arena)), coarsest});
     }

@@ -97,10 +97,9 @@ struct CellSpan
 
 CellSpan CellsTouching(std::int64_t voxel, std::int64_t edge, std::int64_t cells)
 {
-  const std::int64_t cell = voxel / edge;
-  const std::int64_t begin = voxel % edge == 0 ? cell - 1 : cell;
-  const std::int64_t end = voxel % edge == edge - 1 ? cell + 2 : cell + 1;
-  return {std::max<std::int64_t>(begin, 0), std::min(end, cells)};
+  const std::int64_t first = std::max<std::int64_t>(voxel - MacroCellApron, 0) / edge;
+  const std::int64_t last = (voxel + MacroCellApron) / edge;
+  return {first, std::min(last + 1, cells)};
 }
 
 /// Adds slice z to every cell that it or its apron touches; rows of cells in parallel.
@@ -110,8 +109,9 @@ void ExtendCells(MacroCells& cells, const std::vector<float>& slice, const glm::
   const CellSpan layers = CellsTouching(z, edge, cells.dims.z);
   arena.forEachBlock(cells.dims.y, 1, [&](std::int64_t cellY, std::int64_t) {
     std::vector<ValueRange> row(static_cast<std::size_t>(cells.dims.x));
-    const std::int64_t lastY = std::min((cellY + 1) * edge + 1, dims.y);
-    for (std::int64_t y = std::max<std::int64_t>(cellY * edge - 1, 0); y < lastY; ++y) {
+    const std::int64_t firstY = std::max<std::int64_t>(cellY * edge - MacroCellApron, 0);
+    const std::int64_t lastY = std::min((cellY + 1) * edge + MacroCellApron, dims.y);
+    for (std::int64_t y = firstY; y < lastY; ++y) {
       for (std::int64_t x = 0; x < dims.x; ++x) {
         const float value = slice[static_cast<std::size_t>(y * dims.x + x)];
         const CellSpan columns = CellsTouching(x, edge, cells.dims.x);
@@ -141,6 +141,7 @@ DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volum
   DecodedReport report;
   report.macroCells = MakeMacroCells(dims, macroCellSize);
   report.macroCells.provenance = MacroCellProvenance::Decoded;
+  report.macroCells.apron = static_cast<double>(MacroCellApron) / glm::dvec3(dims);
   SliceComparison slice(evaluator, volume, info, arena, bandSize);
   SliceSsim ssim(dims.x, dims.y, arena);
   RowError all;

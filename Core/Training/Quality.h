@@ -4,15 +4,20 @@
 #include "Core/Inference/Evaluator.h"
 #include "Core/Training/Volume.h"
 
+#include <cstdint>
 #include <functional>
 
 namespace inr {
+
+/// Voxels around a macro-cell whose values its range holds too: as far as samples of cache level 1
+/// reach, which most pictures of a volume take many of. More would make ranges looser for all.
+constexpr std::int64_t MacroCellApron = 3;
 
 /// What one pass over all decoded voxels gives.
 struct DecodedReport
 {
   Quality quality;
-  MacroCells macroCells; ///< of the decoded values, with an apron of one voxel
+  MacroCells macroCells; ///< of the decoded values, with an apron of MacroCellApron voxels
 };
 
 /// Decodes every voxel of `volume` and compares: PSNR with the range as peak; SSIM in 3D (uniform

@@ -52,6 +52,7 @@ inline std::shared_ptr<inr::Model> FullModel()
   model->volume.high = 6.02e23;
   model->macroCells = inr::MakeMacroCells({40, 30, 20}, 16);
   model->macroCells.provenance = inr::MacroCellProvenance::Decoded;
+  model->macroCells.apron = 5.0 / glm::dvec3(model->volume.dims);
   for (std::size_t k = 1; k < model->macroCells.ranges.size(); ++k) {
     const float low = 0.9f * inr::RandomUnit(3, k);
     model->macroCells.ranges[k] = {low, low + 0.1f * inr::RandomUnit(4, k)};

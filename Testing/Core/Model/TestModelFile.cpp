@@ -39,6 +39,18 @@ TEST_F(ModelFile, KeepsEveryField)
   EXPECT_EQ(read->training->nonFinite, written->training->nonFinite);
   EXPECT_EQ(read->macroCells.dims, written->macroCells.dims);
   EXPECT_EQ(read->macroCells.provenance, written->macroCells.provenance);
+  EXPECT_EQ(read->macroCells.apron, written->macroCells.apron);
+}
+
+TEST_F(ModelFile, AnApronThatIsNotSaidIsAVoxel)
+{
+  const auto written = FullModel();
+  inr::WriteModel(*written, Folder.file("model.inr"));
+  std::string bytes = ReadBytes(Folder.file("model.inr"));
+  bytes.replace(bytes.find("macrocell_apron"), 15, "another_key_now");
+  WriteBytes(Folder.file("model.inr"), bytes);
+  EXPECT_EQ(inr::ReadModel(Folder.file("model.inr"))->macroCells.apron,
+            1.0 / glm::dvec3(written->volume.dims));
 }
 
 TEST_F(ModelFile, RangesNeverBecomeNarrower)

@@ -28,12 +28,14 @@ float Blocks(const glm::vec3& u) { return RandomAt(u * 8.7f); }
 float Noise(const glm::vec3& u) { return 0.9f * Blocks(u) + 0.1f * RandomAt(u * 301.0f); }
 
 /// A volume's voxels at all levels, and macro-cells that hold what the network says within them and
-/// a voxel around, no more.
+/// some voxels around, no more.
 struct Volume
 {
-  Volume(const glm::i64vec3& size, const inr::MacroCells& empty, float (*truth)(const glm::vec3&))
+  Volume(const glm::i64vec3& size, const inr::MacroCells& empty, float (*truth)(const glm::vec3&),
+         double apron = 1)
       : dims(size), hierarchy(size, 8), cells(empty), Truth(truth)
   {
+    this->cells.apron = apron / glm::dvec3(size);
     const auto field = std::make_shared<FieldEvaluator>([this](const glm::vec3& u) {
       this->extend(u);
       return this->Truth(u);
@@ -76,10 +78,10 @@ struct Volume
 private:
   void extend(const glm::vec3& u)
   {
-    const glm::dvec3 voxel = 1.0 / glm::dvec3(this->dims);
+    const glm::dvec3 apron = 1.001 * this->cells.apron;
     const glm::i64vec3 last = this->cells.dims - std::int64_t{1};
-    const glm::i64vec3 low((glm::dvec3(u) - 1.001 * voxel) / this->cells.spacing);
-    const glm::i64vec3 high((glm::dvec3(u) + 1.001 * voxel) / this->cells.spacing);
+    const glm::i64vec3 low((glm::dvec3(u) - apron) / this->cells.spacing);
+    const glm::i64vec3 high((glm::dvec3(u) + apron) / this->cells.spacing);
     for (std::int64_t z = glm::max(low.z, std::int64_t{0}); z <= glm::min(high.z, last.z); ++z) {
       for (std::int64_t y = glm::max(low.y, std::int64_t{0}); y <= glm::min(high.y, last.y); ++y) {
         for (std::int64_t x = glm::max(low.x, std::int64_t{0}); x <= glm::min(high.x, last.x);
@@ -134,6 +136,8 @@ std::vector<Volume> Volumes(float (*truth)(const glm::vec3&) = Noise)
   const glm::i64vec3 slab(90, 1, 61);
   return {{odd, inr::MakeMacroCells(odd, 16), truth},
           {odd, inr::MakeMacroCells(odd, 4), truth},
+          {odd, inr::MakeMacroCells(odd, 16), truth, 2.6},
+          {odd, inr::MakeMacroCells(odd, 8), truth, 5.1},
           {odd, LikeUpstream({0.07, 0.11, 0.3}), truth},
           {odd, LikeUpstream({0.019, 0.02, 1}), truth}, // cells of less than two voxels
           {slab, inr::MakeMacroCells(slab, 8), truth}};
@@ -213,6 +217,17 @@ TEST(Majorants, BoundWhatSamplesOfEveryLevelShow)
   }
 }
 
+TEST(Majorants, GoByTheCellsAloneAsFarAsTheirApronReaches)
+{
+  const glm::i64vec3 dims(75, 50, 33);
+  for (const auto& [apron, coarsest] : {std::pair(0.0, 0), {2.4, 0}, {2.6, 1}, {5.1, 2}}) {
+    inr::MacroCells cells = inr::MakeMacroCells(dims, 16);
+    std::fill(cells.ranges.begin(), cells.ranges.end(), inr::ValueRange{0, 1});
+    cells.apron = apron / glm::dvec3(dims);
+    EXPECT_EQ(inr::Majorants(cells, dims, inr::Arena(1)).coarsestLevel(0), coarsest) << apron;
+  }
+}
+
 TEST(Majorants, AreOfUseAtCoarseLevels)
 {
   inr::MacroCells cells = inr::MakeMacroCells(glm::i64vec3(512), 16);
@@ -223,7 +238,7 @@ TEST(Majorants, AreOfUseAtCoarseLevels)
   inr::Majorants majorants(cells, glm::i64vec3(512), inr::Arena(1));
   majorants.update(inr::ColorTable(OpacityRamp(0.5f), inr::VolumeInfo{}), inr::Arena(1));
   EXPECT_EQ(majorants.coarsestLevel(0), 0);
-  EXPECT_EQ(majorants.coarsestLevel(1), 3); // 12 voxels on either side of 16
+  EXPECT_EQ(majorants.coarsestLevel(1), 3); // 10 voxels on either side of 16
   for (int grid = 1; grid < majorants.grids(); ++grid) {
     const inr::MajorantGrid& coarse = majorants.grid(grid);
     int visible = 0;
