@@ -18,24 +18,79 @@ namespace inr {
 class LatticeWalker
 {
 public:
-  LatticeWalker() = default;
+  LatticeWalker() = default; ///< on no ray yet
   /// `dims` cells; at t the ray is in cell start + t * slope, rounded down. `inverse` is 1 / slope.
   INR_HOST_DEVICE LatticeWalker(const glm::i64vec3& dims, const glm::dvec3& start,
                                 const glm::dvec3& slope, const glm::dvec3& inverse)
-      : Last(dims - std::int64_t{1}), Start(start), Slope(slope), Inverse(inverse)
-  {}
+  {
+    this->follow(dims, start, slope, inverse);
+  }
+  /// Begins anew on another ray.
+  INR_HOST_DEVICE void follow(const glm::i64vec3& dims, const glm::dvec3& start,
+                              const glm::dvec3& slope, const glm::dvec3& inverse)
+  {
+    this->Last = dims - std::int64_t{1};
+    this->Start = start;
+    this->Slope = slope;
+    this->Inverse = inverse;
+    this->Exit = -1;
+  }
+  /// Begins anew in another lattice, of `scale` times as many cells per length.
+  INR_HOST_DEVICE void changeTo(const glm::i64vec3& dims, const glm::dvec3& scale)
+  {
+    this->follow(dims, this->Start * scale, this->Slope * scale, this->Inverse / scale);
+  }
 
   /// Moves to t, which does not fall from call to call.
   INR_HOST_DEVICE void moveTo(double t)
   {
-    constexpr int near = 4; // further cells are found sooner from scratch
-    for (int steps = 0; t >= this->Exit; ++steps) {
-      if (steps == near || this->Exit < 0) {
-        this->enterAt(t);
-        return;
-      }
+    if (this->Exit < 0) {
+      this->enterAt(t);
+    }
+    while (t >= this->Exit) {
       this->advance();
     }
+  }
+
+  /// Into the next cell; false, and nothing else, when that is not before `end`.
+  INR_HOST_DEVICE bool moveToNext(double end)
+  {
+    const bool moves = this->Exit < end;
+    if (moves) {
+      this->advance();
+    }
+    return moves;
+  }
+
+  /// Out of the aligned block of 2^block cells per axis around the present one, into the very cell
+  /// that going cell by cell comes to; false, and nothing else, when that is not before `end`.
+  INR_HOST_DEVICE bool leaveBlock(int block, double end)
+  {
+    glm::i64vec3 last; // cells before the ray leaves the block along each axis
+    glm::dvec3 exits;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t low = (this->Cell[axis] >> block) << block;
+      const std::int64_t high = low + (std::int64_t{1} << block) - 1;
+      last[axis] = this->Slope[axis] > 0 ? glm::min(high, this->Last[axis]) : low;
+      exits[axis] = this->exitFrom(axis, last[axis]);
+    }
+    const int through = firstOf(exits);
+    const double t = exits[through];
+    if (t >= end) {
+      return false;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis != through && this->Slope[axis] != 0) {
+        this->Cell[axis] = this->cellAt(axis, last[axis], t, axis < through);
+      }
+    }
+    this->Cell[through] = last[through] + this->directionAlong(through);
+    for (int axis = 0; axis < 3; ++axis) {
+      this->findAxisExit(axis);
+    }
+    this->Enter = t;
+    this->findExit();
+    return true;
   }
 
   INR_HOST_DEVICE const glm::i64vec3& cell() const { return this->Cell; }
@@ -54,15 +109,25 @@ private:
     return (static_cast<double>(plane) - this->Start[axis]) * this->Inverse[axis];
   }
 
-  INR_HOST_DEVICE void findAxisExit(int axis)
+  INR_HOST_DEVICE std::int64_t directionAlong(int axis) const
+  {
+    return this->Slope[axis] > 0 ? 1 : -1;
+  }
+
+  /// t at which the ray leaves the slab of cells `cell` along an axis.
+  INR_HOST_DEVICE double exitFrom(int axis, std::int64_t cell) const
   {
     const bool forward = this->Slope[axis] > 0;
-    const std::int64_t cell = this->Cell[axis];
     const double face = this->faceAt(axis, cell + (forward ? 1 : 0));
     // Which way a ray goes is anybody's guess, so better no branches.
     const bool open = static_cast<int>(this->Slope[axis] == 0) |
                       static_cast<int>(cell == (forward ? this->Last[axis] : 0));
-    this->AxisExit[axis] = open ? Never : face;
+    return open ? Never : face;
+  }
+
+  INR_HOST_DEVICE void findAxisExit(int axis)
+  {
+    this->AxisExit[axis] = this->exitFrom(axis, this->Cell[axis]);
   }
 
   INR_HOST_DEVICE void findExit()
@@ -89,8 +154,8 @@ private:
   /// Makes good what rounding did to the cell along an axis.
   INR_HOST_DEVICE void settle(int axis, double t)
   {
-    const std::int64_t forward = this->Slope[axis] > 0 ? 1 : 0;
-    const std::int64_t direction = 2 * forward - 1;
+    const std::int64_t direction = this->directionAlong(axis);
+    const std::int64_t forward = direction > 0 ? 1 : 0;
     const std::int64_t first = forward != 0 ? 0 : this->Last[axis];
     std::int64_t& cell = this->Cell[axis];
     while (t >= this->AxisExit[axis]) {
@@ -106,16 +171,43 @@ private:
     }
   }
 
+  /// The axis whose face comes first; of equal ones always the same.
+  INR_HOST_DEVICE static int firstOf(const glm::dvec3& exits)
+  {
+    return exits[0] <= exits[1] ? (exits[0] <= exits[2] ? 0 : 2) : (exits[1] <= exits[2] ? 1 : 2);
+  }
+
   /// Into the next cell; there is one while Exit is not Never.
   INR_HOST_DEVICE void advance()
   {
-    const glm::dvec3& exits = this->AxisExit;
-    const int axis =
-        exits[0] <= exits[1] ? (exits[0] <= exits[2] ? 0 : 2) : (exits[1] <= exits[2] ? 1 : 2);
-    this->Cell[axis] += this->Slope[axis] > 0 ? 1 : -1;
+    const int axis = firstOf(this->AxisExit);
+    this->Cell[axis] += this->directionAlong(axis);
     this->Enter = this->Exit;
     this->findAxisExit(axis);
     this->findExit();
+  }
+
+  /// The cell along an axis, from the present one to `last`, at t; a face right at t has been
+  /// passed or not.
+  INR_HOST_DEVICE std::int64_t cellAt(int axis, std::int64_t last, double t, bool passed) const
+  {
+    const std::int64_t direction = this->directionAlong(axis);
+    const std::int64_t first = this->Cell[axis];
+    const auto behind = [&](std::int64_t cell) {
+      const double exit = this->exitFrom(axis, cell);
+      return passed ? exit <= t : exit < t;
+    };
+    const auto low = static_cast<double>(glm::min(first, last));
+    const auto high = static_cast<double>(glm::max(first, last));
+    const double place = this->Start[axis] + this->Slope[axis] * t;
+    auto cell = static_cast<std::int64_t>(glm::clamp(place, low, high)); // but for rounding
+    while (cell != last && behind(cell)) {
+      cell += direction;
+    }
+    while (cell != first && !behind(cell - direction)) {
+      cell -= direction;
+    }
+    return cell;
   }
 
   glm::i64vec3 Last{0};
