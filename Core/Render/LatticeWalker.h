@@ -135,7 +135,7 @@ private:
     this->Exit = glm::min(glm::min(this->AxisExit[0], this->AxisExit[1]), this->AxisExit[2]);
   }
 
-  /// The cell that holds t, by the planes that `advance` goes by.
+  /// The cell that holds t, by the planes that `advance` goes by, or one right before it.
   INR_HOST_DEVICE void enterAt(double t)
   {
     this->Enter = 0;
@@ -151,17 +151,13 @@ private:
     this->findExit();
   }
 
-  /// Makes good what rounding did to the cell along an axis.
+  /// Makes good what rounding did to the cell along an axis, should it be too far.
   INR_HOST_DEVICE void settle(int axis, double t)
   {
     const std::int64_t direction = this->directionAlong(axis);
     const std::int64_t forward = direction > 0 ? 1 : 0;
     const std::int64_t first = forward != 0 ? 0 : this->Last[axis];
     std::int64_t& cell = this->Cell[axis];
-    while (t >= this->AxisExit[axis]) {
-      cell += direction;
-      this->findAxisExit(axis);
-    }
     while (cell != first && t < this->faceAt(axis, cell + 1 - forward)) {
       cell -= direction;
       this->findAxisExit(axis);
