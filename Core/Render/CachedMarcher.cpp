@@ -7,18 +7,6 @@
 
 namespace inr {
 
-namespace {
-
-/// How many of 0, 1, 2 ... are below a number; at least 1, at most a batch.
-int CountBelow(double end)
-{
-  const double enough = std::min(end, static_cast<double>(SampleBatch::Capacity));
-  const int whole = static_cast<int>(enough);
-  return std::max(1, whole + (static_cast<double>(whole) < enough ? 1 : 0));
-}
-
-} // namespace
-
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
     : ray(scene.geometry.ray(x, y)), stream(PixelStream(scene.frame, x, y)),
       samples(scene.majorants, scene.settings, this->ray, scene.frame.levelOfDetailScale,
@@ -101,8 +89,8 @@ int CachedMarcher::add(const CachedRay& state, const AlikeSamples& alike)
   }
   int count = std::min(alike.count, SampleBatch::Capacity - this->Count);
   if (count > 1) {
-    const double exit = std::min(fine->exit(), coarse->exit());
-    count = std::min(count, CountBelow((exit - place) / static_cast<double>(alike.steps())));
+    const double room = std::min(fine->exit(), coarse->exit()) - place;
+    count = CountBelow(room / static_cast<double>(alike.steps()), count);
   }
   this->addRun(state, alike, count, *fine, *coarse);
   countUse(state, this->Batch.runs[this->RunCount - 1], *fine, *coarse);

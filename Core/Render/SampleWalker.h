@@ -42,6 +42,14 @@ INR_HOST_DEVICE inline double PowerOfTwo(int power)
   return value;
 }
 
+/// How many of 0, 1, 2 ... are below `end`; at least 1, at most `most`.
+INR_HOST_DEVICE inline int CountBelow(double end, double most)
+{
+  const double enough = glm::min(end, most);
+  const int whole = static_cast<int>(enough);
+  return glm::max(1, whole + (static_cast<double>(whole) < enough ? 1 : 0));
+}
+
 /// Samples of a ray that differ in nothing but their place: sample k stands for `steps()` steps,
 /// from interval k * steps() after the first one's on.
 struct AlikeSamples
@@ -117,8 +125,8 @@ public:
     }
     const double inCells = (this->Stretch.exit - begin) * inverse - this->Jitter;
     const double inLevel = (this->Stretch.levelEnd - begin) * inverse;
-    const int count =
-        glm::min(CountBelow(glm::min(inCells, inLevel)), static_cast<int>(glm::min(onRay, Plenty)));
+    const int count = glm::min(CountBelow(glm::min(inCells, inLevel), Plenty),
+                               static_cast<int>(glm::min(onRay, Plenty)));
     const int joined = count >> this->Stretch.faint;
     return joined == 0 ? AlikeSamples{1, count, power, false}
                        : AlikeSamples{joined, 1 << this->Stretch.faint, power, false};
@@ -156,14 +164,6 @@ public:
 private:
   static constexpr double Plenty = 1024;    ///< more samples than anybody asks for at once
   static constexpr double BlockLength = 64; ///< samples that are looked ahead for
-
-  /// How many of 0, 1, 2 ... are below a number; at least 1.
-  INR_HOST_DEVICE static int CountBelow(double end)
-  {
-    const double enough = glm::min(end, Plenty);
-    const int whole = static_cast<int>(enough);
-    return glm::max(1, whole + (static_cast<double>(whole) < enough ? 1 : 0));
-  }
 
   /// log2 of the steps that the next sample stands for at least: those of the level, if the lattice
   /// has such an interval here.
