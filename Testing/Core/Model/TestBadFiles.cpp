@@ -96,6 +96,7 @@ TEST_F(BadFiles, HugeClaims)
     this->expectRefused(this->with("n_levels", 0, &length, 4), "a number of levels");
     this->expectRefused(this->with("macrocell", 0, &length, 4), "a length of a document");
     this->expectRefused(this->with("n_neurons", 0, &length, 4), "a width");
+    this->expectRefused(this->with("macrocell_apron", 0, &length, 4), "an apron");
   }
   // The first "x" belongs to our own dimensions: its neighbours' product must not overflow.
   std::string bytes = this->Good;
