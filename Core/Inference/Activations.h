@@ -39,14 +39,16 @@ inline void Activate(Activation activation, float* values, std::int64_t count)
   case Activation::None:
     return;
   case Activation::ReLU:
-  case Activation::LeakyReLU: {
-    const Floats slope = Spread(activation == Activation::ReLU ? 0.0f : 0.01f);
     for (std::int64_t k = 0; k < count; k += LaneCount) {
-      const Floats value = Load(values + k);
-      Store(values + k, value > Floats{} ? value : value * slope);
+      Store(values + k, Maximum(Floats{}, Load(values + k))); // a NaN stays one
     }
     return;
-  }
+  case Activation::LeakyReLU:
+    for (std::int64_t k = 0; k < count; k += LaneCount) {
+      const Floats value = Load(values + k);
+      Store(values + k, value > Floats{} ? value : value * Spread(0.01f));
+    }
+    return;
   default:
     for (std::int64_t k = 0; k < count; ++k) {
       values[k] = ActivateOne(activation, values[k]);

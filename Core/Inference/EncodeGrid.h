@@ -1,128 +1,174 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The grid encoding along a row of a regular lattice of samples; see Lanes.h for what may be in
-// here. Neighbouring samples share corners: each corner is fetched and interpolated along z once
-// for all samples around it, and along y once for all rows that lie between the same corners.
+// The grid encoding on a regular lattice of samples; see Lanes.h for what may be in here.
+// Neighbouring samples share corners. A piece is eight samples along x in one layer of the lattice:
+// what it needs of the grid at one height y is fetched, interpolated along z and x and kept while
+// the piece moves on along y, so that a row between known heights costs one interpolation.
 #pragma once
 
 #include "Core/Inference/Encode.h"
+#include "Core/Inference/Transpose.h"
 
 namespace inr {
 
 namespace INR_ISA {
 
-/// Samples in a row that are encoded together.
-constexpr int RowCapacity = 64;
+/// Samples in a piece, along x.
+constexpr int PieceWidth = 8;
 /// Lattice points along x that they touch: two each, at most.
-constexpr int ColumnCapacity = 2 * RowCapacity;
+constexpr int ColumnCapacity = 2 * PieceWidth;
+/// Rows (of a piece) that are encoded together.
+constexpr int RowCapacity = 16;
 
-/// What a row keeps of one grid level.
-struct LevelRow
+/// What a piece keeps of one grid level.
+struct LevelPiece
 {
-  std::int32_t columnOf[RowCapacity]; ///< of each sample's lower corner, in `columns`
-  float weight[RowCapacity];
+  std::int32_t lower[PieceWidth]; ///< each sample's lower corner, in `columns`
+  float weight[PieceWidth];
   std::uint32_t columns[ColumnCapacity + LaneCount]; ///< x of the corners, rising
   int columnCount;
-  std::uint32_t lineY[2]; ///< y of the corners in `lines`
+  std::uint32_t z; ///< lower corner of the layer
+  float weightZ;
   bool known[2];
-  float lines[2][ColumnCapacity * 8]; ///< features of the corners, interpolated along z
+  std::uint32_t lineY[2]; ///< y of the corners in `lines`
+  Octet lines[2][8];      ///< features at the samples' x and z and the corners' y
 };
 
-inline void LocateRow(const LevelView& level, GridInterpolation interpolation, const float* x,
-                      int count, LevelRow& row)
+/// `count` coordinates and their last one again up to LaneCount.
+inline Floats LoadSome(const float* from, int count)
 {
-  std::uint32_t cells[RowCapacity + LaneCount];
-  float weights[RowCapacity + LaneCount];
+  float lanes[LaneCount];
+  for (int k = 0; k < LaneCount; ++k) {
+    lanes[k] = from[k < count ? k : count - 1];
+  }
+  return Load(lanes);
+}
+
+/// Cells and weights of `count` coordinates, at most RowCapacity.
+inline void LocateSome(const LevelView& level, GridInterpolation interpolation, const float* u,
+                       int count, std::uint32_t* cells, float* weights)
+{
   for (int k = 0; k < count; k += LaneCount) {
-    float lanes[LaneCount];
-    for (int lane = 0; lane < LaneCount; ++lane) {
-      lanes[lane] = x[k + lane < count ? k + lane : count - 1];
-    }
-    const AxisCell at = LocateOnAxis(level, interpolation, Load(lanes));
+    const AxisCell at = LocateOnAxis(level, interpolation, LoadSome(u + k, count - k));
     std::memcpy(cells + k, &at.cell, sizeof(at.cell));
     Store(weights + k, at.weight);
   }
-  row.columnCount = 0;
-  for (int k = 0; k < count; ++k) {
-    // Positions rise, so a cell is the last one, the one after it, or further on.
-    int lower = row.columnCount - 2;
-    if (row.columnCount > 0 && cells[k] == row.columns[row.columnCount - 1]) {
-      lower = row.columnCount - 1;
-    } else if (row.columnCount == 0 || cells[k] != row.columns[lower]) {
-      lower = row.columnCount;
-      row.columns[row.columnCount++] = cells[k];
-    }
-    if (lower == row.columnCount - 1) {
-      row.columns[row.columnCount++] = cells[k] + 1;
-    }
-    row.columnOf[k] = lower;
-    row.weight[k] = weights[k];
-  }
-  row.known[0] = row.known[1] = false;
 }
 
-/// Corners at height y, between the layers z and z + 1.
-template <int Features>
-inline void FetchLine(const LevelView& level, const float* table, std::uint32_t y, std::uint32_t z,
-                      float weightZ, const LevelRow& row, float* line)
+/// Begins a piece of `count` samples; the missing ones repeat the last.
+inline void LocatePiece(const LevelView& level, GridInterpolation interpolation, const float* x,
+                        int count, LevelPiece& piece)
 {
-  for (int first = 0; first < row.columnCount; first += LaneCount) {
+  std::uint32_t cells[RowCapacity];
+  float weights[RowCapacity];
+  LocateSome(level, interpolation, x, count, cells, weights);
+  piece.columnCount = 0;
+  for (int k = 0; k < PieceWidth; ++k) {
+    const int from = k < count ? k : count - 1;
+    // Positions rise, so a cell is the last one, the one after it, or further on.
+    int lower = piece.columnCount - 2;
+    if (piece.columnCount > 0 && cells[from] == piece.columns[piece.columnCount - 1]) {
+      lower = piece.columnCount - 1;
+    } else if (piece.columnCount == 0 || cells[from] != piece.columns[lower]) {
+      lower = piece.columnCount;
+      piece.columns[piece.columnCount++] = cells[from];
+    }
+    if (lower == piece.columnCount - 1) {
+      piece.columns[piece.columnCount++] = cells[from] + 1;
+    }
+    piece.lower[k] = lower;
+    piece.weight[k] = weights[from];
+  }
+}
+
+/// Moves a piece to the layer at z.
+inline void BeginLayer(const LevelView& level, GridInterpolation interpolation, float z,
+                       LevelPiece& piece)
+{
+  const AxisCell at = LocateOnAxis(level, interpolation, Spread(z));
+  piece.z = at.cell[0];
+  piece.weightZ = at.weight[0];
+  piece.known[0] = piece.known[1] = false;
+}
+
+/// Features of the piece's corners at height y, interpolated along z: one corner after the other.
+template <int Features>
+inline void FetchCorners(const LevelView& level, const float* table, std::uint32_t y,
+                         const LevelPiece& piece, Row<Features>* corners)
+{
+  const UInts spreadY = SpreadInt(y);
+  for (int first = 0; first < piece.columnCount; first += LaneCount) {
     UInts x;
-    std::memcpy(&x, row.columns + first, sizeof(x));
-    const UInts spreadY = SpreadInt(y);
-    const UInts lower = WrapIndex(level, CornerIndex(level, x, spreadY, SpreadInt(z)));
-    const UInts upper = WrapIndex(level, CornerIndex(level, x, spreadY, SpreadInt(z + 1)));
-    for (int lane = 0; lane < LaneCount && first + lane < row.columnCount; ++lane) {
+    std::memcpy(&x, piece.columns + first, sizeof(x));
+    const UInts lower = WrapIndex(level, CornerIndex(level, x, spreadY, SpreadInt(piece.z)));
+    const UInts upper = WrapIndex(level, CornerIndex(level, x, spreadY, SpreadInt(piece.z + 1)));
+    std::uint32_t entries[2][LaneCount];
+    std::memcpy(entries[0], &lower, sizeof(lower));
+    std::memcpy(entries[1], &upper, sizeof(upper));
+    for (int lane = 0; lane < LaneCount && first + lane < piece.columnCount; ++lane) {
       Row<Features> below, above;
-      std::memcpy(&below, table + static_cast<std::uint64_t>(lower[lane]) * Features,
+      std::memcpy(&below, table + static_cast<std::uint64_t>(entries[0][lane]) * Features,
                   sizeof(below));
-      std::memcpy(&above, table + static_cast<std::uint64_t>(upper[lane]) * Features,
+      std::memcpy(&above, table + static_cast<std::uint64_t>(entries[1][lane]) * Features,
                   sizeof(above));
-      const Row<Features> mixed = below + (above - below) * weightZ;
-      std::memcpy(line + (first + lane) * Features, &mixed, sizeof(mixed));
+      corners[first + lane] = below + (above - below) * piece.weightZ;
     }
   }
 }
 
-/// The place in `row.lines` that holds height y; the other one holds what may not be lost.
+/// Features of the piece's samples at a corner's height y.
 template <int Features>
-inline int LineAt(const LevelView& level, const float* table, std::uint32_t y, std::uint32_t z,
-                  float weightZ, int other, LevelRow& row)
+inline void FetchLine(const LevelView& level, const float* table, std::uint32_t y,
+                      const LevelPiece& piece, Octet* line)
+{
+  Row<Features> corners[ColumnCapacity];
+  FetchCorners<Features>(level, table, y, piece, corners);
+  alignas(64) float samples[PieceWidth * Features];
+  for (int k = 0; k < PieceWidth; ++k) {
+    const Row<Features> left = corners[piece.lower[k]];
+    const Row<Features> right = corners[piece.lower[k] + 1];
+    const Row<Features> mixed = left + (right - left) * piece.weight[k];
+    std::memcpy(samples + k * Features, &mixed, sizeof(mixed));
+  }
+  Octet turned[Features];
+  TransposeSamples<Features>(samples, turned);
+  std::memcpy(line, turned, sizeof(turned));
+}
+
+/// The place in `piece.lines` that holds height y; the other one holds what may not be lost.
+template <int Features>
+inline int LineAt(const LevelView& level, const float* table, std::uint32_t y, int other,
+                  LevelPiece& piece)
 {
   for (int place = 0; place < 2; ++place) {
-    if (row.known[place] && row.lineY[place] == y) {
+    if (piece.known[place] && piece.lineY[place] == y) {
       return place;
     }
   }
   const int place = other == 0 ? 1 : 0;
-  FetchLine<Features>(level, table, y, z, weightZ, row, row.lines[place]);
-  row.lineY[place] = y;
-  row.known[place] = true;
+  FetchLine<Features>(level, table, y, piece, piece.lines[place]);
+  piece.lineY[place] = y;
+  piece.known[place] = true;
   return place;
 }
 
-/// Features of `count` samples: out[f * stride + k].
+/// Features of a piece in `rows` rows at heights y: out[f * stride + row * PieceWidth + sample].
 template <int Features>
-inline void EncodeRow(const LevelView& level, const float* table, const AxisCell& y,
-                      const AxisCell& z, LevelRow& row, int count, float* out, std::int64_t stride)
+inline void EncodeRows(const LevelView& level, GridInterpolation interpolation, const float* table,
+                       const float* y, int rows, LevelPiece& piece, float* out, std::int64_t stride)
 {
-  const float weightZ = z.weight[0];
-  const std::uint32_t below = y.cell[0];
-  const int upperKnown = row.known[0] && row.lineY[0] == below + 1 ? 0 : 1;
-  const int lower = LineAt<Features>(level, table, below, z.cell[0], weightZ, upperKnown, row);
-  const int upper = LineAt<Features>(level, table, below + 1, z.cell[0], weightZ, lower, row);
-  const float weightY = y.weight[0];
-  float line[ColumnCapacity * Features];
-  for (int k = 0; k < row.columnCount * Features; ++k) {
-    line[k] = row.lines[lower][k] + (row.lines[upper][k] - row.lines[lower][k]) * weightY;
-  }
-  for (int k = 0; k < count; ++k) {
-    Row<Features> left, right;
-    std::memcpy(&left, line + row.columnOf[k] * Features, sizeof(left));
-    std::memcpy(&right, line + (row.columnOf[k] + 1) * Features, sizeof(right));
-    const Row<Features> mixed = left + (right - left) * row.weight[k];
+  std::uint32_t cells[RowCapacity];
+  float weights[RowCapacity];
+  LocateSome(level, interpolation, y, rows, cells, weights);
+  for (int row = 0; row < rows; ++row) {
+    const std::uint32_t below = cells[row];
+    const int upperKnown = piece.known[0] && piece.lineY[0] == below + 1 ? 0 : 1;
+    const int lower = LineAt<Features>(level, table, below, upperKnown, piece);
+    const int upper = LineAt<Features>(level, table, below + 1, lower, piece);
     for (int f = 0; f < Features; ++f) {
-      out[f * stride + k] = mixed[f];
+      const Octet from = piece.lines[lower][f];
+      const Octet mixed = from + (piece.lines[upper][f] - from) * weights[row];
+      std::memcpy(out + f * stride + row * PieceWidth, &mixed, sizeof(mixed));
     }
   }
 }

@@ -8,7 +8,7 @@
 
 namespace inr {
 
-/// Network outputs at scattered points, for one instruction set.
+/// Network outputs at scattered points, for one instruction set. The model must have panels.
 struct EvaluateKernel
 {
   /// Floats of scratch memory that `evaluate` needs.

@@ -7,7 +7,6 @@
 #include "Core/Inference/KernelTable.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <utility>
 
 namespace inr {
@@ -40,23 +39,25 @@ public:
       : Source(std::move(model)), Set(set), Kernel(EvaluateKernelFor(set)),
         LatticeKernel(GridKernelFor(set)),
         Views(this->Source->description, CheckedLayout(*this->Source),
-              this->Source->parameters.data())
+              this->Source->parameters.data()),
+        Network(this->Views.view())
   {}
 
   void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const override
   {
-    const ModelView& model = this->Views.view();
-    std::vector<float> workspace(static_cast<std::size_t>(this->Kernel.workspace(model)));
-    this->Kernel.evaluate(model, &positions->x, count, values, workspace.data());
+    const ModelView& model = this->Network.view();
+    const auto floats = static_cast<std::size_t>(this->Kernel.workspace(model));
+    const std::unique_ptr<float[]> workspace(new float[floats]); // left as it is: no need for zeros
+    this->Kernel.evaluate(model, &positions->x, count, values, workspace.get());
   }
 
   void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const override
   {
-    const ModelView& model = this->Views.view();
+    const ModelView& model = this->Network.view();
     const auto bytes = static_cast<std::size_t>(this->LatticeKernel.workspace(model));
-    std::vector<std::max_align_t> workspace(bytes / sizeof(std::max_align_t) + 1);
+    const std::unique_ptr<unsigned char[]> workspace(new unsigned char[bytes]);
     const LatticeAxis views[3] = {ViewOf(axes[0]), ViewOf(axes[1]), ViewOf(axes[2])};
-    this->LatticeKernel.evaluate(model, views, values, workspace.data());
+    this->LatticeKernel.evaluate(model, views, values, workspace.get());
   }
 
   std::string kernel() const override { return InstructionSetName(this->Set); }
@@ -67,6 +68,7 @@ private:
   const EvaluateKernel& Kernel;
   const GridKernel& LatticeKernel;
   ModelViewStorage Views;
+  PackedNetwork Network;
 };
 
 } // namespace

@@ -11,62 +11,54 @@ namespace INR_ISA {
 
 namespace {
 
+/// Rows of a piece that make a strip.
+constexpr int StripHeight = StripSize / PieceWidth;
+static_assert(StripSize % PieceWidth == 0 && StripHeight <= RowCapacity,
+              "a strip holds whole rows");
+
 std::int64_t Workspace(const ModelView& model)
 {
-  return static_cast<std::int64_t>(sizeof(LevelRow)) * model.levelCount +
-         static_cast<std::int64_t>(sizeof(float)) * 2 * RowCapacity * model.widest;
+  return static_cast<std::int64_t>(sizeof(LevelPiece)) * model.levelCount + 64 +
+         static_cast<std::int64_t>(sizeof(float)) * StripWorkspace(model);
 }
 
 template <int Features>
-void EncodeLevels(const ModelView& model, float y, float z, LevelRow* rows, int count,
+void EncodeLevels(const ModelView& model, const float* y, int rows, LevelPiece* pieces,
                   float* encoded)
 {
   for (int l = 0; l < model.levelCount; ++l) {
     const LevelView& level = model.levels[l];
-    EncodeRow<Features>(
-        level, model.grid + level.offset, LocateOnAxis(level, model.interpolation, Spread(y)),
-        LocateOnAxis(level, model.interpolation, Spread(z)), rows[l], count,
-        encoded + static_cast<std::int64_t>(l) * Features * RowCapacity, RowCapacity);
+    EncodeRows<Features>(level, model.interpolation, model.grid + level.offset, y, rows, pieces[l],
+                         encoded + static_cast<std::int64_t>(l) * Features * StripSize, StripSize);
   }
 }
 
-void EncodeRowOf(const ModelView& model, float y, float z, LevelRow* rows, int count,
+void EncodeStrip(const ModelView& model, const float* y, int rows, LevelPiece* pieces,
                  float* encoded)
 {
   switch (model.features) {
   case 1:
-    EncodeLevels<1>(model, y, z, rows, count, encoded);
-    break;
+    return EncodeLevels<1>(model, y, rows, pieces, encoded);
   case 2:
-    EncodeLevels<2>(model, y, z, rows, count, encoded);
-    break;
+    return EncodeLevels<2>(model, y, rows, pieces, encoded);
   case 4:
-    EncodeLevels<4>(model, y, z, rows, count, encoded);
-    break;
+    return EncodeLevels<4>(model, y, rows, pieces, encoded);
   default:
-    EncodeLevels<8>(model, y, z, rows, count, encoded);
-    break;
+    return EncodeLevels<8>(model, y, rows, pieces, encoded);
   }
 }
 
-/// Samples [first, first + count) of every row.
-void EvaluateColumns(const ModelView& model, const LatticeAxis (&axes)[3], std::int64_t first,
-                     int count, float* values, LevelRow* rows, float* layers)
+/// `count` samples of each row of a layer, from `first` on; `layer` is the layer's values.
+void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t first, int count,
+                   std::int64_t width, LevelPiece* pieces, StripPair& strips, float* layer)
 {
-  float* const encoded = layers;
-  float* const other = layers + static_cast<std::int64_t>(RowCapacity) * model.widest;
-  const std::int64_t samples = (count + LaneCount - 1) / LaneCount * LaneCount;
-  for (std::int64_t k = 0; k < axes[2].count; ++k) {
-    for (int l = 0; l < model.levelCount; ++l) {
-      LocateRow(model.levels[l], model.interpolation, axes[0].u + first, count, rows[l]);
-    }
-    for (std::int64_t j = 0; j < axes[1].count; ++j) {
-      EncodeRowOf(model, axes[1].u[j], axes[2].u[k], rows, count, encoded);
-      for (int row = model.encodedWidth; row < model.inputWidth; ++row) {
-        std::memset(encoded + row * RowCapacity, 0, RowCapacity * sizeof(float));
-      }
-      const float* const out = RunNetwork(model, encoded, other, RowCapacity, samples);
-      std::memcpy(values + (k * axes[1].count + j) * axes[0].count + first, out,
+  for (std::int64_t j = 0; j < y.count; j += StripHeight) {
+    const int rows = y.count - j < StripHeight ? static_cast<int>(y.count - j) : StripHeight;
+    EncodeStrip(model, y.u + j, rows, pieces, strips.in.values);
+    float outputs[StripSize];
+    RunStrip(model, strips, rows * PieceWidth, outputs);
+    for (int row = 0; row < rows; ++row) {
+      std::memcpy(layer + (j + row) * width + first, outputs + row * PieceWidth,
                   static_cast<std::size_t>(count) * sizeof(float));
     }
   }
@@ -75,15 +67,24 @@ void EvaluateColumns(const ModelView& model, const LatticeAxis (&axes)[3], std::
 void EvaluateGrid(const ModelView& model, const LatticeAxis (&axes)[3], float* values,
                   void* workspace)
 {
-  auto* const rows = static_cast<LevelRow*>(workspace);
-  auto* const layers = reinterpret_cast<float*>(rows + model.levelCount);
-  std::memset(layers, 0, sizeof(float) * 2 * RowCapacity * static_cast<std::size_t>(model.widest));
+  auto* const pieces = AlignToLine(static_cast<LevelPiece*>(workspace));
+  StripPair strips = MakeStrips(model, reinterpret_cast<float*>(pieces + model.levelCount));
+  // A strip whose last rows do not exist computes with what is there: let it be numbers.
+  std::memset(strips.in.values, 0,
+              sizeof(float) * StripSize * static_cast<std::size_t>(model.widest));
   const std::int64_t width = axes[0].count;
-  const std::int64_t pieces = (width + RowCapacity - 1) / RowCapacity;
-  for (std::int64_t piece = 0; piece < pieces; ++piece) {
-    const std::int64_t first = width * piece / pieces;
-    const std::int64_t end = width * (piece + 1) / pieces;
-    EvaluateColumns(model, axes, first, static_cast<int>(end - first), values, rows, layers);
+  for (std::int64_t first = 0; first < width; first += PieceWidth) {
+    const int count = width - first < PieceWidth ? static_cast<int>(width - first) : PieceWidth;
+    for (int l = 0; l < model.levelCount; ++l) {
+      LocatePiece(model.levels[l], model.interpolation, axes[0].u + first, count, pieces[l]);
+    }
+    for (std::int64_t k = 0; k < axes[2].count; ++k) {
+      for (int l = 0; l < model.levelCount; ++l) {
+        BeginLayer(model.levels[l], model.interpolation, axes[2].u[k], pieces[l]);
+      }
+      EvaluatePiece(model, axes[1], first, count, width, pieces, strips,
+                    values + k * axes[1].count * width);
+    }
   }
 }
 

@@ -15,10 +15,10 @@ struct LatticeAxis
   std::int64_t count;
 };
 
-/// Network outputs on a regular lattice, for one instruction set.
+/// Network outputs on a regular lattice, for one instruction set. The model must have panels.
 struct GridKernel
 {
-  /// Bytes of scratch memory that `evaluate` needs, aligned for anything.
+  /// Bytes of scratch memory that `evaluate` needs.
   std::int64_t (*workspace)(const ModelView& model);
   /// x fastest in `values`.
   void (*evaluate)(const ModelView& model, const LatticeAxis (&axes)[3], float* values,

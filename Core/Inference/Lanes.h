@@ -69,6 +69,26 @@ inline Floats ProductError(Floats a, Floats b, Floats product)
 inline Floats Maximum(Floats a, Floats b) { return a > b ? a : b; }
 inline Floats Minimum(Floats a, Floats b) { return a < b ? a : b; }
 
+/// True when every bit of `value` is 0.
+inline bool IsZero(UInts value)
+{
+#if defined(__AVX512F__)
+  return _mm512_test_epi32_mask((__m512i)value, (__m512i)value) == 0;
+#elif defined(__AVX2__)
+  return _mm256_testz_si256((__m256i)value, (__m256i)value) != 0;
+#else
+  std::uint64_t words[sizeof(value) / sizeof(std::uint64_t)];
+  std::memcpy(words, &value, sizeof(words));
+  return (words[0] | words[1]) == 0;
+#endif
+}
+
+/// The first place from `memory` on where whole vectors lie within cache lines.
+template <class T> inline T* AlignToLine(T* memory)
+{
+  return reinterpret_cast<T*>((reinterpret_cast<std::uintptr_t>(memory) + 63) / 64 * 64);
+}
+
 inline float SumLanes(Floats value)
 {
   // Halves onto halves: a fixed order, the same for every compiler.

@@ -42,6 +42,21 @@ LevelView ViewOf(const GridDescription& grid, const GridLevel& level)
   return view;
 }
 
+std::vector<float> PanelsOf(const LayerView& layer)
+{
+  const std::size_t panels = static_cast<std::size_t>((layer.rows + PanelRows - 1) / PanelRows);
+  std::vector<float> packed(panels * PanelRows * static_cast<std::size_t>(layer.columns));
+  for (std::size_t row = 0; row < static_cast<std::size_t>(layer.rows); ++row) {
+    for (std::size_t column = 0; column < static_cast<std::size_t>(layer.columns); ++column) {
+      const std::size_t columns =
+          row / PanelRows * static_cast<std::size_t>(layer.columns) + column;
+      packed[columns * PanelRows + row % PanelRows] =
+          layer.weights[row * static_cast<std::size_t>(layer.columns) + column];
+    }
+  }
+  return packed;
+}
+
 } // namespace
 
 std::uint32_t RandomHashOfCorner(std::uint32_t x, std::uint32_t y, std::uint32_t z)
@@ -57,7 +72,8 @@ ModelViewStorage::ModelViewStorage(const Description& description, const Layout&
   }
   for (const LayerShape& layer : layout.layers) {
     const bool last = &layer == &layout.layers.back();
-    this->Layers.push_back({parameters + layer.offset, last ? 1 : layer.rows, layer.columns});
+    this->Layers.push_back(
+        {parameters + layer.offset, last ? 1 : layer.rows, layer.columns, nullptr});
     this->View.widest = std::max({this->View.widest, layer.rows, layer.columns});
   }
   this->View.levels = this->Levels.data();
@@ -71,6 +87,16 @@ ModelViewStorage::ModelViewStorage(const Description& description, const Layout&
   this->View.outputActivation = description.network.outputActivation;
   this->View.encodedWidth = layout.encodedWidth;
   this->View.inputWidth = layout.inputWidth;
+}
+
+PackedNetwork::PackedNetwork(const ModelView& model)
+    : Layers(model.layers, model.layers + model.layerCount), View(model)
+{
+  for (LayerView& layer : this->Layers) {
+    this->Panels.push_back(PanelsOf(layer));
+    layer.panels = this->Panels.back().data();
+  }
+  this->View.layers = this->Layers.data();
 }
 
 } // namespace inr

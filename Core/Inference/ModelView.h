@@ -29,11 +29,16 @@ struct LevelView
   std::uint64_t offset; ///< of the level's first feature from the grid's start, in parameters
 };
 
+/// Rows of a weight matrix that lie side by side in a panel.
+constexpr int PanelRows = 8;
+
 struct LayerView
 {
   const float* weights; ///< row-major, rows are outputs
   int rows;             ///< the last layer's padding rows are left out: 1
   int columns;
+  /// The weights in the order in which inference reads them, or null: see PackedNetwork.
+  const float* panels;
 };
 
 /// A model's description and parameters as the kernels want them.
@@ -72,6 +77,26 @@ private:
   std::vector<LevelView> Levels;
   std::vector<LayerView> Layers;
   ModelView View{};
+};
+
+/// A model's weights in panels of PanelRows rows: weight (r, c) of a layer is element
+/// ((r / PanelRows) * columns + c) * PanelRows + r % PanelRows, and rows beyond the last are 0. A
+/// copy: later changes of the weights are not seen.
+class PackedNetwork
+{
+public:
+  /// What `model` points to, except for its weights, must outlive this.
+  explicit PackedNetwork(const ModelView& model);
+  PackedNetwork(const PackedNetwork&) = delete;
+  PackedNetwork& operator=(const PackedNetwork&) = delete;
+
+  /// `model`, with panels.
+  const ModelView& view() const { return this->View; }
+
+private:
+  std::vector<std::vector<float>> Panels;
+  std::vector<LayerView> Layers;
+  ModelView View;
 };
 
 } // namespace inr

@@ -27,13 +27,15 @@ PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed)
 double PsnrEstimate::measure(const ModelView& model, const EvaluateKernel& kernel,
                              const StopCheck& check) const
 {
+  const PackedNetwork network(model);
   std::vector<float> values(SampleCount);
-  std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(model)));
+  std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(network.view())));
   for (std::int64_t first = 0; first < SampleCount; first += BlockSize) {
     if (!check.goesOn()) {
       return 0.0;
     }
-    kernel.evaluate(model, &this->Positions[first].x, BlockSize, &values[first], workspace.data());
+    kernel.evaluate(network.view(), &this->Positions[first].x, BlockSize, &values[first],
+                    workspace.data());
   }
   double squared = 0;
   std::int64_t finite = 0;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Features of eight samples, turned over in registers; see Lanes.h for what may be in here.
+#pragma once
+
+#include "Core/Inference/Lanes.h"
+
+namespace inr {
+namespace INR_ISA {
+
+/// Eight samples of one feature.
+using Octet = float __attribute__((vector_size(32)));
+
+/// Four by four, in either half of the vectors.
+inline void TransposeHalves(const Octet (&in)[4], Octet* out)
+{
+  const Octet a = __builtin_shufflevector(in[0], in[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Octet b = __builtin_shufflevector(in[0], in[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const Octet c = __builtin_shufflevector(in[2], in[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const Octet d = __builtin_shufflevector(in[2], in[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  out[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+  out[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+  out[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+  out[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// The lower and the upper halves of two vectors.
+inline Octet LowerHalves(Octet a, Octet b)
+{
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11);
+}
+inline Octet UpperHalves(Octet a, Octet b)
+{
+  return __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+/// out[f] = feature f of eight samples; `in` holds them one sample after the other.
+template <int Features> inline void TransposeSamples(const float* in, Octet (&out)[Features])
+{
+  Octet rows[Features];
+  std::memcpy(rows, in, sizeof(rows));
+  if constexpr (Features == 8) {
+    const Octet lower[4] = {LowerHalves(rows[0], rows[4]), LowerHalves(rows[1], rows[5]),
+                            LowerHalves(rows[2], rows[6]), LowerHalves(rows[3], rows[7])};
+    const Octet upper[4] = {UpperHalves(rows[0], rows[4]), UpperHalves(rows[1], rows[5]),
+                            UpperHalves(rows[2], rows[6]), UpperHalves(rows[3], rows[7])};
+    TransposeHalves(lower, out);
+    TransposeHalves(upper, out + 4);
+  } else if constexpr (Features == 4) {
+    const Octet samples[4] = {LowerHalves(rows[0], rows[2]), UpperHalves(rows[0], rows[2]),
+                              LowerHalves(rows[1], rows[3]), UpperHalves(rows[1], rows[3])};
+    TransposeHalves(samples, out);
+  } else if constexpr (Features == 2) {
+    out[0] = __builtin_shufflevector(rows[0], rows[1], 0, 2, 4, 6, 8, 10, 12, 14);
+    out[1] = __builtin_shufflevector(rows[0], rows[1], 1, 3, 5, 7, 9, 11, 13, 15);
+  } else {
+    out[0] = rows[0];
+  }
+}
+
+} // namespace INR_ISA
+} // namespace inr
