@@ -2,7 +2,7 @@
 #include "Core/Render/CachedPaths.h"
 
 #include "Core/Render/TileLoop.h"
-#include "Core/Render/Timer.h"
+#include "Core/Render/WorkLimit.h"
 
 #include <algorithm>
 
@@ -175,11 +175,11 @@ RequestList CachedSampler::requests() const
 }
 
 TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
-                              const Evaluator& field, OnPathMiss onMiss, const Timer* timer,
+                              const Evaluator& field, OnPathMiss onMiss, const WorkLimit* limit,
                               const Arena& arena, const std::function<bool()>& keepGoing,
                               RequestRanking& requests)
 {
-  constexpr std::size_t tilesBetweenLooks = 8; // at the timer
+  constexpr std::size_t tilesBetweenLooks = 8; // at the clock
   const Timer clock;
   const Tiling tiling(round.output.rgba.width, round.output.rgba.height);
   TracedTiles traced;
@@ -192,9 +192,9 @@ TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
     traced.tiles[k].missed = sampler.missed();
     lists[k] = sampler.requests();
   };
-  const std::size_t atOnce = timer != nullptr ? tilesBetweenLooks : round.tiles.size();
+  const std::size_t atOnce = limit != nullptr ? tilesBetweenLooks : round.tiles.size();
   std::size_t done = 0;
-  while (done < round.tiles.size() && (done == 0 || timer->left() > 0)) {
+  while (done < round.tiles.size() && (done == 0 || !limit->endsWithin(0))) {
     const std::size_t count = std::min(atOnce, round.tiles.size() - done);
     ForEachTile(arena, static_cast<std::int64_t>(count), keepGoing,
                 [&](std::int64_t k) { trace(done + static_cast<std::size_t>(k)); });

@@ -13,7 +13,7 @@
 namespace inr {
 
 class Arena;
-class Timer;
+class WorkLimit;
 
 /// What a path gets where the brick it wants is not there.
 enum class OnPathMiss {
@@ -83,11 +83,11 @@ private:
   std::vector<float> AbsentValues;
 };
 
-/// Traces a round's tiles with what is in the cache; with a timer, the first few and then more
-/// while it has time left. What was missing is added to `requests` in the order of the tiles.
+/// Traces a round's tiles with what is in the cache; with a limit, the first few and then more
+/// until it ends. What was missing is added to `requests` in the order of the tiles.
 /// Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
 TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
-                              const Evaluator& field, OnPathMiss onMiss, const Timer* timer,
+                              const Evaluator& field, OnPathMiss onMiss, const WorkLimit* limit,
                               const Arena& arena, const std::function<bool()>& keepGoing,
                               RequestRanking& requests);
 

@@ -3,7 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Render/CachedPaths.h"
-#include "Core/Render/Timer.h"
+#include "Core/Render/WorkLimit.h"
 
 #include <algorithm>
 #include <unistd.h>
@@ -80,20 +80,19 @@ void CachedRenderer::forgetColors()
 FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& geometry,
                                        const Majorants& majorants, const ColorLookup& colors,
                                        const MarchSettings& settings, const Shading* shading,
-                                       const PassOutput& output,
+                                       const WorkLimit& limit, const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
 {
-  const BrickStore::Call call(*this->Store, this->Threads);
-  if (this->Unfinished && frame.timeLimit > 0 && this->Unfinished->continues(frame)) {
-    return this->refine(frame.timeLimit, output, keepGoing);
+  if (this->Unfinished && limit.isLimited() && this->Unfinished->continues(frame)) {
+    return this->refine(limit, output, keepGoing);
   }
   this->Unfinished.reset(); // before the table that it reads may change
   const StepLookup& steps = this->stepsFor(colors, settings.step * settings.unitsPerT);
   const BrickCache& cache = this->Store->cache();
   const CachedScene scene{frame, geometry,     majorants,       colors,   steps,
                           cache, this->Kernel, FormatOf(cache), settings, shading};
-  return frame.timeLimit > 0 ? this->renderInTime(scene, output, keepGoing)
-                             : this->renderComplete(scene, output, keepGoing);
+  return limit.isLimited() ? this->renderInTime(scene, limit, output, keepGoing)
+                           : this->renderComplete(scene, output, keepGoing);
 }
 
 FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const PassOutput& output,
@@ -110,7 +109,7 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
     if (pass.done()) {
       break;
     }
-    this->loadForPass(pass, requests, keepGoing);
+    this->loadForPass(pass, requests, this->Store->cache().capacity() - 1, keepGoing);
     if (keepGoing && !keepGoing()) {
       throw Error(ErrorCode::Cancelled, "rendering stopped on request");
     }
@@ -122,11 +121,11 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
 }
 
 void CachedRenderer::loadForPass(CompletePass& pass, const RequestRanking& requests,
-                                 const std::function<bool()>& keepGoing)
+                                 std::int64_t most, const std::function<bool()>& keepGoing)
 {
   // Room for what waits now must not be taken from what was loaded a moment ago for the same rays.
-  const std::int64_t most = this->Store->cache().capacity() - 1;
-  std::vector<BrickKey> keys = requests.ranked(most, false);
+  const std::int64_t room = this->Store->cache().capacity() - 1;
+  std::vector<BrickKey> keys = requests.ranked(std::min(most, room), false);
   if (pass.isAlone()) {
     keys = {keys.back()};
   }
@@ -141,10 +140,20 @@ void CachedRenderer::loadForPass(CompletePass& pass, const RequestRanking& reque
   }
 }
 
-FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const PassOutput& output,
+void CachedRenderer::loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
+                                  const std::function<bool()>& keepGoing)
+{
+  if (limit.isTimed()) {
+    this->Store->loadFor(limit.secondsForLoading(), keys, this->Threads);
+  } else {
+    this->Store->load(keys, this->Threads, keepGoing);
+  }
+}
+
+FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const WorkLimit& limit,
+                                             const PassOutput& output,
                                              const std::function<bool()>& keepGoing)
 {
-  const Timer timer(scene.frame.timeLimit);
   // Whoever takes from this picture what it has will do so again.
   const bool contested = this->Store->hasLostSince(this->Latest);
   const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
@@ -161,23 +170,25 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Pas
     if (!fits) { // should the same be asked for again
       this->Unfinished.emplace(scene, output);
     }
-    this->Store->loadFor(timer.leftForLoading(),
-                         requests.ranked(this->Options.maximumRequests, this->Options.ranking),
-                         this->Threads);
-    if (statistics.complete || !fits || timer.left() < statistics.marchSeconds) {
+    this->loadForFrame(requests.ranked(this->Options.maximumRequests, this->Options.ranking), limit,
+                       keepGoing);
+    if (statistics.complete || !fits || limit.endsWithin(statistics.marchSeconds)) {
       return statistics;
     }
   }
 }
 
-FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& output,
+FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
 {
-  const Timer timer(timeLimit);
+  const std::int64_t most = limit.isTimed() ? this->Store->cache().capacity() - 1
+                                            : std::int64_t{this->Options.maximumRequests};
   double marching = 0;
   // What is loaded here may be gone at the next call, so each one brings some ray further.
   const std::int64_t before = this->Unfinished->statistics().samples;
-  const auto inTime = [&] { return timer.left() > 0; };
+  const auto inTime = [&] { return !limit.endsWithin(0); };
+  const std::function<bool()>& mayLoad =
+      limit.isTimed() ? std::function<bool()>(inTime) : keepGoing;
   while (true) {
     const Timer march;
     this->beginFrame();
@@ -188,7 +199,7 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
         (!inTime() && this->Unfinished->statistics().samples > before)) {
       break;
     }
-    this->loadForPass(this->Unfinished->pass(), requests, inTime);
+    this->loadForPass(this->Unfinished->pass(), requests, most, mayLoad);
   }
   this->Unfinished->copyTo(output);
   FrameStatistics statistics = this->Unfinished->statistics();
@@ -197,26 +208,27 @@ FrameStatistics CachedRenderer::refine(double timeLimit, const PassOutput& outpu
   return statistics;
 }
 
-TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* timer,
+TracedTiles CachedRenderer::tracePaths(const PathRound& round, const WorkLimit& limit,
                                        const std::function<bool()>& keepGoing)
 {
   // Where somebody waits for all of it, what did not fit a moment ago is not tried again.
-  const bool guessed = round.first && timer == nullptr && this->InferMisses;
+  const bool guessed = round.first && !limit.isLimited() && this->InferMisses;
   this->InferMisses = this->InferMisses && (!round.first || guessed);
-  const bool contested = timer != nullptr && this->Store->hasLostSince(this->Latest);
+  const bool contested = limit.isLimited() && this->Store->hasLostSince(this->Latest);
   this->InferMisses = this->InferMisses || (contested && !round.first);
   if (round.whole || this->Store->frame() != this->Latest) {
     this->beginFrame();
   }
-  const bool approach = timer != nullptr && this->Options.preloading;
+  const bool approach = limit.isLimited() && this->Options.preloading;
   const OnPathMiss onMiss = this->InferMisses ? OnPathMiss::Infer
                             : approach        ? OnPathMiss::Approach
                                               : OnPathMiss::UseCoarser;
   // Inferring takes many times as long as the round before that said how long a round is.
-  const Timer* limit = this->InferMisses && !round.first ? timer : nullptr;
+  const bool hurries = this->InferMisses && !round.first && limit.isTimed();
   RequestRanking requests;
-  TracedTiles traced = TraceThroughCache(round, this->Store->cache(), *this->Field, onMiss, limit,
-                                         this->Threads, keepGoing, requests);
+  TracedTiles traced =
+      TraceThroughCache(round, this->Store->cache(), *this->Field, onMiss,
+                        hurries ? &limit : nullptr, this->Threads, keepGoing, requests);
   if (guessed && requests.count() <= this->roomForPaths()) {
     this->InferMisses = false; // a wrong guess: bricks for them all, and once more
   } else if (this->InferMisses) {
@@ -224,7 +236,7 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Timer* time
       tile.missed = 0;
     }
   }
-  this->loadForPaths(requests, timer, keepGoing);
+  this->loadForPaths(requests, limit, keepGoing);
   return traced;
 }
 
@@ -233,18 +245,13 @@ std::int64_t CachedRenderer::roomForPaths() const
   return this->Store->capacity() - this->Store->cache().usedInFrame();
 }
 
-void CachedRenderer::loadForPaths(const RequestRanking& requests, const Timer* timer,
+void CachedRenderer::loadForPaths(const RequestRanking& requests, const WorkLimit& limit,
                                   const std::function<bool()>& keepGoing)
 {
   const std::int64_t room = this->roomForPaths();
-  const bool some = timer != nullptr || this->InferMisses;
+  const bool some = limit.isLimited() || this->InferMisses;
   const std::int64_t most = std::min(room, some ? this->Options.maximumRequests : room);
-  const std::vector<BrickKey> keys = requests.ranked(most, this->Options.ranking);
-  if (timer != nullptr) {
-    this->Store->loadFor(timer->leftForLoading(), keys, this->Threads);
-  } else {
-    this->Store->load(keys, this->Threads, keepGoing);
-  }
+  this->loadForFrame(requests.ranked(most, this->Options.ranking), limit, keepGoing);
   // What does not fit is not worth loading for one path: paths come back to it from everywhere.
   this->InferMisses = this->InferMisses || requests.count() > room;
 }

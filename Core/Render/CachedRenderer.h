@@ -14,7 +14,7 @@
 
 namespace inr {
 
-class Timer;
+class WorkLimit;
 
 /// How the cache is made and filled.
 struct CacheOptions
@@ -53,17 +53,18 @@ public:
                  const std::shared_ptr<const void>& identity, const glm::i64vec3& dims,
                  const CacheOptions& options, const BrickKernel& kernel, const Arena& arena);
 
-  /// See Renderer::render. The references are for the call only.
+  /// Within a call; see Renderer::render. The references are for this only.
   FrameStatistics render(const Frame& frame, const RayGeometry& geometry,
                          const Majorants& majorants, const ColorLookup& colors,
                          const MarchSettings& settings, const Shading* shading,
-                         const PassOutput& output, const std::function<bool()>& keepGoing);
+                         const WorkLimit& limit, const PassOutput& output,
+                         const std::function<bool()>& keepGoing);
   /// Around what follows; see BrickStore.
   BrickStore::Call call() const { return {*this->Store, this->Threads}; }
-  /// Within a call: traces a round of a path-traced picture and brings what its paths missed: in
-  /// the time that `timer` has left or, without one, all of it. Where the cache has no room for
+  /// Within a call: traces a round of a path-traced picture and brings what its paths missed: as
+  /// much as `limit` allows. Where the cache has no room for
   /// what the picture wants, the rest is inferred at the paths' points instead.
-  TracedTiles tracePaths(const PathRound& round, const Timer* timer,
+  TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,
                          const std::function<bool()>& keepGoing);
   /// Forgets what was made of the colours; for when they change.
   void forgetColors();
@@ -75,15 +76,18 @@ private:
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
                                  const std::function<bool()>& keepGoing);
-  FrameStatistics renderInTime(const CachedScene& scene, const PassOutput& output,
-                               const std::function<bool()>& keepGoing);
-  FrameStatistics refine(double timeLimit, const PassOutput& output,
+  FrameStatistics renderInTime(const CachedScene& scene, const WorkLimit& limit,
+                               const PassOutput& output, const std::function<bool()>& keepGoing);
+  FrameStatistics refine(const WorkLimit& limit, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
-  void loadForPass(CompletePass& pass, const RequestRanking& requests,
+  /// At most so many bricks.
+  void loadForPass(CompletePass& pass, const RequestRanking& requests, std::int64_t most,
                    const std::function<bool()>& keepGoing);
+  void loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
+                    const std::function<bool()>& keepGoing);
   /// Bricks that may come without any of the present sample having to go.
   std::int64_t roomForPaths() const;
-  void loadForPaths(const RequestRanking& requests, const Timer* timer,
+  void loadForPaths(const RequestRanking& requests, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing);
 
   CacheOptions Options;

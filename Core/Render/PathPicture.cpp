@@ -3,7 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Random.h"
-#include "Core/Render/Timer.h"
+#include "Core/Render/WorkLimit.h"
 
 #include <numeric>
 
@@ -102,9 +102,9 @@ void PathPicture::show(const PassOutput& output) const
 }
 
 FrameStatistics PathPicture::advance(const Frame& frame, const PathMedium& medium,
-                                     const TraceTiles& trace, const PassOutput& output)
+                                     const TraceTiles& trace, const WorkLimit& limit,
+                                     const PassOutput& output)
 {
-  const Timer timer(frame.timeLimit);
   if (frame.samplesPerPixel < 1) {
     throw Error(ErrorCode::InvalidArgument, "path tracing takes at least one sample per pixel");
   }
@@ -115,7 +115,7 @@ FrameStatistics PathPicture::advance(const Frame& frame, const PathMedium& mediu
   while (inTime && this->Colors.samples() < frame.samplesPerPixel) {
     const Timer round;
     this->traceRound(medium, trace);
-    inTime = frame.timeLimit <= 0 || timer.left() >= round.seconds();
+    inTime = !limit.endsWithin(round.seconds());
   }
   this->show(output);
   FrameStatistics statistics = this->Latest;

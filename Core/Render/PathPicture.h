@@ -10,6 +10,8 @@
 
 namespace inr {
 
+class WorkLimit;
+
 /// What paths go through. `levels` is as for PathTracer.
 struct PathMedium
 {
@@ -51,11 +53,11 @@ public:
 
   /// Goes on with the picture at hand if `frame` asks for the same one (and for no fewer samples
   /// than there are), else starts anew. Traces until Frame::samplesPerPixel or, at least one round,
-  /// until Frame::timeLimit. Shows the mean of the complete samples or, before the first of them is
+  /// as far as `limit`. Shows the mean of the complete samples or, before the first of them is
   /// complete, what there is of it. `trace` may throw; nothing is lost then but its round. Throws
   /// Error(InvalidArgument) as PathTracer does, and for fewer than one sample per pixel.
   FrameStatistics advance(const Frame& frame, const PathMedium& medium, const TraceTiles& trace,
-                          const PassOutput& output);
+                          const WorkLimit& limit, const PassOutput& output);
 
 private:
   bool continues(const Frame& frame) const;

@@ -6,7 +6,7 @@
 #include "Core/Render/CachedPaths.h"
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/TileMarcher.h"
-#include "Core/Render/Timer.h"
+#include "Core/Render/WorkLimit.h"
 
 #include <optional>
 #include <utility>
@@ -14,6 +14,12 @@
 namespace inr {
 
 namespace {
+
+RendererOptions Consistent(RendererOptions options)
+{
+  options.cache.background = options.cache.background && !options.deterministic;
+  return options;
+}
 
 FrameStatistics Sum(const std::vector<FrameStatistics>& tiles)
 {
@@ -31,7 +37,7 @@ struct Renderer::Implementation
   Implementation(std::shared_ptr<const Evaluator> field, std::shared_ptr<const void> identity,
                  VolumeInfo volume, const MacroCells& cells, RendererOptions options)
       : Field(std::move(field)), Identity(std::move(identity)), Volume(std::move(volume)),
-        Options(std::move(options)), Threads(this->Options.threads),
+        Options(Consistent(std::move(options))), Threads(this->Options.threads),
         Cells(this->Options.cached ? Majorants(cells, this->Volume.dims, this->Threads)
                                    : Majorants(cells))
   {}
@@ -146,10 +152,14 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
   const std::optional<Shading> shading = ShadingOf(frame);
   const Shading* lit = shading ? &*shading : nullptr;
-  return this->Options.cached
-             ? this->cached().render(frame, geometry, this->Cells, this->Colors->lookup(), settings,
-                                     lit, output, keepGoing)
-             : this->renderUncached(frame, geometry, settings, lit, output, keepGoing);
+  if (!this->Options.cached) {
+    return this->renderUncached(frame, geometry, settings, lit, output, keepGoing);
+  }
+  CachedRenderer& cached = this->cached();
+  const BrickStore::Call call = cached.call();
+  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+  return cached.render(frame, geometry, this->Cells, this->Colors->lookup(), settings, lit, limit,
+                       output, keepGoing);
 }
 
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
@@ -163,16 +173,17 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
     const TraceTiles trace = [&](const PathRound& round) {
       return TraceWithNetwork(round, *this->Field, this->Volume.dims, this->Threads, keepGoing);
     };
-    return this->Paths->advance(frame, medium, trace, output);
+    const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+    return this->Paths->advance(frame, medium, trace, limit, output);
   }
   CachedRenderer& cached = this->cached();
   const BrickStore::Call call = cached.call();
   medium.levels = cached.store().cache().hierarchy().levels();
-  const Timer timer(frame.timeLimit);
+  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
   const TraceTiles trace = [&](const PathRound& round) {
-    return cached.tracePaths(round, frame.timeLimit > 0 ? &timer : nullptr, keepGoing);
+    return cached.tracePaths(round, limit, keepGoing);
   };
-  return this->Paths->advance(frame, medium, trace, output);
+  return this->Paths->advance(frame, medium, trace, limit, output);
 }
 
 FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,

@@ -19,12 +19,16 @@ struct RendererOptions
   int threads = 0;    ///< 0 = all available cores
   std::string kernel; ///< instruction set, for tests; empty = the fastest
   bool cached = true; ///< through a cache of bricks, else straight from the network
+  /// Frames with a time limit do a fixed amount of work instead of what there is time for, and
+  /// bricks come in within them only; see WorkLimit. CacheOptions::background is then off.
+  bool deterministic = false;
   CacheOptions cache;
 
   bool operator==(const RendererOptions& other) const
   {
     return this->threads == other.threads && this->kernel == other.kernel &&
-           this->cached == other.cached && this->cache == other.cache;
+           this->cached == other.cached && this->deterministic == other.deterministic &&
+           this->cache == other.cache;
   }
 };
 

@@ -134,6 +134,9 @@ void FramePainter::makeRenderer(const ModelPointer& model, const RendererOptions
     return;
   }
   this->Caster = std::make_unique<Renderer>(model, options);
+  if (options.deterministic != this->CasterOptions.deterministic) {
+    this->Reduction = ImageReduction(!options.deterministic);
+  }
   this->CasterModel = model;
   this->CasterOptions = options;
 }

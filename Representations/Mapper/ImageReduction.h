@@ -6,14 +6,17 @@
 
 namespace inr {
 
-/// Chooses the image resolution of interactive frames from what the last frame cost per pixel.
+/// Chooses the image resolution of interactive frames from what the last frame cost per pixel, or
+/// has always the same where no clock is to decide.
 class ImageReduction
 {
 public:
+  explicit ImageReduction(bool measures = true) : Measures(measures) {}
+
   /// Frames per second below which a frame is a still one; ParaView asks for 0.002 and 5.
   static constexpr double StillRate = 0.1;
   static constexpr int Largest = 8;
-  /// Before anything was measured: a first interactive frame should come quickly.
+  /// Without measurements, and before the first: an interactive frame should come quickly.
   static constexpr int Unmeasured = 4;
 
   /// The smallest of 1, 2, 4 and 8 by which width and height have to be divided so that a frame of
@@ -36,10 +39,13 @@ public:
 
   void record(double seconds, std::int64_t pixels)
   {
-    this->SecondsPerPixel = seconds / static_cast<double>(std::max<std::int64_t>(pixels, 1));
+    if (this->Measures) {
+      this->SecondsPerPixel = seconds / static_cast<double>(std::max<std::int64_t>(pixels, 1));
+    }
   }
 
 private:
+  bool Measures;
   double SecondsPerPixel = 0;
 };
 

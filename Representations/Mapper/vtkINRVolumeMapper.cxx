@@ -114,6 +114,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   inr::RendererOptions& renderer = settings.renderer;
   renderer.threads = this->NumberOfThreads;
+  renderer.deterministic = this->Deterministic;
   renderer.cached = this->CacheMode != NETWORK_ONLY;
   renderer.cache.bytes = std::int64_t{this->CacheSize} << 20;
   renderer.cache.precision = static_cast<inr::CachePrecision>(this->CachePrecision);
@@ -193,6 +194,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "StillTimeLimit: " << this->StillTimeLimit << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Seed: " << this->Seed << "\n"
+     << indent << "Deterministic: " << this->Deterministic << "\n"
      << indent << "FrameTime: " << this->GetFrameTime() << "\n"
      << indent << "NumberOfSamples: " << this->GetNumberOfSamples() << "\n"
      << indent << "NumberOfClampedSamples: " << this->GetNumberOfClampedSamples() << "\n"

@@ -226,6 +226,20 @@ public:
 
   ///@{
   /**
+   * Whether pictures that somebody waits for depend on how fast the machine is. On: each of them
+   * does a fixed amount of work, however long it takes: one pass of rays or one path through each
+   * pixel, then MaximumRequests bricks; nothing goes on between them; and interactive pictures have
+   * a quarter of the window's resolution. So a sequence of renderings is the same pictures whenever
+   * it is repeated from the start, with any NumberOfThreads, if all INR volumes of the process have
+   * it on. Default off: pictures keep to their time. A change empties the cache.
+   */
+  vtkSetMacro(Deterministic, bool);
+  vtkGetMacro(Deterministic, bool);
+  vtkBooleanMacro(Deterministic, bool);
+  ///@}
+
+  ///@{
+  /**
    * About the last frame drawn; 0 before the first: seconds from the call to the drawn picture,
    * samples looked up or inferred, samples that lay outside their macro-cell's range and were moved
    * into it, and how many times smaller than the viewport the picture's width and height were.
@@ -301,6 +315,7 @@ private:
   double StillTimeLimit = -1.0;
   int NumberOfThreads = 0;
   int Seed = 0;
+  bool Deterministic = false;
 
   struct Internals;
   std::unique_ptr<Internals> Self;

@@ -175,6 +175,11 @@ void vtkINRVolumeRepresentation::SetNumberOfThreads(int threads)
 
 void vtkINRVolumeRepresentation::SetSeed(int seed) { this->GetMapper()->SetSeed(seed); }
 
+void vtkINRVolumeRepresentation::SetDeterministic(bool on)
+{
+  this->GetMapper()->SetDeterministic(on);
+}
+
 bool vtkINRVolumeRepresentation::GetConverged() { return this->GetMapper()->GetConverged(); }
 
 double vtkINRVolumeRepresentation::GetCacheHitRate()

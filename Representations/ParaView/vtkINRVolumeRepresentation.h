@@ -49,6 +49,7 @@ public:
   void SetStillTimeLimit(double seconds);
   void SetNumberOfThreads(int threads);
   void SetSeed(int seed);
+  void SetDeterministic(bool on);
   bool GetConverged();
   double GetCacheHitRate();
   double GetCacheUsed();
