@@ -34,50 +34,55 @@ struct LevelPiece
   Octet lines[2][8];      ///< features at the samples' x and z and the corners' y
 };
 
-/// `count` coordinates and their last one again up to LaneCount.
-inline Floats LoadSome(const float* from, int count)
+/// Coordinates of as many samples along an axis as are located together; the missing ones repeat
+/// the last one.
+struct Coordinates
 {
-  float lanes[LaneCount];
-  for (int k = 0; k < LaneCount; ++k) {
-    lanes[k] = from[k < count ? k : count - 1];
+  float u[RowCapacity];
+};
+
+inline void LoadCoordinates(const float* from, int count, Coordinates& to)
+{
+  std::memcpy(to.u, from, static_cast<std::size_t>(count) * sizeof(float));
+  for (int k = count; k < RowCapacity; ++k) {
+    to.u[k] = from[count - 1];
   }
-  return Load(lanes);
 }
 
-/// Cells and weights of `count` coordinates, at most RowCapacity.
-inline void LocateSome(const LevelView& level, GridInterpolation interpolation, const float* u,
-                       int count, std::uint32_t* cells, float* weights)
+/// Cells and weights of the first `count`, rounded up to LaneCount.
+inline void LocateSome(const LevelView& level, GridInterpolation interpolation,
+                       const Coordinates& coordinates, int count, std::uint32_t* cells,
+                       float* weights)
 {
   for (int k = 0; k < count; k += LaneCount) {
-    const AxisCell at = LocateOnAxis(level, interpolation, LoadSome(u + k, count - k));
+    const AxisCell at = LocateOnAxis(level, interpolation, Load(coordinates.u + k));
     std::memcpy(cells + k, &at.cell, sizeof(at.cell));
     Store(weights + k, at.weight);
   }
 }
 
-/// Begins a piece of `count` samples; the missing ones repeat the last.
-inline void LocatePiece(const LevelView& level, GridInterpolation interpolation, const float* x,
-                        int count, LevelPiece& piece)
+/// Begins a piece.
+inline void LocatePiece(const LevelView& level, GridInterpolation interpolation,
+                        const Coordinates& x, LevelPiece& piece)
 {
   std::uint32_t cells[RowCapacity];
   float weights[RowCapacity];
-  LocateSome(level, interpolation, x, count, cells, weights);
+  LocateSome(level, interpolation, x, PieceWidth, cells, weights);
   piece.columnCount = 0;
   for (int k = 0; k < PieceWidth; ++k) {
-    const int from = k < count ? k : count - 1;
     // Positions rise, so a cell is the last one, the one after it, or further on.
     int lower = piece.columnCount - 2;
-    if (piece.columnCount > 0 && cells[from] == piece.columns[piece.columnCount - 1]) {
+    if (piece.columnCount > 0 && cells[k] == piece.columns[piece.columnCount - 1]) {
       lower = piece.columnCount - 1;
-    } else if (piece.columnCount == 0 || cells[from] != piece.columns[lower]) {
+    } else if (piece.columnCount == 0 || cells[k] != piece.columns[lower]) {
       lower = piece.columnCount;
-      piece.columns[piece.columnCount++] = cells[from];
+      piece.columns[piece.columnCount++] = cells[k];
     }
     if (lower == piece.columnCount - 1) {
-      piece.columns[piece.columnCount++] = cells[from] + 1;
+      piece.columns[piece.columnCount++] = cells[k] + 1;
     }
     piece.lower[k] = lower;
-    piece.weight[k] = weights[from];
+    piece.weight[k] = weights[k];
   }
 }
 
@@ -123,16 +128,13 @@ inline void FetchLine(const LevelView& level, const float* table, std::uint32_t 
 {
   Row<Features> corners[ColumnCapacity];
   FetchCorners<Features>(level, table, y, piece, corners);
-  alignas(64) float samples[PieceWidth * Features];
+  Row<Features> samples[PieceWidth];
+#pragma GCC unroll 8
   for (int k = 0; k < PieceWidth; ++k) {
     const Row<Features> left = corners[piece.lower[k]];
-    const Row<Features> right = corners[piece.lower[k] + 1];
-    const Row<Features> mixed = left + (right - left) * piece.weight[k];
-    std::memcpy(samples + k * Features, &mixed, sizeof(mixed));
+    samples[k] = left + (corners[piece.lower[k] + 1] - left) * piece.weight[k];
   }
-  Octet turned[Features];
-  TransposeSamples<Features>(samples, turned);
-  std::memcpy(line, turned, sizeof(turned));
+  TransposeSamples(samples, line);
 }
 
 /// The place in `piece.lines` that holds height y; the other one holds what may not be lost.
@@ -155,7 +157,8 @@ inline int LineAt(const LevelView& level, const float* table, std::uint32_t y, i
 /// Features of a piece in `rows` rows at heights y: out[f * stride + row * PieceWidth + sample].
 template <int Features>
 inline void EncodeRows(const LevelView& level, GridInterpolation interpolation, const float* table,
-                       const float* y, int rows, LevelPiece& piece, float* out, std::int64_t stride)
+                       const Coordinates& y, int rows, LevelPiece& piece, float* out,
+                       std::int64_t stride)
 {
   std::uint32_t cells[RowCapacity];
   float weights[RowCapacity];

@@ -23,7 +23,7 @@ std::int64_t Workspace(const ModelView& model)
 }
 
 template <int Features>
-void EncodeLevels(const ModelView& model, const float* y, int rows, LevelPiece* pieces,
+void EncodeLevels(const ModelView& model, const Coordinates& y, int rows, LevelPiece* pieces,
                   float* encoded)
 {
   for (int l = 0; l < model.levelCount; ++l) {
@@ -33,7 +33,7 @@ void EncodeLevels(const ModelView& model, const float* y, int rows, LevelPiece* 
   }
 }
 
-void EncodeStrip(const ModelView& model, const float* y, int rows, LevelPiece* pieces,
+void EncodeStrip(const ModelView& model, const Coordinates& y, int rows, LevelPiece* pieces,
                  float* encoded)
 {
   switch (model.features) {
@@ -54,7 +54,9 @@ void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t fi
 {
   for (std::int64_t j = 0; j < y.count; j += StripHeight) {
     const int rows = y.count - j < StripHeight ? static_cast<int>(y.count - j) : StripHeight;
-    EncodeStrip(model, y.u + j, rows, pieces, strips.in.values);
+    Coordinates heights;
+    LoadCoordinates(y.u + j, rows, heights);
+    EncodeStrip(model, heights, rows, pieces, strips.in.values);
     float outputs[StripSize];
     RunStrip(model, strips, rows * PieceWidth, outputs);
     for (int row = 0; row < rows; ++row) {
@@ -75,8 +77,10 @@ void EvaluateGrid(const ModelView& model, const LatticeAxis (&axes)[3], float* v
   const std::int64_t width = axes[0].count;
   for (std::int64_t first = 0; first < width; first += PieceWidth) {
     const int count = width - first < PieceWidth ? static_cast<int>(width - first) : PieceWidth;
+    Coordinates x;
+    LoadCoordinates(axes[0].u + first, count, x);
     for (int l = 0; l < model.levelCount; ++l) {
-      LocatePiece(model.levels[l], model.interpolation, axes[0].u + first, count, pieces[l]);
+      LocatePiece(model.levels[l], model.interpolation, x, pieces[l]);
     }
     for (std::int64_t k = 0; k < axes[2].count; ++k) {
       for (int l = 0; l < model.levelCount; ++l) {

@@ -3,13 +3,19 @@
 // Features of eight samples, turned over in registers; see Lanes.h for what may be in here.
 #pragma once
 
-#include "Core/Inference/Lanes.h"
+#include "Core/Inference/Encode.h"
 
 namespace inr {
 namespace INR_ISA {
 
 /// Eight samples of one feature.
-using Octet = float __attribute__((vector_size(32)));
+using Octet = Row<8>;
+
+inline Row<4> Join(Row<2> a, Row<2> b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3); }
+inline Octet Join(Row<4> a, Row<4> b)
+{
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
 
 /// Four by four, in either half of the vectors.
 inline void TransposeHalves(const Octet (&in)[4], Octet* out)
@@ -34,28 +40,37 @@ inline Octet UpperHalves(Octet a, Octet b)
   return __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
 }
 
-/// out[f] = feature f of eight samples; `in` holds them one sample after the other.
-template <int Features> inline void TransposeSamples(const float* in, Octet (&out)[Features])
+/// out[f] = feature f of eight samples, whose features come in `rows`. Nothing goes through memory:
+/// reading a vector soon after its parts were written stalls.
+inline void TransposeSamples(const Octet (&rows)[8], Octet* out)
 {
-  Octet rows[Features];
-  std::memcpy(rows, in, sizeof(rows));
-  if constexpr (Features == 8) {
-    const Octet lower[4] = {LowerHalves(rows[0], rows[4]), LowerHalves(rows[1], rows[5]),
-                            LowerHalves(rows[2], rows[6]), LowerHalves(rows[3], rows[7])};
-    const Octet upper[4] = {UpperHalves(rows[0], rows[4]), UpperHalves(rows[1], rows[5]),
-                            UpperHalves(rows[2], rows[6]), UpperHalves(rows[3], rows[7])};
-    TransposeHalves(lower, out);
-    TransposeHalves(upper, out + 4);
-  } else if constexpr (Features == 4) {
-    const Octet samples[4] = {LowerHalves(rows[0], rows[2]), UpperHalves(rows[0], rows[2]),
-                              LowerHalves(rows[1], rows[3]), UpperHalves(rows[1], rows[3])};
-    TransposeHalves(samples, out);
-  } else if constexpr (Features == 2) {
-    out[0] = __builtin_shufflevector(rows[0], rows[1], 0, 2, 4, 6, 8, 10, 12, 14);
-    out[1] = __builtin_shufflevector(rows[0], rows[1], 1, 3, 5, 7, 9, 11, 13, 15);
-  } else {
-    out[0] = rows[0];
-  }
+  const Octet lower[4] = {LowerHalves(rows[0], rows[4]), LowerHalves(rows[1], rows[5]),
+                          LowerHalves(rows[2], rows[6]), LowerHalves(rows[3], rows[7])};
+  const Octet upper[4] = {UpperHalves(rows[0], rows[4]), UpperHalves(rows[1], rows[5]),
+                          UpperHalves(rows[2], rows[6]), UpperHalves(rows[3], rows[7])};
+  TransposeHalves(lower, out);
+  TransposeHalves(upper, out + 4);
+}
+
+inline void TransposeSamples(const Row<4> (&rows)[8], Octet* out)
+{
+  const Octet pairs[4] = {Join(rows[0], rows[4]), Join(rows[1], rows[5]), Join(rows[2], rows[6]),
+                          Join(rows[3], rows[7])};
+  TransposeHalves(pairs, out);
+}
+
+inline void TransposeSamples(const Row<2> (&rows)[8], Octet* out)
+{
+  const Octet lower = Join(Join(rows[0], rows[1]), Join(rows[2], rows[3]));
+  const Octet upper = Join(Join(rows[4], rows[5]), Join(rows[6], rows[7]));
+  out[0] = __builtin_shufflevector(lower, upper, 0, 2, 4, 6, 8, 10, 12, 14);
+  out[1] = __builtin_shufflevector(lower, upper, 1, 3, 5, 7, 9, 11, 13, 15);
+}
+
+inline void TransposeSamples(const Row<1> (&rows)[8], Octet* out)
+{
+  out[0] = Octet{rows[0][0], rows[1][0], rows[2][0], rows[3][0],
+                 rows[4][0], rows[5][0], rows[6][0], rows[7][0]};
 }
 
 } // namespace INR_ISA
