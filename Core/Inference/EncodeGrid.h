@@ -86,13 +86,15 @@ inline void LocatePiece(const LevelView& level, GridInterpolation interpolation,
   }
 }
 
-/// Moves a piece to the layer at z.
-inline void BeginLayer(const LevelView& level, GridInterpolation interpolation, float z,
-                       LevelPiece& piece)
+/// Moves a piece to the layer at z, the first coordinate.
+inline void BeginLayer(const LevelView& level, GridInterpolation interpolation,
+                       const Coordinates& z, LevelPiece& piece)
 {
-  const AxisCell at = LocateOnAxis(level, interpolation, Spread(z));
-  piece.z = at.cell[0];
-  piece.weightZ = at.weight[0];
+  std::uint32_t cells[RowCapacity];
+  float weights[RowCapacity];
+  LocateSome(level, interpolation, z, 1, cells, weights);
+  piece.z = cells[0];
+  piece.weightZ = weights[0];
   piece.known[0] = piece.known[1] = false;
 }
 

@@ -83,8 +83,10 @@ void EvaluateGrid(const ModelView& model, const LatticeAxis (&axes)[3], float* v
       LocatePiece(model.levels[l], model.interpolation, x, pieces[l]);
     }
     for (std::int64_t k = 0; k < axes[2].count; ++k) {
+      Coordinates z;
+      LoadCoordinates(axes[2].u + k, 1, z);
       for (int l = 0; l < model.levelCount; ++l) {
-        BeginLayer(model.levels[l], model.interpolation, axes[2].u[k], pieces[l]);
+        BeginLayer(model.levels[l], model.interpolation, z, pieces[l]);
       }
       EvaluatePiece(model, axes[1], first, count, width, pieces, strips,
                     values + k * axes[1].count * width);

@@ -17,7 +17,7 @@ namespace INR_ISA {
 
 /// Registers hold a tile of results: rows of a layer by groups of LaneCount samples.
 constexpr int StripRows = LaneCount == 16 ? PanelRows : 4;
-constexpr int StripGroups = LaneCount == 4 ? 2 : 3; // at most 3; see RunStrip
+constexpr int StripGroups = LaneCount == 8 ? 3 : 2; // see RunStrip
 constexpr int StripSize = StripGroups * LaneCount;
 static_assert(PanelRows % StripRows == 0, "a tile lies within a panel");
 
