@@ -91,6 +91,9 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
   const BrickCache& cache = this->Store->cache();
   const CachedScene scene{frame, geometry,     majorants,       colors,   steps,
                           cache, this->Kernel, FormatOf(cache), settings, shading};
+  if (this->Options.onlyWhatFits) {
+    return this->renderWhatFits(scene, limit, output, keepGoing);
+  }
   return limit.isLimited() ? this->renderInTime(scene, limit, output, keepGoing)
                            : this->renderComplete(scene, output, keepGoing);
 }
@@ -140,14 +143,26 @@ void CachedRenderer::loadForPass(CompletePass& pass, const RequestRanking& reque
   }
 }
 
-void CachedRenderer::loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
+bool CachedRenderer::loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
                                   const std::function<bool()>& keepGoing)
 {
   if (limit.isTimed()) {
     this->Store->loadFor(limit.secondsForLoading(), keys, this->Threads);
-  } else {
-    this->Store->load(keys, this->Threads, keepGoing);
+    return false;
   }
+  return this->Store->load(keys, this->Threads, keepGoing).full;
+}
+
+FrameStatistics CachedRenderer::march(const CachedScene& scene, const PassOutput& output,
+                                      const std::function<bool()>& keepGoing,
+                                      RequestRanking& requests)
+{
+  const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
+  const Timer timer;
+  this->beginFrame();
+  FrameStatistics statistics = MarchOnce(scene, onMiss, this->Threads, keepGoing, output, requests);
+  statistics.marchSeconds = timer.seconds();
+  return statistics;
 }
 
 FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const WorkLimit& limit,
@@ -156,23 +171,42 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
 {
   // Whoever takes from this picture what it has will do so again.
   const bool contested = this->Store->hasLostSince(this->Latest);
-  const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
   while (true) {
-    const Timer march;
-    this->beginFrame();
     RequestRanking requests;
-    FrameStatistics statistics =
-        MarchOnce(scene, onMiss, this->Threads, keepGoing, output, requests);
-    statistics.marchSeconds = march.seconds();
+    FrameStatistics statistics = this->march(scene, output, keepGoing, requests);
     statistics.complete = requests.empty();
-    const bool fits = !contested && this->Store->cache().usedInFrame() + requests.count() <=
-                                        this->Store->capacity();
+    const bool fits = !contested && requests.count() <= this->room();
     if (!fits) { // should the same be asked for again
       this->Unfinished.emplace(scene, output);
     }
     this->loadForFrame(requests.ranked(this->Options.maximumRequests, this->Options.ranking), limit,
                        keepGoing);
     if (statistics.complete || !fits || limit.endsWithin(statistics.marchSeconds)) {
+      return statistics;
+    }
+  }
+}
+
+FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const WorkLimit& limit,
+                                               const PassOutput& output,
+                                               const std::function<bool()>& keepGoing)
+{
+  // Whoever takes from this picture what it has will do so again.
+  bool full = limit.isLimited() && this->Store->hasLostSince(this->Latest);
+  while (true) {
+    RequestRanking requests;
+    FrameStatistics statistics = this->march(scene, output, keepGoing, requests);
+    const std::int64_t room = this->room();
+    // Not down to the last brick: fewer and fewer come in for all that they replace.
+    full = full || room <= this->Store->capacity() / 64;
+    statistics.complete = full || requests.empty();
+    if (!statistics.complete) {
+      // Nothing goes that is shown, so every place of the picture only gets finer.
+      const std::int64_t most =
+          limit.isLimited() ? std::min<std::int64_t>(room, this->Options.maximumRequests) : room;
+      full = this->loadForFrame(requests.ranked(most, this->Options.ranking), limit, keepGoing);
+    }
+    if (statistics.complete || limit.endsWithin(statistics.marchSeconds)) {
       return statistics;
     }
   }
@@ -212,26 +246,30 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const WorkLimit& 
                                        const std::function<bool()>& keepGoing)
 {
   // Where somebody waits for all of it, what did not fit a moment ago is not tried again.
-  const bool guessed = round.first && !limit.isLimited() && this->InferMisses;
-  this->InferMisses = this->InferMisses && (!round.first || guessed);
+  const bool guessed = round.first && !limit.isLimited() && this->Overfull;
+  this->Overfull = this->Overfull && (!round.first || guessed);
   const bool contested = limit.isLimited() && this->Store->hasLostSince(this->Latest);
-  this->InferMisses = this->InferMisses || (contested && !round.first);
+  this->Overfull = this->Overfull || (contested && !round.first);
   if (round.whole || this->Store->frame() != this->Latest) {
     this->beginFrame();
   }
-  const bool approach = limit.isLimited() && this->Options.preloading;
-  const OnPathMiss onMiss = this->InferMisses ? OnPathMiss::Infer
-                            : approach        ? OnPathMiss::Approach
-                                              : OnPathMiss::UseCoarser;
+  const bool steps = limit.isLimited() || this->Options.onlyWhatFits;
+  const bool infers = this->Overfull && !this->Options.onlyWhatFits;
+  const OnPathMiss onMiss = infers                              ? OnPathMiss::Infer
+                            : steps && this->Options.preloading ? OnPathMiss::Approach
+                                                                : OnPathMiss::UseCoarser;
   // Inferring takes many times as long as the round before that said how long a round is.
-  const bool hurries = this->InferMisses && !round.first && limit.isTimed();
+  const bool hurries = infers && !round.first && limit.isTimed();
   RequestRanking requests;
   TracedTiles traced =
       TraceThroughCache(round, this->Store->cache(), *this->Field, onMiss,
                         hurries ? &limit : nullptr, this->Threads, keepGoing, requests);
-  if (guessed && requests.count() <= this->roomForPaths()) {
-    this->InferMisses = false; // a wrong guess: bricks for them all, and once more
-  } else if (this->InferMisses) {
+  if (guessed && requests.count() <= this->room()) {
+    this->Overfull = false; // a wrong guess: bricks for them all, and once more
+  } else if (this->Overfull && this->Options.onlyWhatFits) {
+    traced.final = true;
+    return traced;
+  } else if (this->Overfull) {
     for (FrameStatistics& tile : traced.tiles) {
       tile.missed = 0;
     }
@@ -240,7 +278,7 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const WorkLimit& 
   return traced;
 }
 
-std::int64_t CachedRenderer::roomForPaths() const
+std::int64_t CachedRenderer::room() const
 {
   return this->Store->capacity() - this->Store->cache().usedInFrame();
 }
@@ -248,12 +286,12 @@ std::int64_t CachedRenderer::roomForPaths() const
 void CachedRenderer::loadForPaths(const RequestRanking& requests, const WorkLimit& limit,
                                   const std::function<bool()>& keepGoing)
 {
-  const std::int64_t room = this->roomForPaths();
-  const bool some = limit.isLimited() || this->InferMisses;
+  const std::int64_t room = this->room();
+  const bool some = limit.isLimited() || this->Overfull;
   const std::int64_t most = std::min(room, some ? this->Options.maximumRequests : room);
   this->loadForFrame(requests.ranked(most, this->Options.ranking), limit, keepGoing);
   // What does not fit is not worth loading for one path: paths come back to it from everywhere.
-  this->InferMisses = this->InferMisses || requests.count() > room;
+  this->Overfull = this->Overfull || requests.count() > room;
 }
 
 } // namespace inr

@@ -28,13 +28,16 @@ struct CacheOptions
   bool ranking = true;      ///< what contributes most first; else in the order of the tiles
   bool preloading = true;   ///< level by level from coarse to fine; else the wanted level at once
   bool background = true;   ///< bricks for frames in a limited time come in between frames, too
+  /// What the cache has no room for is shown from coarser levels, and a picture is complete when
+  /// the cache is full; else it is inferred for the picture and dropped.
+  bool onlyWhatFits = false;
 
   bool operator==(const CacheOptions& other) const
   {
     return this->bytes == other.bytes && this->precision == other.precision &&
            this->brickSize == other.brickSize && this->maximumRequests == other.maximumRequests &&
            this->ranking == other.ranking && this->preloading == other.preloading &&
-           this->background == other.background;
+           this->background == other.background && this->onlyWhatFits == other.onlyWhatFits;
   }
 };
 
@@ -63,7 +66,8 @@ public:
   BrickStore::Call call() const { return {*this->Store, this->Threads}; }
   /// Within a call: traces a round of a path-traced picture and brings what its paths missed: as
   /// much as `limit` allows. Where the cache has no room for
-  /// what the picture wants, the rest is inferred at the paths' points instead.
+  /// what the picture wants, the rest is inferred at the paths' points instead, or stays
+  /// coarser.
   TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,
                          const std::function<bool()>& keepGoing);
   /// Forgets what was made of the colours; for when they change.
@@ -78,15 +82,21 @@ private:
                                  const std::function<bool()>& keepGoing);
   FrameStatistics renderInTime(const CachedScene& scene, const WorkLimit& limit,
                                const PassOutput& output, const std::function<bool()>& keepGoing);
+  FrameStatistics renderWhatFits(const CachedScene& scene, const WorkLimit& limit,
+                                 const PassOutput& output, const std::function<bool()>& keepGoing);
+  /// Once, as far as the bricks are there.
+  FrameStatistics march(const CachedScene& scene, const PassOutput& output,
+                        const std::function<bool()>& keepGoing, RequestRanking& requests);
   FrameStatistics refine(const WorkLimit& limit, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
   /// At most so many bricks.
   void loadForPass(CompletePass& pass, const RequestRanking& requests, std::int64_t most,
                    const std::function<bool()>& keepGoing);
-  void loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
+  /// Whether the cache is found to be full.
+  bool loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing);
-  /// Bricks that may come without any of the present sample having to go.
-  std::int64_t roomForPaths() const;
+  /// Bricks that may come without any of the present frame having to go.
+  std::int64_t room() const;
   void loadForPaths(const RequestRanking& requests, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing);
 
@@ -100,7 +110,7 @@ private:
   /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
   std::optional<Refinement> Unfinished;
   /// Of the latest path-traced picture: it wants more than the cache can hold, or keep for it.
-  bool InferMisses = false;
+  bool Overfull = false;
 };
 
 } // namespace inr

@@ -102,10 +102,12 @@ struct FrameStatistics
   std::int64_t samples = 0; ///< values of the field that were looked up or inferred
   std::int64_t missed = 0;  ///< of these, read from a coarser level than wanted
   std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
-  bool complete = true;     ///< every sample came from the level it asked for, and all were taken
-  std::int64_t paths = 0;   ///< of path tracing: through each pixel, in the picture shown
-  double seconds = 0;       ///< wall time
-  double marchSeconds = 0;  ///< of these, without what was loaded into the cache in between
+  /// All samples were taken, and each came from the level it asked for or, if the options are to
+  /// make do with that, the best that a full cache has.
+  bool complete = true;
+  std::int64_t paths = 0;  ///< of path tracing: through each pixel, in the picture shown
+  double seconds = 0;      ///< wall time
+  double marchSeconds = 0; ///< of these, without what was loaded into the cache in between
 
   /// Adds what was counted in another part of the picture; times are not counts.
   void add(const FrameStatistics& part)

@@ -50,7 +50,7 @@ void PathPicture::finishTiles(const TracedTiles& traced)
   FrameStatistics unfinished;
   std::size_t pending = 0;
   for (std::size_t k = 0; k < traced.tiles.size(); ++k) {
-    const bool finished = traced.tiles[k].missed == 0;
+    const bool finished = traced.final || traced.tiles[k].missed == 0;
     (finished ? this->Finished : unfinished).add(traced.tiles[k]);
     if (!finished) {
       this->Pending[pending++] = this->Pending[k];

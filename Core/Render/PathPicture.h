@@ -34,8 +34,9 @@ struct PathRound
 struct TracedTiles
 {
   /// In the order of the round's tiles: all of them or, where time ran out, the first ones. Tiles
-  /// that missed something, and those that are not here, are asked for again.
+  /// that missed something, unless that is final, and those that are not here are asked for again.
   std::vector<FrameStatistics> tiles;
+  bool final = false;
   double seconds = 0; ///< of tracing, without what was loaded
 };
 

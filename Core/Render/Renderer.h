@@ -41,9 +41,10 @@ struct RendererOptions
 /// A complete frame is a pure function of model, transfer function and Frame: threads, tiles, the
 /// size of the cache and what other renderers do change no pixel. The exception are paths whose
 /// bricks the cache cannot hold, or keep until the next call: part of what they meet is then free
-/// of interpolation error. A renderer is not for use from two threads at once; several are, and
-/// those that share bricks take turns. In the middle of rendering (in keepGoing), another that
-/// shares its bricks throws Error(Cancelled).
+/// of interpolation error, and pictures that are to make do with what the cache can hold. A
+/// renderer is not for use from two threads at once; several are, and those that share bricks take
+/// turns. In the middle of rendering (in keepGoing), another that shares its bricks throws
+/// Error(Cancelled).
 class Renderer
 {
 public:

@@ -28,9 +28,9 @@ vtkINRVolumeMapper::~vtkINRVolumeMapper() = default;
 
 void vtkINRVolumeMapper::SetCacheMode(int mode)
 {
-  if (mode != CACHE_AND_NETWORK && mode != NETWORK_ONLY) {
-    vtkErrorMacro("There is no CacheMode " << mode << "; it is 0 (cache and network) or 2 "
-                                           << "(network only).");
+  if (mode < CACHE_AND_NETWORK || mode > NETWORK_ONLY) {
+    vtkErrorMacro("There is no CacheMode " << mode << "; it is 0 (cache and network), 1 "
+                                           << "(cache only) or 2 (network only).");
     return;
   }
   if (mode != this->CacheMode) {
@@ -121,6 +121,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   renderer.cache.brickSize = this->BrickSize;
   renderer.cache.maximumRequests = this->MaximumRequests;
   renderer.cache.ranking = this->PriorityRanking;
+  renderer.cache.onlyWhatFits = this->CacheMode == CACHE_ONLY;
   renderer.cache.preloading = this->Preloading;
   return settings;
 }

@@ -137,10 +137,18 @@ public:
 
   enum CacheModes {
     CACHE_AND_NETWORK = 0, ///< voxels from the cache, decoded when they are first wanted
+    CACHE_ONLY = 1,        ///< what the cache has no room for comes from coarser levels: fast
     NETWORK_ONLY = 2       ///< every sample straight from the network: exact, and slow
   };
   ///@{
-  /** One of CacheModes; anything else is refused. Default CACHE_AND_NETWORK. */
+  /**
+   * One of CacheModes; anything else is refused. Default CACHE_AND_NETWORK. The first two differ
+   * only in pictures that want more bricks than CacheSize has room for. With the network, what does
+   * not fit is decoded for each picture and dropped or, of path tracing, asked for point by point:
+   * the picture does not depend on CacheSize, but may take long. From the cache only, a picture has
+   * converged when the cache is full, coarser where the finer bricks did not fit; GetCacheHitRate()
+   * says how much of it is.
+   */
   void SetCacheMode(int mode);
   vtkGetMacro(CacheMode, int);
   ///@}

@@ -35,6 +35,22 @@ check(value("Converged") == 1, "a small cache does not converge")
 large = shown("large", CacheSize=256, BrickSize=12)
 check(np.array_equal(small, large), "the size of the cache shows in the picture")
 
+# From the cache only, too little of it makes a coarser picture, and enough the same.
+fitting = shown("only-small", CacheMode="Cache only", CacheSize=1, LevelOfDetailScale=0)
+check(value("Converged") == 1, "the cache only does not converge")
+check(0 < value("CacheHitRate") < 1, "all in a cache that is too small:", value("CacheHitRate"))
+check(value("CacheUsed") <= 1, "the cache takes more than it may:", value("CacheUsed"))
+traced = shown("only-traced", RenderMode="Path Tracing", SamplesPerPixel=2)
+check(value("Converged") == 1 and value("CacheHitRate") < 1, "paths:", value("CacheHitRate"))
+display.RenderMode = "Ray Marching"
+whole = shown("only-large", CacheSize=256)
+check(value("CacheHitRate") == 1, "misses where all fits:", value("CacheHitRate"))
+check(np.array_equal(whole, shown("both", CacheMode="Cache and network")), "the mode shows")
+print(f"a cache that is too small: {psnr(fitting, whole):.1f} dB")
+check(20 < psnr(fitting, whole) < 60, "coarser places cost", psnr(fitting, whole), "dB")
+check(traced.std() > 0.05, "no paths are shown")
+display.LevelOfDetailScale = 1
+
 # Storage and interpolation cost little, levels of detail a little more.
 exact = shown("float", CachePrecision="Float", BrickSize=40, LevelOfDetailScale=0)
 check(psnr(shown("bits16", CachePrecision="16 bit"), exact) > 50, "16 bit")

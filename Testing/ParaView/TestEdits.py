@@ -22,7 +22,7 @@ SETTINGS = {
     "MaximumRequests": [1, 40],
     "PriorityRanking": [0, 1],
     "Preloading": [0, 1],
-    "CacheMode": ["Cache and network"] * 4 + ["Network only"],
+    "CacheMode": ["Cache and network"] * 4 + ["Cache only", "Network only"],
     "Shade": [0, 0, 1],
     "NumberOfThreads": [0, 1, 3],
 }
@@ -86,6 +86,8 @@ check(messages.errors() == 0, "reported:", messages.text)
 simple.Show(reader, view)
 view.ViewSize = [120, 90]
 display.RenderMode = "Ray Marching"
+if display.CacheMode == "Cache only":  # what a small cache then has depends on what it had
+    display.CacheMode = "Cache and network"
 edited = picture(view, "edits-last")
 settings = {name: getattr(display, name) for name in SETTINGS}
 points = list(display.ScalarOpacityFunction.Points)

@@ -147,7 +147,7 @@ TEST_F(Refusals, OtherDataSets)
 
 TEST_F(Refusals, ACacheModeThatIsNone)
 {
-  for (const int mode : {-1, 1, 3}) {
+  for (const int mode : {-1, 3, 4}) {
     this->mapper->SetCacheMode(mode);
     EXPECT_EQ(this->mapper->GetCacheMode(), vtkINRVolumeMapper::CACHE_AND_NETWORK);
     EXPECT_NE(this->messages.last.find("CacheMode"), std::string::npos);
