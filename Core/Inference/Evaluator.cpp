@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Inference/GridKernel.h"
+#include "Core/Inference/HugePages.h"
 #include "Core/Inference/KernelTable.h"
 
 #include <algorithm>
@@ -41,7 +42,10 @@ public:
         Views(this->Source->description, CheckedLayout(*this->Source),
               this->Source->parameters.data()),
         Network(this->Views.view())
-  {}
+  {
+    const std::vector<float>& parameters = this->Source->parameters;
+    PreferHugePages(parameters.data(), parameters.size() * sizeof(float));
+  }
 
   void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const override
   {

@@ -5,6 +5,7 @@
 
 #include "Core/Inference/EncodeGrid.h"
 #include "Core/Inference/Network.h"
+#include "Core/Inference/Prefetch.h"
 
 namespace inr {
 namespace INR_ISA {
@@ -48,17 +49,32 @@ void EncodeStrip(const ModelView& model, const Coordinates& y, int rows, LevelPi
   }
 }
 
+/// Rows of the strip that begins at row j; 0 where none does.
+int RowsFrom(const LatticeAxis& y, std::int64_t j)
+{
+  const std::int64_t left = y.count - j;
+  return static_cast<int>(left < 0 ? 0 : left < StripHeight ? left : StripHeight);
+}
+
 /// `count` samples of each row of a layer, from `first` on; `layer` is the layer's values.
 void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t first, int count,
                    std::int64_t width, LevelPiece* pieces, StripPair& strips, float* layer)
 {
+  const int tiles = HiddenTiles(model);
+  const int units = HasFarLevels(model) ? model.levelCount : 0;
+  Coordinates heights;
+  LoadCoordinates(y.u, RowsFrom(y, 0), heights);
   for (std::int64_t j = 0; j < y.count; j += StripHeight) {
-    const int rows = y.count - j < StripHeight ? static_cast<int>(y.count - j) : StripHeight;
-    Coordinates heights;
-    LoadCoordinates(y.u + j, rows, heights);
+    const int rows = RowsFrom(y, j);
     EncodeStrip(model, heights, rows, pieces, strips.in.values);
+    const int next = RowsFrom(y, j + StripHeight);
+    if (next > 0) {
+      LoadCoordinates(y.u + j + StripHeight, next, heights);
+    }
+    auto fetch = [&](int level) { PrefetchRows(model, level, heights, next, pieces[level]); };
+    Evenly between(fetch, next > 0 ? units : 0, tiles);
     float outputs[StripSize];
-    RunStrip(model, strips, rows * PieceWidth, outputs);
+    RunStrip(model, strips, rows * PieceWidth, outputs, between);
     for (int row = 0; row < rows; ++row) {
       std::memcpy(layer + (j + row) * width + first, outputs + row * PieceWidth,
                   static_cast<std::size_t>(count) * sizeof(float));

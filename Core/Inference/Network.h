@@ -95,8 +95,8 @@ inline void RunTile(const LayerView& layer, Activation activation, int row, cons
 }
 
 /// The hidden layers; returns what goes into the last one: one of `in` and `out`.
-template <int Groups>
-inline const Strip& RunHiddenLayers(const ModelView& model, Strip& in, Strip& out)
+template <int Groups, class Between>
+inline const Strip& RunHiddenLayers(const ModelView& model, Strip& in, Strip& out, Between& between)
 {
   for (int l = 0; l + 1 < model.layerCount; ++l) {
     Strip& from = l % 2 == 0 ? in : out;
@@ -104,20 +104,31 @@ inline const Strip& RunHiddenLayers(const ModelView& model, Strip& in, Strip& ou
     to.count = 0;
     for (int row = 0; row < model.layers[l].rows; row += StripRows) {
       RunTile<StripRows, Groups>(model.layers[l], model.activation, row, from, to);
+      between();
     }
   }
   return model.layerCount % 2 == 1 ? in : out;
 }
 
-template <int Groups> inline void RunGroups(const ModelView& model, Strip& in, Strip& out, float* y)
+template <int Groups, class Between>
+inline void RunGroups(const ModelView& model, Strip& in, Strip& out, float* y, Between& between)
 {
-  const Strip& last = RunHiddenLayers<Groups>(model, in, out);
+  const Strip& last = RunHiddenLayers<Groups>(model, in, out, between);
   Floats sums[1][Groups];
   SumTile<1, Groups>(model.layers[model.layerCount - 1].panels, last, sums);
   for (int g = 0; g < Groups; ++g) {
     Store(y + g * LaneCount, sums[0][g]);
   }
   Activate(model.outputActivation, y, Groups * LaneCount);
+}
+
+inline int HiddenTiles(const ModelView& model)
+{
+  int tiles = 0;
+  for (int l = 0; l + 1 < model.layerCount; ++l) {
+    tiles += (model.layers[l].rows + StripRows - 1) / StripRows;
+  }
+  return tiles;
 }
 
 /// Scratch memory for strips, in floats.
@@ -143,19 +154,21 @@ inline StripPair MakeStrips(const ModelView& model, float* workspace)
 
 /// Outputs of the first `samples` (1 to StripSize) of a strip, whose encoding is in
 /// strips.in.values: row f of model.encodedWidth from f * StripSize on. Writes LaneCount values at
-/// a time to `y`.
-inline void RunStrip(const ModelView& model, StripPair& strips, int samples, float* y)
+/// a time to `y`. Calls between() HiddenTiles(model) times, as evenly spread as may be.
+template <class Between>
+inline void RunStrip(const ModelView& model, StripPair& strips, int samples, float* y,
+                     Between& between)
 {
   strips.in.count = model.encodedWidth; // the padding is zero
   for (int k = 0; k < model.encodedWidth; ++k) {
     strips.in.from[k] = k * PanelRows;
   }
   if (samples <= LaneCount) {
-    RunGroups<1>(model, strips.in, strips.out, y);
+    RunGroups<1>(model, strips.in, strips.out, y, between);
   } else if (StripGroups == 2 || samples <= 2 * LaneCount) {
-    RunGroups<2>(model, strips.in, strips.out, y);
+    RunGroups<2>(model, strips.in, strips.out, y, between);
   } else {
-    RunGroups<StripGroups>(model, strips.in, strips.out, y);
+    RunGroups<StripGroups>(model, strips.in, strips.out, y, between);
   }
 }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
+#include "Core/Inference/HugePages.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -86,6 +88,77 @@ TEST(Evaluator, KernelsAgree)
     for (std::size_t k = 0; k < values.size(); ++k) {
       ASSERT_NEAR(values[k], best[k], 2e-4f) << kernel; // outputs of this model span about +-20
     }
+  }
+}
+
+/// A model whose finer levels are too large for a core's own cache: their entries are fetched
+/// ahead.
+TEST(Evaluator, LargeTablesGiveTheSameInAnyBatch)
+{
+  inr::Description description = SmallDescription();
+  description.grid.log2HashmapSize = 16;
+  description.grid.baseResolution = 60;
+  const std::vector<glm::vec3> positions = RandomPositions(333);
+  for (const std::string& kernel : UsableKernels()) {
+    const auto evaluator = inr::MakeEvaluator(RandomModel(description), kernel);
+    const std::vector<float> together = Evaluate(*evaluator, positions);
+    for (std::size_t k = 0; k < positions.size(); k += 7) {
+      ASSERT_EQ(Evaluate(*evaluator, {positions[k]})[0], together[k]) << kernel << " at " << k;
+    }
+    const std::vector<float> axes[3] = {{0.1f, 0.11f, 0.7f}, {0.2f, 0.3f, 0.31f, 0.9f}, {0.5f}};
+    std::vector<float> lattice(12);
+    evaluator->evaluateGrid(axes, lattice.data());
+    for (std::size_t k = 0; k < lattice.size(); ++k) {
+      const glm::vec3 at(axes[0][k % 3], axes[1][k / 3], axes[2][0]);
+      ASSERT_NEAR(lattice[k], Evaluate(*evaluator, {at})[0], 2e-4f) << kernel << " at " << k;
+    }
+  }
+}
+
+/// A random model, all of it times `scale`.
+std::shared_ptr<inr::Model> ScaledModel(float scale)
+{
+  auto model = RandomModel(SmallDescription());
+  for (float& parameter : model->parameters) {
+    parameter *= scale;
+  }
+  return model;
+}
+
+/// What overflows or underflows in one kernel does so in all.
+TEST(Evaluator, KernelsAgreeOnHugeAndTinyNumbers)
+{
+  const std::vector<glm::vec3> positions = RandomPositions(500);
+  for (const float scale : {1e-38f, 1e-15f, 1e-6f, 1e6f, 1e15f, 1e38f}) {
+    const auto model = ScaledModel(scale);
+    const std::vector<float> best = Evaluate(*inr::MakeEvaluator(model), positions);
+    float largest = 0;
+    for (const float value : best) {
+      largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : largest;
+    }
+    for (const std::string& kernel : UsableKernels()) {
+      const std::vector<float> values = Evaluate(*inr::MakeEvaluator(model, kernel), positions);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        if (std::isfinite(best[k])) {
+          ASSERT_NEAR(values[k], best[k], 1e-5f * largest) << kernel << " at " << scale;
+        } else {
+          ASSERT_EQ(inr::NormalisedOutput(values[k]), inr::NormalisedOutput(best[k])) << kernel;
+        }
+      }
+    }
+  }
+}
+
+TEST(HugePages, LeaveWhatIsThere)
+{
+  std::vector<std::size_t> numbers(std::size_t{3} << 20);
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    numbers[k] = k;
+  }
+  inr::PreferHugePages(numbers.data() + 1, (numbers.size() - 1) * sizeof(numbers[0]));
+  inr::PreferHugePages(numbers.data(), 8);
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    ASSERT_EQ(numbers[k], k);
   }
 }
 
