@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Samples per second of inference and training, by kernel and number of threads. Run with
-// --benchmark_format=json through kernels.py, which writes the result file.
+// Samples per second of inference and training, by kernel and number of threads, and what this
+// processor could do at most. Run with --benchmark_format=json through kernels.py, which writes the
+// result file. INR_MODEL may name a trained model's file: its bricks are timed too.
 #include "Testing/Core/Kernels.h"
 
-#include "Core/Inference/Evaluator.h"
+#include "Core/Cache/BrickSource.h"
+#include "Core/Model/ModelFile.h"
 #include "Core/Training/GradientDescent.h"
 #include "Core/Training/Trainer.h"
+#include "Testing/Benchmarks/Ceilings.h"
 #include "Testing/Core/RandomModel.h"
 
 #include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdlib>
 
 namespace {
 
@@ -30,6 +36,18 @@ inr::Description ChosenDescription()
   return inr::ChooseDescription({256, 256, 256}, inr::ScalarType::UInt8, 0);
 }
 
+/// Bricks that lie whole inside a level, one after the other along its diagonal.
+std::vector<inr::BrickKey> SomeBricks(const inr::Hierarchy& levels, int level, int count)
+{
+  std::vector<inr::BrickKey> keys;
+  const std::int64_t whole = std::max<std::int64_t>(1, levels.bricks(level).x - 1);
+  for (int k = 0; k < count; ++k) {
+    const std::int64_t at = (whole / 2 + k) % whole;
+    keys.push_back(inr::KeyOf({level, {at, at, at}}));
+  }
+  return keys;
+}
+
 void Inference(benchmark::State& state, const inr::Description& description,
                const std::string& kernel, int threads)
 {
@@ -42,30 +60,31 @@ void Inference(benchmark::State& state, const inr::Description& description,
                           static_cast<std::int64_t>(positions.size()), values.data());
     benchmark::DoNotOptimize(values.data());
   }
+  state.counters["threads_used"] = threads;
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(positions.size()));
 }
 
-/// Bricks of 40^3 samples at a spacing of 1/256, each on one thread.
+/// Bricks of 40^3 voxels, each on one thread, somewhere in a level of a volume of size^3.
+void InferBricks(benchmark::State& state, inr::ModelPointer model, const std::string& kernel,
+                 int threads, std::int64_t size, int level)
+{
+  const inr::Hierarchy levels({size, size, size}, 40);
+  const auto source = inr::MakeBrickSource(inr::MakeEvaluator(std::move(model), kernel), levels);
+  const inr::Arena arena(threads);
+  const std::vector<inr::BrickKey> keys = SomeBricks(levels, level, threads);
+  std::vector<float> values(keys.size() * static_cast<std::size_t>(levels.voxelsPerBrick()));
+  for (auto _ : state) {
+    source->infer(keys.data(), threads, values.data(), arena);
+    benchmark::DoNotOptimize(values.data());
+  }
+  state.counters["threads_used"] = threads;
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(values.size()));
+}
+
 void Bricks(benchmark::State& state, const inr::Description& description, const std::string& kernel,
             int threads)
 {
-  constexpr std::int64_t edge = 40;
-  const auto evaluator = inr::MakeEvaluator(RandomModel(description), kernel);
-  const inr::Arena arena(threads);
-  for (auto _ : state) {
-    arena.forEachBlock(threads, 1, [&](std::int64_t brick, std::int64_t) {
-      std::vector<float> axes[3];
-      for (std::vector<float>& axis : axes) {
-        for (std::int64_t k = 0; k < edge; ++k) {
-          axis.push_back((static_cast<float>(brick * edge + k) + 0.5f) / 256.0f);
-        }
-      }
-      std::vector<float> values(edge * edge * edge);
-      evaluator->evaluateGrid(axes, values.data());
-      benchmark::DoNotOptimize(values.data());
-    });
-  }
-  state.SetItemsProcessed(state.iterations() * threads * edge * edge * edge);
+  InferBricks(state, RandomModel(description), kernel, threads, 256, 0);
 }
 
 /// A linear field: costs nothing beside the training step.
@@ -98,25 +117,65 @@ void Training(benchmark::State& state, const inr::Description& description,
 
 using Benchmark = void (*)(benchmark::State&, const inr::Description&, const std::string&, int);
 
-void Register(const std::string& what, Benchmark function)
+/// `function` for both models, every kernel, and one and all threads; timed by the processor time
+/// of the process, which leaves out what others do on the machine, or by the wall clock.
+void Register(const std::string& what, Benchmark function, bool wallClock)
 {
   for (const auto& [model, description] :
        {std::pair{"default model", DefaultDescription()}, {"256^3 model", ChosenDescription()}}) {
     for (const std::string& kernel : UsableKernels()) {
       const std::string name = what + ", " + model + ", " + kernel;
-      benchmark::RegisterBenchmark((name + ", 1 thread").c_str(), function, description, kernel, 1)
-          ->UseRealTime();
-      benchmark::RegisterBenchmark((name + ", all threads").c_str(), function, description, kernel,
-                                   inr::AvailableCores())
-          ->UseRealTime();
+      for (const auto& [note, threads] :
+           {std::pair{", 1 thread", 1}, {", all threads", inr::AvailableCores()}}) {
+        auto* const run = benchmark::RegisterBenchmark((name + note).c_str(), function, description,
+                                                       kernel, threads);
+        wallClock ? run->UseRealTime() : run->MeasureProcessCPUTime();
+      }
     }
   }
 }
 
+/// Bricks of the finest level of a volume of 4096^3, and of the one above it, whose voxels are
+/// means of eight samples.
+void RegisterBricks(const std::string& what, const inr::ModelPointer& model, std::int64_t size)
+{
+  for (const std::string& kernel : UsableKernels()) {
+    for (const int threads : {1, inr::AvailableCores()}) {
+      const std::string name =
+          what + ", " + kernel + (threads == 1 ? ", 1 thread" : ", all threads");
+      benchmark::RegisterBenchmark(name.c_str(), InferBricks, model, kernel, threads, size, 0)
+          ->MeasureProcessCPUTime();
+    }
+    benchmark::RegisterBenchmark((what + " of level 1, " + kernel + ", 1 thread").c_str(),
+                                 InferBricks, model, kernel, 1, size, 1)
+        ->MeasureProcessCPUTime();
+  }
+}
+
+void RegisterCeilings()
+{
+  for (const std::string& kernel : UsableKernels()) {
+    if (const FusedOperations operations = FusedOperationsOf(kernel)) {
+      benchmark::RegisterBenchmark(("ceiling, arithmetic, " + kernel).c_str(), Arithmetic,
+                                   operations);
+    }
+  }
+  const inr::Layout layout(DefaultDescription());
+  const auto features = static_cast<std::size_t>(DefaultDescription().grid.features);
+  benchmark::RegisterBenchmark("ceiling, loads, default model", RandomLoads,
+                               (layout.parameterCount - layout.gridOffset) / features);
+}
+
 [[maybe_unused]] const bool Registered = [] {
-  Register("inference", Inference);
-  Register("brick inference", Bricks);
-  Register("training", Training);
+  RegisterCeilings();
+  RegisterBricks("brick of 4096^3, default model", RandomModel(DefaultDescription()), 4096);
+  if (const char* path = std::getenv("INR_MODEL")) {
+    const inr::ModelPointer model = inr::ReadModel(path);
+    RegisterBricks("brick, trained model", model, model->volume.dims.x);
+  }
+  Register("inference", Inference, false);
+  Register("brick inference", Bricks, false);
+  Register("training", Training, true);
   return true;
 }();
 

@@ -3,19 +3,69 @@
 """Runs bench_kernels and writes kernels.json.
 
     cmake --preset dev -DCMAKE_BUILD_TYPE=Release && cmake --build --preset dev --target bench_kernels
-    Testing/Benchmarks/kernels.py build-dev/Testing/Benchmarks/bench_kernels
+    Testing/Benchmarks/kernels.py build-dev/Testing/Benchmarks/bench_kernels [TRAINED.inr]
 """
 import json
+import os
 import subprocess
 import sys
 
 import results_file
 
-output = subprocess.run([sys.argv[1], "--benchmark_format=json"], check=True, capture_output=True)
-results = []
-for run in json.loads(output.stdout)["benchmarks"]:
-    name = run["name"].removesuffix("/real_time")
-    results.append(results_file.result(name, round(run["items_per_second"] / 1e6, 3), "M samples/s",
-                                       "higher", f"{run['iterations']} iterations"))
-    print(f"{name}: {results[-1]['value']} M samples/s")
-results_file.write("kernels", results)
+MODEL = "brick of 4096^3, default model"
+SETS = {"AVX512": "avx512", "AVX2": "avx2"}
+TARGETS = {"brick AVX512": 3.5, "brick AVX2": 1.5, "brick vs scattered AVX512": 2,
+           "brick vs scattered AVX2": 1.3}
+LOADS = 64  # of table entries, per sample of the default model
+WEIGHTS = 4 * 64 * 64 + 64  # products per sample of the default model
+
+
+def rates(output):
+    """Name -> M items/s. Runs timed by processor time count all threads' together."""
+    found = {}
+    for run in json.loads(output)["benchmarks"]:
+        name, _, clock = run["name"].partition("/")
+        threads = run["threads_used"] if "process" in clock else 1
+        found[name] = run["items_per_second"] * threads / 1e6
+    return found
+
+
+def derived(rate):
+    """The figures that have a target: value, unit, what they are a ratio to, note."""
+    loads = rate["ceiling, loads, default model"] / LOADS
+    for label, kernel in SETS.items():
+        if f"{MODEL}, {kernel}, 1 thread" not in rate:
+            continue
+        brick = rate[f"{MODEL}, {kernel}, 1 thread"]
+        scattered = rate[f"inference, default model, {kernel}, 1 thread"]
+        arithmetic = rate[f"ceiling, arithmetic, {kernel}"] / WEIGHTS
+        bound = min(loads, arithmetic)
+        yield (f"brick {label}", brick, "M voxels/s", None, "random parameters; one core")
+        yield (f"brick {label} of ceiling", brick / arithmetic, "", "arithmetic of all weights",
+               f"{arithmetic:.2f} M samples/s; products with what ReLU made zero are left out")
+        yield (f"brick vs scattered {label}", brick / scattered, "", "inference, default model", "")
+        yield (f"scattered {label} of ceiling", scattered / bound, "", "loads or arithmetic",
+               f"{loads:.2f} M samples/s by loads, {arithmetic:.2f} by arithmetic")
+        yield (f"brick two cores vs one {label}",
+               rate[f"{MODEL}, {kernel}, all threads"] / brick, "", f"brick {label}",
+               "by processor time")
+
+
+def main():
+    environment = dict(os.environ, **({"INR_MODEL": sys.argv[2]} if len(sys.argv) > 2 else {}))
+    output = subprocess.run([sys.argv[1], "--benchmark_format=json"], check=True,
+                            capture_output=True, env=environment).stdout
+    rate = rates(output)
+    results = [results_file.result(name, round(value, 3), unit, "higher", note,
+                                   **({"target": TARGETS[name]} if name in TARGETS else {}),
+                                   **({"baseline": baseline} if baseline else {}))
+               for name, value, unit, baseline, note in derived(rate)]
+    results += [results_file.result(name, round(value, 3), "M samples/s" if "ceiling" not in name
+                                    else "M/s", "higher") for name, value in rate.items()]
+    for result in results:
+        print(f"{result['name']}: {result['value']} {result['unit']}")
+    results_file.write("kernels", results)
+
+
+if __name__ == "__main__":
+    main()
