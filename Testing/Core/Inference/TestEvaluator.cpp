@@ -149,6 +149,28 @@ TEST(Evaluator, KernelsAgreeOnHugeAndTinyNumbers)
   }
 }
 
+/// A sum that overflows to minus infinity is cut off by ReLU like any other negative one.
+TEST(Evaluator, ReluCutsOffMinusInfinity)
+{
+  inr::Description description = SmallDescription();
+  description.network.hiddenLayers = 1;
+  auto model = RandomModel(description);
+  const inr::Layout layout(description);
+  std::fill(model->parameters.begin(), model->parameters.end(), 0.0f);
+  std::fill(model->parameters.begin() + static_cast<std::ptrdiff_t>(layout.gridOffset),
+            model->parameters.end(), 1e20f);
+  const auto columns = static_cast<std::size_t>(layout.layers[0].columns);
+  model->parameters[0] = -1e20f;       // neuron 0 sees -1e40
+  model->parameters[columns] = 1e-20f; // neuron 1 sees 1
+  model->parameters[layout.layers[1].offset] = 1.0f;
+  model->parameters[layout.layers[1].offset + 1] = 0.5f;
+  for (const std::string& kernel : UsableKernels()) {
+    for (const float value : Evaluate(*inr::MakeEvaluator(model, kernel), RandomPositions(50))) {
+      ASSERT_NEAR(value, 0.5f, 1e-5f) << kernel;
+    }
+  }
+}
+
 TEST(HugePages, LeaveWhatIsThere)
 {
   std::vector<std::size_t> numbers(std::size_t{3} << 20);
