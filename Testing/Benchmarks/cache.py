@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs bench_majorants, bench_cache, bench_paths, and bench_against_vtk where it was built; writes
-cache.json.
+"""Runs bench_majorants, bench_cache, bench_paths, and where they were built bench_against_vtk and
+bench_interaction; writes cache.json.
 
     cmake --preset vtk -DINR_BUILD_BENCHMARKS=ON && cmake --build --preset vtk
     Testing/with-display.sh Testing/Benchmarks/cache.py build-vtk/Testing/Benchmarks \\
@@ -40,7 +40,7 @@ for argument in sys.argv[2:]:
     name, model = argument.split("=", 1)
     model, _, part = model.partition(":")
     for program, more in (("bench_against_vtk", []), ("bench_cache", [part] if part else []),
-                          ("bench_paths", [])):
+                          ("bench_paths", []), ("bench_interaction", [])):
         if not (folder / program).exists():
             continue
         process = subprocess.Popen([folder / program, model, name, *more], stdout=subprocess.PIPE,
