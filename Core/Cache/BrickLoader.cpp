@@ -2,7 +2,6 @@
 #include "Core/Cache/BrickLoader.h"
 
 #include <algorithm>
-#include <chrono>
 #include <system_error>
 #include <utility>
 
@@ -13,8 +12,6 @@
 namespace inr {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Of the calling thread: it never takes the processor from one that wakes up, as those do that
 /// draw windows, but has its share of a busy machine.
@@ -109,6 +106,8 @@ bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
     return false;
   }
   const std::int64_t z = brick->begun++;
+  ++this->LayersBegun;
+  this->Ready.notify_all();
   this->inferLayer(*brick, z, lock);
   if (++brick->done == this->Layers) {
     this->finish(*brick);
@@ -216,15 +215,31 @@ void BrickLoader::loadFor(double seconds)
   std::unique_lock<std::mutex> lock(this->Mutex);
   const bool wasPaused = std::exchange(this->Paused, false);
   this->Wake.notify_all();
-  do {
-    if (!this->inferOne(lock)) {
-      if (this->InWork.empty()) {
-        break;
-      }
-      this->Ready.wait_until(lock, deadline); // the last layers are with the threads
-    }
-  } while (Clock::now() < deadline);
+  if (this->Threads.empty()) {
+    this->workFor(deadline, lock);
+  } else {
+    this->waitFor(deadline, lock);
+  }
   this->Paused = wasPaused;
+}
+
+void BrickLoader::workFor(Clock::time_point deadline, std::unique_lock<std::mutex>& lock)
+{
+  while (this->inferOne(lock) && Clock::now() < deadline) {
+  }
+}
+
+void BrickLoader::waitFor(Clock::time_point deadline, std::unique_lock<std::mutex>& lock)
+{
+  const std::int64_t before = this->LayersBegun;
+  this->Ready.wait(lock, [&] { return this->LayersBegun > before || !this->hasWork(); });
+  this->Ready.wait_until(lock, deadline, [this] { return !this->hasWork(); });
+}
+
+/// Whether the threads have something to finish or to begin.
+bool BrickLoader::hasWork() const
+{
+  return !this->InWork.empty() || (!this->Wanted.empty() && this->holding() < this->Room);
 }
 
 void BrickLoader::handOver(const std::function<void(BrickKey, const float*)>& receive)

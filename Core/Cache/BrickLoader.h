@@ -3,6 +3,7 @@
 
 #include "Core/Cache/BrickSource.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -24,7 +25,7 @@ class BrickLoader
 {
 public:
   /// At most `room` bricks are begun and not yet handed over. The threads start with the first
-  /// request; where none can be started, loadFor alone loads.
+  /// request; where none can be started, loadFor loads itself.
   BrickLoader(std::shared_ptr<const BrickSource> source, int threads, std::int64_t room);
   ~BrickLoader();
   BrickLoader(const BrickLoader&) = delete;
@@ -44,8 +45,9 @@ public:
   void request(const std::vector<BrickKey>& keys);
   void resume();
   void pause();
-  /// Works on the requests for so many seconds, paused or not and together with the calling thread;
-  /// for one layer at least, and no longer than there is something to do.
+  /// Has the requests worked on for so many seconds, paused or not; until a layer is begun at
+  /// least, and no longer than there is something to do. The calling thread waits for the time to
+  /// be over: a layer of its own would keep it longer than it has.
   void loadFor(double seconds);
 
   /// Hands over all bricks that are finished, voxelsPerBrick() values each, to what must not throw.
@@ -53,6 +55,7 @@ public:
   void handOver(const std::function<void(BrickKey key, const float* values)>& receive);
 
 private:
+  using Clock = std::chrono::steady_clock;
   using Values = std::vector<float>;
 
   struct Brick
@@ -66,6 +69,9 @@ private:
 
   void start();
   void work();
+  void workFor(Clock::time_point deadline, std::unique_lock<std::mutex>& lock);
+  void waitFor(Clock::time_point deadline, std::unique_lock<std::mutex>& lock);
+  bool hasWork() const;
   bool inferOne(std::unique_lock<std::mutex>& lock);
   Brick* claim();
   void inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock);
@@ -79,9 +85,10 @@ private:
 
   std::mutex Mutex;              ///< guards what follows, except the threads
   std::condition_variable Wake;  ///< for the threads: there may be something to do
-  std::condition_variable Ready; ///< a brick is finished
+  std::condition_variable Ready; ///< a layer is begun, or a brick finished
   bool Paused = true;
   bool Ended = false;
+  std::int64_t LayersBegun = 0;
   std::int64_t Room;
   std::deque<BrickKey> Wanted;
   std::vector<std::unique_ptr<Brick>> InWork;

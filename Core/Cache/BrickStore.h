@@ -53,8 +53,8 @@ public:
               const std::function<bool()>& keepGoing);
   /// Drops all bricks but the coarsest level, those of the current frame included.
   void clear();
-  /// Infers and maps bricks for so many seconds, together with the loader, which goes on with them
-  /// when it is not paused.
+  /// Maps what the loader infers in so many seconds, or infers where there is none; it goes on with
+  /// them when it is not paused.
   void loadFor(double seconds, const std::vector<BrickKey>& keys, const Arena& arena);
 
   /// The time of one call that renders: others wait, the loader is paused, so that a frame has the
