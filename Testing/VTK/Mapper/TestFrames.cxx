@@ -229,11 +229,35 @@ TEST(ImageReduction, IsAsSmallAsTheRateAllows)
 {
   inr::ImageReduction reduction;
   EXPECT_EQ(reduction.factor(5, 1000), inr::ImageReduction::Unmeasured);
-  reduction.record(1.0, 1000); // 1 ms per pixel, so 0.2 s are 200 pixels
-  EXPECT_EQ(reduction.factor(5, 200), 1);
-  EXPECT_EQ(reduction.factor(5, 201), 2);
-  EXPECT_EQ(reduction.factor(5, 801), 4);
+  reduction.record(1.0, 1000); // 1 ms per pixel, so three quarters of 0.2 s are 150 pixels
+  EXPECT_EQ(reduction.factor(5, 150), 1);
+  EXPECT_EQ(reduction.factor(5, 151), 2);
+  EXPECT_EQ(reduction.factor(5, 601), 4);
   EXPECT_EQ(reduction.factor(5, 1000000), 8);
+}
+
+TEST(ImageReduction, ExpectsFinerPicturesToCostMoreForEachPixel)
+{
+  inr::ImageReduction reduction;
+  reduction.record(0.1, 1000); // four times the pixels: eight times as long
+  EXPECT_EQ(reduction.factor(0.75 / 0.81, 4000), 1);
+  EXPECT_EQ(reduction.factor(0.75 / 0.79, 4000), 2);
+}
+
+TEST(ImageReduction, FallsAtOnceAndRisesByAndBy)
+{
+  inr::ImageReduction reduction;
+  reduction.record(0.1, 1000);
+  EXPECT_EQ(reduction.factor(5, 1000), 1);
+  reduction.record(1.6, 1000);
+  EXPECT_EQ(reduction.factor(5, 1000), 4);
+  int frames = 0;
+  while (reduction.factor(5, 1000) > 1 && frames < 100) {
+    reduction.record(0.1, 1000);
+    ++frames;
+  }
+  EXPECT_GT(frames, 2);
+  EXPECT_LT(frames, 10);
 }
 
 } // namespace
