@@ -12,16 +12,17 @@ namespace inr {
 #ifdef __linux__
 void PreferHugePages(const void* memory, std::size_t bytes)
 {
-  constexpr std::uintptr_t page = std::uintptr_t{2} << 20;
-  const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page;
-  const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
-  if (bytes < 2 * page || begin >= end) {
+  constexpr std::size_t page = std::size_t{2} << 20;
+  // Whole pages only: what lies beside the memory is not ours.
+  const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(memory) % page) % page;
+  if (bytes < 2 * page) {
     return;
   }
-  auto* const whole = reinterpret_cast<void*>(begin);
+  const std::size_t whole = (bytes - before) / page * page;
+  void* const begin = static_cast<char*>(const_cast<void*>(memory)) + before;
   constexpr int collapse = 25; // MADV_COLLAPSE, since Linux 6.1: now, not some day
-  if (madvise(whole, end - begin, MADV_HUGEPAGE) == 0) {
-    static_cast<void>(madvise(whole, end - begin, collapse));
+  if (madvise(begin, whole, MADV_HUGEPAGE) == 0) {
+    static_cast<void>(madvise(begin, whole, collapse));
   }
 }
 #else

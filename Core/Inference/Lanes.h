@@ -107,7 +107,8 @@ inline bool IsZero(UInts value)
 /// The first place from `memory` on where whole vectors lie within cache lines.
 template <class T> inline T* AlignToLine(T* memory)
 {
-  return reinterpret_cast<T*>((reinterpret_cast<std::uintptr_t>(memory) + 63) / 64 * 64);
+  const std::uintptr_t past = reinterpret_cast<std::uintptr_t>(memory) % 64;
+  return reinterpret_cast<T*>(reinterpret_cast<char*>(memory) + (64 - past) % 64);
 }
 
 inline float SumLanes(Floats value)

@@ -91,7 +91,7 @@ inline void PrefetchRows(const ModelView& model, int level, const Coordinates& y
   if (!IsFarAway(view, model.features)) {
     return;
   }
-  std::uint32_t cells[RowCapacity];
+  std::uint32_t cells[RowCapacity] = {};
   float weights[RowCapacity];
   LocateSome(view, model.interpolation, y, rows, cells, weights);
   std::uint32_t done = piece.lineY[0] > piece.lineY[1] ? piece.lineY[0] : piece.lineY[1];

@@ -78,7 +78,7 @@ inline void Arithmetic(benchmark::State& state, FusedOperations operations)
 {
   constexpr std::int64_t rounds = 1 << 20;
   std::int64_t each = 0;
-  for (auto _ : state) {
+  for (auto step : state) {
     each = operations(rounds);
   }
   state.SetItemsProcessed(state.iterations() * rounds * each);
@@ -95,7 +95,7 @@ inline void RandomLoads(benchmark::State& state, std::uint64_t rows)
     places[k] = static_cast<std::uint32_t>(inr::RandomBits(1, k) % rows);
   }
   std::uint64_t shift = 0;
-  for (auto _ : state) {
+  for (auto step : state) {
     float sums[8] = {};
     shift = (shift + 7919) % rows; // other places every time
     for (const std::uint32_t place : places) {

@@ -55,7 +55,7 @@ void Inference(benchmark::State& state, const inr::Description& description,
   const inr::Arena arena(threads);
   const std::vector<glm::vec3> positions = RandomPositions(1 << 17);
   std::vector<float> values(positions.size());
-  for (auto _ : state) {
+  for (auto step : state) {
     inr::EvaluateParallel(*evaluator, arena, positions.data(),
                           static_cast<std::int64_t>(positions.size()), values.data());
     benchmark::DoNotOptimize(values.data());
@@ -73,7 +73,7 @@ void InferBricks(benchmark::State& state, inr::ModelPointer model, const std::st
   const inr::Arena arena(threads);
   const std::vector<inr::BrickKey> keys = SomeBricks(levels, level, threads);
   std::vector<float> values(keys.size() * static_cast<std::size_t>(levels.voxelsPerBrick()));
-  for (auto _ : state) {
+  for (auto step : state) {
     source->infer(keys.data(), threads, values.data(), arena);
     benchmark::DoNotOptimize(values.data());
   }
@@ -109,7 +109,7 @@ void Training(benchmark::State& state, const inr::Description& description,
   const inr::Arena arena(threads);
   inr::GradientDescent descent(description, 1, inr::ChooseInstructionSet(kernel), arena);
   const Ramp source;
-  for (auto _ : state) {
+  for (auto step : state) {
     descent.step(source);
   }
   state.SetItemsProcessed(state.iterations() * inr::BatchSize);
