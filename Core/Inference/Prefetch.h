@@ -83,12 +83,13 @@ inline void PrefetchGroup(const ModelView& model, int level, const float* xyz, s
   }
 }
 
-/// What a piece will fetch of one level for `rows` rows.
+/// What a piece will fetch of one level for `rows` rows; nothing where its samples share corners,
+/// because then there is little to wait for.
 inline void PrefetchRows(const ModelView& model, int level, const Coordinates& y, int rows,
                          const LevelPiece& piece)
 {
   const LevelView& view = model.levels[level];
-  if (!IsFarAway(view, model.features)) {
+  if (piece.columnCount <= PieceWidth || !IsFarAway(view, model.features)) {
     return;
   }
   std::uint32_t cells[RowCapacity] = {};

@@ -7,6 +7,7 @@
 
 #include "Core/Cache/BrickSource.h"
 #include "Core/Model/ModelFile.h"
+#include "Core/Random.h"
 #include "Core/Training/GradientDescent.h"
 #include "Core/Training/Trainer.h"
 #include "Testing/Benchmarks/Ceilings.h"
@@ -36,14 +37,18 @@ inr::Description ChosenDescription()
   return inr::ChooseDescription({256, 256, 256}, inr::ScalarType::UInt8, 0);
 }
 
-/// Bricks that lie whole inside a level, one after the other along its diagonal.
+/// Bricks all over a level that lie whole inside it.
 std::vector<inr::BrickKey> SomeBricks(const inr::Hierarchy& levels, int level, int count)
 {
   std::vector<inr::BrickKey> keys;
-  const std::int64_t whole = std::max<std::int64_t>(1, levels.bricks(level).x - 1);
+  const auto whole =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(1, levels.bricks(level).x - 1));
   for (int k = 0; k < count; ++k) {
-    const std::int64_t at = (whole / 2 + k) % whole;
-    keys.push_back(inr::KeyOf({level, {at, at, at}}));
+    const auto axis = [&](std::uint64_t seed) {
+      return static_cast<std::int64_t>(inr::RandomBits(seed, static_cast<std::uint64_t>(k)) %
+                                       whole);
+    };
+    keys.push_back(inr::KeyOf({level, {axis(1), axis(2), axis(3)}}));
   }
   return keys;
 }
@@ -64,17 +69,17 @@ void Inference(benchmark::State& state, const inr::Description& description,
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(positions.size()));
 }
 
-/// Bricks of 40^3 voxels, each on one thread, somewhere in a level of a volume of size^3.
+/// Four bricks of 40^3 voxels per thread, all over a level of a volume of size^3.
 void InferBricks(benchmark::State& state, inr::ModelPointer model, const std::string& kernel,
                  int threads, std::int64_t size, int level)
 {
   const inr::Hierarchy levels({size, size, size}, 40);
   const auto source = inr::MakeBrickSource(inr::MakeEvaluator(std::move(model), kernel), levels);
   const inr::Arena arena(threads);
-  const std::vector<inr::BrickKey> keys = SomeBricks(levels, level, threads);
+  const std::vector<inr::BrickKey> keys = SomeBricks(levels, level, 4 * threads);
   std::vector<float> values(keys.size() * static_cast<std::size_t>(levels.voxelsPerBrick()));
   for (auto step : state) {
-    source->infer(keys.data(), threads, values.data(), arena);
+    source->infer(keys.data(), static_cast<std::int64_t>(keys.size()), values.data(), arena);
     benchmark::DoNotOptimize(values.data());
   }
   state.counters["threads_used"] = threads;
