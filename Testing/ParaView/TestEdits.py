@@ -25,6 +25,7 @@ SETTINGS = {
     "CacheMode": ["Cache and network"] * 4 + ["Cache only", "Network only"],
     "Shade": [0, 0, 1],
     "NumberOfThreads": [0, 1, 3],
+    "Deterministic": [0, 0, 1],
 }
 
 
@@ -77,6 +78,7 @@ with Messages() as messages:
     for k in range(EDITS):
         edit(view, reader, display)
         if k % 50 == 24:  # while bricks load
+            print(k, "edits", flush=True)  # so that it can be told where a long run ended
             simple.Delete(reader)
             simple.Delete(view)
             view, reader, display = new_scene()

@@ -70,6 +70,7 @@ struct Scenario
   inr::RenderMode mode = inr::RenderMode::RayMarching;
   bool cached = true;
   bool deterministic = true;
+  bool onlyWhatFits = false;
   std::int64_t cacheBytes = 64 << 20;
 };
 
@@ -96,6 +97,7 @@ std::unique_ptr<inr::Renderer> MakeRenderer(const std::shared_ptr<const inr::Eva
   options.cache.brickSize = 16;
   options.cache.bytes = scenario.cacheBytes;
   options.cache.maximumRequests = 3;
+  options.cache.onlyWhatFits = scenario.onlyWhatFits;
   auto renderer =
       std::make_unique<inr::Renderer>(field, VolumeOf(Dims), inr::MacroCells{}, options);
   renderer->setTransferFunction(Colours());
@@ -174,6 +176,14 @@ TEST(Deterministic, PathsAreTheSameWhereTheCacheIsTooSmall)
 }
 
 TEST(Deterministic, PathsAreTheSameWithoutACache) { ExpectTheSameEverywhere(Paths(0, false)); }
+
+TEST(Deterministic, PicturesOfWhatFitsAreTheSameOnAnyMachine)
+{
+  for (Scenario scenario : {SmallCache(), Paths(TwentyBricks)}) {
+    scenario.onlyWhatFits = true;
+    ExpectTheSameEverywhere(scenario);
+  }
+}
 
 TEST(Deterministic, AClockDecidesWithoutIt)
 {
