@@ -135,7 +135,9 @@ void FramePainter::makeRenderer(const ModelPointer& model, const RendererOptions
   }
   this->Caster = std::make_unique<Renderer>(model, options);
   if (options.deterministic != this->CasterOptions.deterministic) {
-    this->Reduction = ImageReduction(!options.deterministic);
+    this->Rays = ImageReduction(!options.deterministic);
+    this->Paths =
+        options.deterministic ? this->Rays : ImageReduction(true, ImageReduction::Largest);
   }
   this->CasterModel = model;
   this->CasterOptions = options;
@@ -163,7 +165,8 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   }
   vtkRenderWindow* window = renderer->GetRenderWindow();
   const double rate = window->GetDesiredUpdateRate();
-  const int reduction = this->Reduction.factor(rate, pixels);
+  ImageReduction& resolution = scene.mode == RenderMode::PathTracing ? this->Paths : this->Rays;
+  const int reduction = resolution.factor(rate, pixels);
   Frame frame = scene;
   frame.width = (viewport.width + reduction - 1) / reduction;
   frame.height = (viewport.height + reduction - 1) / reduction;
@@ -193,7 +196,7 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   if (!last.statistics.complete && rate < ImageReduction::StillRate) {
     this->Refine.request(window);
   }
-  this->Reduction.record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
+  resolution.record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
   return this->Blender.blend(renderer, viewport, last.rgba);
 }
 

@@ -84,7 +84,9 @@ private:
   ModelPointer CasterModel;
   RendererOptions CasterOptions;
   TransferFunctionCache TransferFunctions;
-  ImageReduction Reduction;
+  ImageReduction Rays;
+  /// Nobody knows what paths cost before some are traced: a thousand samples, or ten.
+  ImageReduction Paths{true, ImageReduction::Largest};
   ImageBlender Blender;
   RefinementTimer Refine;
   PaintedFrame Last;

@@ -12,23 +12,26 @@ namespace inr {
 class ImageReduction
 {
 public:
-  explicit ImageReduction(bool measures = true) : Measures(measures) {}
+  /// `first`: without measurements, and before the first.
+  explicit ImageReduction(bool measures = true, int first = Unmeasured)
+      : Measures(measures), First(first)
+  {}
 
   /// Frames per second below which a frame is a still one; ParaView asks for 0.002 and 5.
   static constexpr double StillRate = 0.1;
-  static constexpr int Largest = 8;
-  /// Without measurements, and before the first: an interactive frame should come quickly.
+  static constexpr int Largest = 16;
+  /// What a first interactive frame of rays comes quickly with.
   static constexpr int Unmeasured = 4;
 
-  /// The smallest of 1, 2, 4 and 8 by which width and height have to be divided so that a frame of
-  /// `pixels` at full resolution is expected to keep to its time.
+  /// The smallest of 1, 2, 4, 8 and 16 by which width and height have to be divided so that a frame
+  /// of `pixels` at full resolution is expected to keep to its time.
   int factor(double desiredRate, std::int64_t pixels) const
   {
     if (desiredRate < StillRate) {
       return 1;
     }
     if (this->Pixels <= 0) {
-      return Unmeasured;
+      return this->First;
     }
     int factor = 1;
     while (factor<Largest&& this->expected(static_cast<double>(pixels) / (factor * factor))>
@@ -64,6 +67,7 @@ private:
   }
 
   bool Measures;
+  int First;
   double Seconds = 0;
   double Pixels = 0; ///< 0 before anything was measured
 };

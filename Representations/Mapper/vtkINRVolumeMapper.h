@@ -24,7 +24,7 @@
  * there; it is the same whatever the size of the cache. When the render window asks for more than
  * 0.1 frames per second, a frame takes what the cache has, coarser levels where the wanted ones are
  * missing, and decodes more in the time that is left; and if even that is too slow, the picture is
- * computed at a half, a quarter or an eighth of the window's resolution and stretched. Hardware
+ * computed at a half to a sixteenth of the window's resolution and stretched. Hardware
  * selection does not see the volume.
  *
  * Drawn by path tracing, the same medium scatters light: that of the renderer's lights

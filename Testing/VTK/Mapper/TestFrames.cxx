@@ -233,7 +233,8 @@ TEST(ImageReduction, IsAsSmallAsTheRateAllows)
   EXPECT_EQ(reduction.factor(5, 150), 1);
   EXPECT_EQ(reduction.factor(5, 151), 2);
   EXPECT_EQ(reduction.factor(5, 601), 4);
-  EXPECT_EQ(reduction.factor(5, 1000000), 8);
+  EXPECT_EQ(reduction.factor(5, 9600), 8);
+  EXPECT_EQ(reduction.factor(5, 1000000), 16);
 }
 
 TEST(ImageReduction, ExpectsFinerPicturesToCostMoreForEachPixel)

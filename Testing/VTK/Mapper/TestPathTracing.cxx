@@ -2,6 +2,7 @@
 // Path tracing in a window: the same medium as ray marching, lit by VTK's lights.
 #include "Core/Image/Exr.h"
 #include "Core/Image/Metrics.h"
+#include "ImageReduction.h"
 #include "TestModel.h"
 #include "TestScene.h"
 #include "vtkINRVolumeMapper.h"
@@ -181,6 +182,24 @@ TEST(PathTracing, IsReproducibleAndSeeded)
   EXPECT_EQ(first.pixels, two.exact().pixels);
   two.mapper->SetSeed(1);
   EXPECT_NE(first.pixels, two.exact().pixels);
+}
+
+TEST(PathTracing, DoesNotGoByWhatRaysCost)
+{
+  Traced one;
+  one.scene.window->SetDesiredUpdateRate(5);
+  const auto reduction = [&](int mode) {
+    one.mapper->SetRenderMode(mode);
+    one.scene.capture();
+    return one.mapper->GetImageReduction();
+  };
+  EXPECT_EQ(reduction(vtkINRVolumeMapper::RAY_MARCHING), inr::ImageReduction::Unmeasured);
+  EXPECT_EQ(reduction(vtkINRVolumeMapper::PATH_TRACING), inr::ImageReduction::Largest);
+  one.mapper->DeterministicOn(); // always the same
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(reduction(vtkINRVolumeMapper::PATH_TRACING), inr::ImageReduction::Unmeasured);
+    EXPECT_EQ(reduction(vtkINRVolumeMapper::RAY_MARCHING), inr::ImageReduction::Unmeasured);
+  }
 }
 
 TEST(PathTracing, InteractiveFramesClearUp)
