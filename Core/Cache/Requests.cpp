@@ -5,7 +5,7 @@
 
 namespace inr {
 
-void RequestList::add(BrickKey key, std::uint32_t samples, float contribution)
+void RequestList::add(BrickKey key, float contribution)
 {
   // Neighbouring rays miss the same bricks: the last few entries catch most repetitions.
   constexpr std::size_t window = 8;
@@ -13,12 +13,11 @@ void RequestList::add(BrickKey key, std::uint32_t samples, float contribution)
   for (std::size_t k = size; k > 0 && k + window > size; --k) {
     Request& entry = this->Entries[k - 1];
     if (entry.key == key) {
-      entry.samples += samples;
       entry.contribution += contribution;
       return;
     }
   }
-  this->Entries.push_back({key, samples, contribution});
+  this->Entries.push_back({key, contribution});
 }
 
 void RequestRanking::add(const RequestList& list)
@@ -26,11 +25,9 @@ void RequestRanking::add(const RequestList& list)
   for (const Request& request : list.entries()) {
     const auto place = this->Places.try_emplace(request.key, this->Sums.size());
     if (place.second) {
-      this->Sums.push_back({request.key, 0, 0.0});
+      this->Sums.push_back({request.key, 0.0});
     }
-    Sum& sum = this->Sums[place.first->second];
-    sum.samples += request.samples;
-    sum.contribution += static_cast<double>(request.contribution);
+    this->Sums[place.first->second].contribution += static_cast<double>(request.contribution);
   }
 }
 

@@ -13,15 +13,14 @@ namespace inr {
 struct Request
 {
   BrickKey key;
-  std::uint32_t samples; ///< that wanted it
-  float contribution;    ///< part of the light that still reaches them, summed over the samples
+  float contribution; ///< part of the light that reaches a sample, summed over those that want it
 };
 
 /// What one tile's rays missed, in the order in which they did.
 class RequestList
 {
 public:
-  void add(BrickKey key, std::uint32_t samples, float contribution);
+  void add(BrickKey key, float contribution);
   const std::vector<Request>& entries() const { return this->Entries; }
 
 private:
@@ -45,7 +44,6 @@ private:
   struct Sum
   {
     BrickKey key;
-    std::uint64_t samples;
     double contribution;
   };
 

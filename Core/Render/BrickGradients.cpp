@@ -40,7 +40,7 @@ bool BrickGradients::movePath(const Move& move, const Wish& wish, BrickKey brick
   next.at[move.axis] += move.step;
   const std::int32_t slot = this->Cache.find(KeyOf(next));
   if (slot < 0) {
-    wish.requests.add(KeyOf(next), 1, wish.contribution);
+    wish.requests.add(KeyOf(next), wish.contribution);
     return wish.missing == Missing::OneSided;
   }
   this->Cache.touch(slot);

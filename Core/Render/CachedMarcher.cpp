@@ -187,7 +187,7 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
   if (slot >= 0) {
     run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
   } else if (this->Missing == OnMiss::Stop) {
-    this->Requests.add(key, 1, 1.0f);
+    this->Requests.add(key, 1.0f);
     return false;
   } else {
     slot = this->openCoarser(run, ray, wanted, t);
@@ -230,8 +230,7 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
   this->Statistics.samples += run.count();
   if (run.count() > 0 && !run.exact()) {
     this->Statistics.missed += run.count();
-    this->Requests.add(run.wish(), static_cast<std::uint32_t>(run.count()),
-                       static_cast<float>(run.count()) * transmittance);
+    this->Requests.add(run.wish(), static_cast<float>(run.count()) * transmittance);
   }
   run.close();
 }

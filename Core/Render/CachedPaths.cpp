@@ -167,8 +167,7 @@ RequestList CachedSampler::requests() const
   RequestList list;
   for (auto first = keys.begin(); first != keys.end();) {
     const auto end = std::upper_bound(first, keys.end(), *first);
-    const auto samples = static_cast<std::uint32_t>(end - first);
-    list.add(*first, samples, static_cast<float>(samples));
+    list.add(*first, static_cast<float>(end - first));
     first = end;
   }
   return list;

@@ -15,13 +15,13 @@ TEST(Requests, AreRankedByWhatTheyContribute)
 {
   inr::RequestRanking ranking;
   inr::RequestList first;
-  first.add(Brick(0, 1), 5, 1.0f);
-  first.add(Brick(0, 2), 1, 0.5f);
-  first.add(Brick(0, 1), 5, 1.0f);
+  first.add(Brick(0, 1), 1.0f);
+  first.add(Brick(0, 2), 0.5f);
+  first.add(Brick(0, 1), 1.0f);
   ranking.add(first);
   inr::RequestList second;
-  second.add(Brick(0, 3), 1, 1.5f);
-  second.add(Brick(0, 2), 1, 2.0f);
+  second.add(Brick(0, 3), 1.5f);
+  second.add(Brick(0, 2), 2.0f);
   ranking.add(second);
   using Keys = std::vector<inr::BrickKey>;
   EXPECT_EQ(ranking.count(), 3);
@@ -35,7 +35,7 @@ TEST(Requests, CoarserLevelsComeFirstAmongEquals)
   inr::RequestRanking ranking;
   inr::RequestList list;
   for (std::int64_t k = 0; k < 20; ++k) {
-    list.add(Brick(static_cast<int>(k % 4), k), 1, 1.0f);
+    list.add(Brick(static_cast<int>(k % 4), k), 1.0f);
   }
   ranking.add(list);
   const std::vector<inr::BrickKey> keys = ranking.ranked(20, true);
@@ -52,7 +52,7 @@ TEST(Requests, SumsDoNotDependOnHowAListWasMade)
   inr::RequestList apart; // further apart than a list looks back
   for (std::int64_t round = 0; round < 3; ++round) {
     for (std::int64_t k = 0; k < 20; ++k) {
-      apart.add(Brick(0, k), 1, static_cast<float>(k));
+      apart.add(Brick(0, k), static_cast<float>(k));
     }
   }
   inr::RequestRanking ranking;
@@ -68,8 +68,7 @@ inr::Request RandomWish(std::uint64_t picture, std::uint64_t place)
   const int level = static_cast<int>(bits % 5);
   const auto x = static_cast<std::int64_t>(bits / 5 % (300U >> level));
   // Halves add up exactly in any order, and often to the same.
-  return {Brick(level, x), 1 + static_cast<std::uint32_t>(bits >> 60),
-          0.5f * static_cast<float>(bits >> 40 & 3)};
+  return {Brick(level, x), 0.5f * static_cast<float>(bits >> 40 & 3)};
 }
 
 /// The bricks of one picture, ranked by adding up in a map and sorting in the order that is
@@ -112,7 +111,7 @@ TEST(Requests, AreRankedAsASimpleModelRanksThem)
     inr::RequestList tile;
     for (std::uint64_t k = 0; k < wishes.size(); ++k) {
       wishes[k] = RandomWish(picture, k);
-      tile.add(wishes[k].key, wishes[k].samples, wishes[k].contribution);
+      tile.add(wishes[k].key, wishes[k].contribution);
       if (k % 90 == 89) {
         ranking.add(tile);
         tile = {};
