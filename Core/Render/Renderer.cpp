@@ -40,9 +40,14 @@ struct Renderer::Implementation
         Options(Consistent(std::move(options))), Threads(this->Options.threads),
         Cells(this->Options.cached ? Majorants(cells, this->Volume.dims, this->Threads)
                                    : Majorants(cells))
-  {}
+  {
+    if (this->Options.cached) { // at once, so that whom this one replaces can leave its bricks
+      const BrickKernel& kernel = BrickKernelFor(ChooseInstructionSet(this->Options.kernel));
+      this->Cached.emplace(this->Field, this->Identity, this->Volume.dims, this->Options.cache,
+                           kernel, this->Threads);
+    }
+  }
 
-  CachedRenderer& cached();
   FrameStatistics renderUncached(const Frame& frame, const RayGeometry& geometry,
                                  const MarchSettings& settings, const Shading* shading,
                                  const PassOutput& output,
@@ -62,20 +67,10 @@ struct Renderer::Implementation
   Majorants Cells;
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
-  std::optional<CachedRenderer> Cached; ///< made by the first frame that needs it
+  std::optional<CachedRenderer> Cached; ///< where there is to be a cache
   std::optional<PathPicture> Paths;     ///< while paths are traced
   std::int64_t MajorantBuilds = 0;
 };
-
-CachedRenderer& Renderer::Implementation::cached()
-{
-  if (!this->Cached) {
-    const BrickKernel& kernel = BrickKernelFor(ChooseInstructionSet(this->Options.kernel));
-    this->Cached.emplace(this->Field, this->Identity, this->Volume.dims, this->Options.cache,
-                         kernel, this->Threads);
-  }
-  return *this->Cached;
-}
 
 Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
     : Self(std::make_unique<Implementation>(MakeEvaluator(model, options.kernel), model,
@@ -152,14 +147,13 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
   const std::optional<Shading> shading = ShadingOf(frame);
   const Shading* lit = shading ? &*shading : nullptr;
-  if (!this->Options.cached) {
+  if (!this->Cached) {
     return this->renderUncached(frame, geometry, settings, lit, output, keepGoing);
   }
-  CachedRenderer& cached = this->cached();
-  const BrickStore::Call call = cached.call();
+  const BrickStore::Call call = this->Cached->call();
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
-  return cached.render(frame, geometry, this->Cells, this->Colors->lookup(), settings, lit, limit,
-                       output, keepGoing);
+  return this->Cached->render(frame, geometry, this->Cells, this->Colors->lookup(), settings, lit,
+                              limit, output, keepGoing);
 }
 
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
@@ -169,14 +163,14 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
     this->Paths.emplace();
   }
   PathMedium medium{this->Volume.dims, this->Cells, this->Colors->lookup()};
-  if (!this->Options.cached) {
+  if (!this->Cached) {
     const TraceTiles trace = [&](const PathRound& round) {
       return TraceWithNetwork(round, *this->Field, this->Volume.dims, this->Threads, keepGoing);
     };
     const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
     return this->Paths->advance(frame, medium, trace, limit, output);
   }
-  CachedRenderer& cached = this->cached();
+  CachedRenderer& cached = *this->Cached;
   const BrickStore::Call call = cached.call();
   medium.levels = cached.store().cache().hierarchy().levels();
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);

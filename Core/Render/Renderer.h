@@ -35,7 +35,9 @@ struct RendererOptions
 /// Draws an INR by marching rays or tracing paths, through a cache of decoded bricks or straight
 /// from its network.
 ///
-/// Renderers of the same field (one model or one Evaluator) and CacheOptions share their bricks.
+/// Renderers of the same field (one model or one Evaluator) share their bricks if these are of the
+/// same size and precision and in a cache as large; how many are asked for at once, and in which
+/// order, may differ. They are kept as long as one such renderer exists.
 /// All renderers of the process share the memory of their caches: see CacheBudget.
 ///
 /// A complete frame is a pure function of model, transfer function and Frame: threads, tiles, the

@@ -184,7 +184,10 @@ public:
   ///@}
 
   ///@{
-  /** Bricks decoded for an interactive frame at most. Default 40. */
+  /**
+   * Bricks decoded at most before it is looked at again which ones the picture wants: few follow a
+   * moving camera sooner, many take less of the time for looking. Default 40.
+   */
   vtkSetClampMacro(MaximumRequests, int, 1, VTK_INT_MAX);
   vtkGetMacro(MaximumRequests, int);
   ///@}

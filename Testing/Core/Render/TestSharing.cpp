@@ -98,6 +98,23 @@ TEST(Sharing, ABrickIsInferredOnceForAllViewsOfAVolume)
   }
 }
 
+TEST(Sharing, BricksOutliveARendererThatIsReplaced)
+{
+  const Field field(1);
+  inr::Renderer renderer = field.renderer(Cache(Enough));
+  Render(renderer, View(false));
+  const std::int64_t bricks = renderer.cachedBricks();
+  const std::int64_t asked = field.asked();
+  inr::CacheOptions others = Cache(Enough);
+  others.ranking = !others.ranking;
+  others.preloading = !others.preloading;
+  others.maximumRequests = 7;
+  renderer = field.renderer(others, 2);
+  EXPECT_EQ(renderer.cachedBricks(), bricks);
+  Render(renderer, View(false));
+  EXPECT_EQ(field.asked(), asked);
+}
+
 TEST(Sharing, OfOneModelButNotOfTwo)
 {
   const auto model = RandomModel(SmallDescription());
