@@ -35,6 +35,7 @@ FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& 
     CachedMarcher marcher(scene, onMiss);
     const Tile tile = tiling.tile(k);
     for (int y = tile.y; y < tile.y + tile.height; ++y) {
+      RequireGoing(keepGoing);
       for (int x = tile.x; x < tile.x + tile.width; ++x) {
         CachedRay ray = marcher.begin(x, y);
         marcher.march(ray);

@@ -173,6 +173,29 @@ RequestList CachedSampler::requests() const
   return list;
 }
 
+namespace {
+
+/// Asks before each look at the field whether to go on: paths may need any number of them.
+class StoppableSampler : public FieldSampler
+{
+public:
+  StoppableSampler(FieldSampler& field, const std::function<bool()>& keepGoing)
+      : Field(field), KeepGoing(keepGoing)
+  {}
+
+  void sample(const FieldPoint* points, std::int64_t count, float* values) override
+  {
+    RequireGoing(this->KeepGoing);
+    this->Field.sample(points, count, values);
+  }
+
+private:
+  FieldSampler& Field;
+  const std::function<bool()>& KeepGoing;
+};
+
+} // namespace
+
 TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
                               const Evaluator& field, OnPathMiss onMiss, const WorkLimit* limit,
                               const Arena& arena, const std::function<bool()>& keepGoing,
@@ -186,8 +209,9 @@ TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
   std::vector<RequestList> lists(round.tiles.size());
   const auto trace = [&](std::size_t k) {
     CachedSampler sampler(cache, field, onMiss);
+    StoppableSampler stoppable(sampler, keepGoing);
     const Tile tile = tiling.tile(round.tiles[k]);
-    traced.tiles[k] = round.tracer.trace(tile, sampler, round.output.rgba, round.output.depth);
+    traced.tiles[k] = round.tracer.trace(tile, stoppable, round.output.rgba, round.output.depth);
     traced.tiles[k].missed = sampler.missed();
     lists[k] = sampler.requests();
   };
@@ -218,8 +242,9 @@ TracedTiles TraceWithNetwork(const PathRound& round, const Evaluator& field,
   ForEachTile(arena, static_cast<std::int64_t>(round.tiles.size()), keepGoing, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
     EvaluatorSampler sampler(field, dims);
+    StoppableSampler stoppable(sampler, keepGoing);
     const Tile tile = tiling.tile(round.tiles[k]);
-    traced.tiles[k] = round.tracer.trace(tile, sampler, round.output.rgba, round.output.depth);
+    traced.tiles[k] = round.tracer.trace(tile, stoppable, round.output.rgba, round.output.depth);
   });
   traced.seconds = timer.seconds();
   return traced;

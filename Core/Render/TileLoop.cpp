@@ -8,6 +8,19 @@
 
 namespace inr {
 
+namespace {
+
+[[noreturn]] void Stop() { throw Error(ErrorCode::Cancelled, "rendering stopped on request"); }
+
+} // namespace
+
+void RequireGoing(const std::function<bool()>& keepGoing)
+{
+  if (keepGoing && !keepGoing()) {
+    Stop();
+  }
+}
+
 void ForEachTile(const Arena& arena, std::int64_t count, const std::function<bool()>& keepGoing,
                  const std::function<void(std::int64_t)>& body)
 {
@@ -20,7 +33,7 @@ void ForEachTile(const Arena& arena, std::int64_t count, const std::function<boo
     body(k);
   });
   if (stopped) {
-    throw Error(ErrorCode::Cancelled, "rendering stopped on request");
+    Stop();
   }
 }
 

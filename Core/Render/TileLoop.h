@@ -8,6 +8,9 @@ namespace inr {
 
 class Arena;
 
+/// Throws Error(Cancelled) when `keepGoing`, which may be empty, says no.
+void RequireGoing(const std::function<bool()>& keepGoing);
+
 /// Calls `body` for tiles 0 ... count - 1, spread over the arena. `keepGoing` (may be empty) is
 /// asked before each, from any thread; when it answers false the rest is left out and
 /// Error(Cancelled) thrown.

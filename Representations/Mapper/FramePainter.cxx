@@ -47,12 +47,13 @@ std::string NotAnInr(vtkAbstractArray* array)
          "vtkINRReader, or draw it with an ordinary volume mapper.";
 }
 
-/// Asks the window between tiles whether to go on. Its observers may touch the application, so they
-/// are only called on the thread that called the mapper.
-std::function<bool()> UnlessAborted(vtkRenderWindow* window)
+/// Asks clock and window between tiles whether to go on. The window's observers may touch the
+/// application, so they are only called on the thread that called the mapper.
+std::function<bool()> Unless(vtkRenderWindow* window, Clock::time_point deadline)
 {
-  return [window, caller = std::this_thread::get_id()] {
-    return std::this_thread::get_id() != caller || !window->CheckAbortStatus();
+  return [window, deadline, caller = std::this_thread::get_id()] {
+    const bool inTime = deadline == Clock::time_point::max() || Clock::now() < deadline;
+    return inTime && (std::this_thread::get_id() != caller || !window->CheckAbortStatus());
   };
 }
 
@@ -137,7 +138,7 @@ void FramePainter::makeRenderer(const ModelPointer& model, const RendererOptions
   if (options.deterministic != this->CasterOptions.deterministic) {
     this->Rays = ImageReduction(!options.deterministic);
     this->Paths =
-        options.deterministic ? this->Rays : ImageReduction(true, ImageReduction::Largest);
+        options.deterministic ? this->Rays : ImageReduction(true, ImageReduction::UnmeasuredPaths);
   }
   this->CasterModel = model;
   this->CasterOptions = options;
@@ -163,41 +164,70 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   if (pixels <= 0) {
     return true;
   }
-  vtkRenderWindow* window = renderer->GetRenderWindow();
-  const double rate = window->GetDesiredUpdateRate();
-  ImageReduction& resolution = scene.mode == RenderMode::PathTracing ? this->Paths : this->Rays;
-  const int reduction = resolution.factor(rate, pixels);
-  Frame frame = scene;
-  frame.width = (viewport.width + reduction - 1) / reduction;
-  frame.height = (viewport.height + reduction - 1) / reduction;
-
   std::vector<float> depth;
   if (MayHaveOpaqueDepth(renderer)) {
     depth = ReadOpaqueDepth(renderer, viewport);
     this->Last.depthRead = !depth.empty();
-    if (reduction > 1 && !depth.empty()) {
-      depth = ReduceDepth(depth, viewport, frame.width, frame.height);
-    }
-    frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
   }
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  const double rate = window->GetDesiredUpdateRate();
+  int reduction = this->resolution(scene.mode).factor(rate, pixels);
+  Clock::time_point deadline = this->deadline(rate, reduction);
+  while (!this->render(scene, viewport, depth, reduction, Unless(window, deadline))) {
+    if (Clock::now() < deadline) {
+      return true; // aborted
+    }
+    reduction = std::min(4 * reduction, ImageReduction::Largest);
+    deadline = this->deadline(rate, reduction);
+  }
+  // What follows an interactive picture is the application's business.
+  if (!this->Last.statistics.complete && rate < ImageReduction::StillRate) {
+    this->Refine.request(window);
+  }
+  return this->Blender.blend(renderer, viewport, this->Last.rgba);
+}
+
+/// When a picture is given up for one with fewer pixels, so that the window stays alive whatever a
+/// picture costs.
+FramePainter::Clock::time_point FramePainter::deadline(double rate, int reduction) const
+{
+  const bool waits = rate < ImageReduction::StillRate || this->CasterOptions.deterministic ||
+                     reduction >= ImageReduction::Largest;
+  const std::chrono::duration<double> seconds(1 / rate);
+  return waits ? Clock::time_point::max()
+               : Clock::now() + std::chrono::duration_cast<Clock::duration>(seconds);
+}
+
+/// Renders with 1/reduction of the viewport's width and height; false, and there is no picture,
+/// when it was stopped.
+bool FramePainter::render(const Frame& scene, const Viewport& viewport,
+                          const std::vector<float>& depth, int reduction,
+                          const std::function<bool()>& keepGoing)
+{
+  Frame frame = scene;
+  frame.width = (viewport.width + reduction - 1) / reduction;
+  frame.height = (viewport.height + reduction - 1) / reduction;
+  const bool reducesDepth = reduction > 1 && !depth.empty();
+  const std::vector<float> reduced =
+      reducesDepth ? ReduceDepth(depth, viewport, frame.width, frame.height) : std::vector<float>();
+  frame.opaqueDepth = depth.empty() ? nullptr : (reducesDepth ? reduced : depth).data();
   PaintedFrame& last = this->Last;
+  const bool depthRead = last.depthRead;
   try {
-    last.statistics = this->Caster->render(frame, last.rgba, &last.depth, UnlessAborted(window));
+    last.statistics = this->Caster->render(frame, last.rgba, &last.depth, keepGoing);
   } catch (const Error& error) {
-    this->Last = {}; // half a picture must not be written out later
+    last = {}; // half a picture must not be written out later
     if (error.code() == ErrorCode::Cancelled) {
-      return true;
+      last.depthRead = depthRead;
+      return false;
     }
     throw;
   }
   last.backend = "CPU " + this->Caster->kernel();
   last.reduction = reduction;
-  // What follows an interactive picture is the application's business.
-  if (!last.statistics.complete && rate < ImageReduction::StillRate) {
-    this->Refine.request(window);
-  }
-  resolution.record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
-  return this->Blender.blend(renderer, viewport, last.rgba);
+  this->resolution(frame.mode)
+      .record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
+  return true;
 }
 
 } // namespace inr

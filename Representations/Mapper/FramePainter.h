@@ -10,9 +10,12 @@
 #include "RefinementTimer.h"
 #include "TransferFunctionBuilder.h"
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 class vtkINRDataArray;
 class vtkRenderWindow;
@@ -77,7 +80,16 @@ public:
 
 private:
   void makeRenderer(const ModelPointer& model, const RendererOptions& options);
+  using Clock = std::chrono::steady_clock;
+
   bool draw(const Frame& frame, vtkRenderer* renderer);
+  ImageReduction& resolution(RenderMode mode)
+  {
+    return mode == RenderMode::PathTracing ? this->Paths : this->Rays;
+  }
+  Clock::time_point deadline(double rate, int reduction) const;
+  bool render(const Frame& scene, const Viewport& viewport, const std::vector<float>& depth,
+              int reduction, const std::function<bool()>& keepGoing);
   double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;
 
   std::unique_ptr<Renderer> Caster;
@@ -86,7 +98,7 @@ private:
   TransferFunctionCache TransferFunctions;
   ImageReduction Rays;
   /// Nobody knows what paths cost before some are traced: a thousand samples, or ten.
-  ImageReduction Paths{true, ImageReduction::Largest};
+  ImageReduction Paths{true, ImageReduction::UnmeasuredPaths};
   ImageBlender Blender;
   RefinementTimer Refine;
   PaintedFrame Last;

@@ -19,12 +19,13 @@ public:
 
   /// Frames per second below which a frame is a still one; ParaView asks for 0.002 and 5.
   static constexpr double StillRate = 0.1;
-  static constexpr int Largest = 16;
-  /// What a first interactive frame of rays comes quickly with.
+  static constexpr int Largest = 64; ///< the last resort: a window is then a few hundred pixels
+  /// What a first interactive frame of rays, and one of paths, comes quickly with.
   static constexpr int Unmeasured = 4;
+  static constexpr int UnmeasuredPaths = 16;
 
-  /// The smallest of 1, 2, 4, 8 and 16 by which width and height have to be divided so that a frame
-  /// of `pixels` at full resolution is expected to keep to its time.
+  /// The smallest of 1, 2, 4 ... 64 by which width and height have to be divided so that a frame of
+  /// `pixels` at full resolution is expected to keep to its time.
   int factor(double desiredRate, std::int64_t pixels) const
   {
     if (desiredRate < StillRate) {
@@ -33,10 +34,12 @@ public:
     if (this->Pixels <= 0) {
       return this->First;
     }
+    const double most = ShareOfFrame / desiredRate;
     int factor = 1;
-    while (factor<Largest&& this->expected(static_cast<double>(pixels) / (factor * factor))>
-               ShareOfFrame /
-           desiredRate) {
+    while (factor < Largest) {
+      if (this->expected(static_cast<double>(pixels) / (factor * factor)) <= most) {
+        break;
+      }
       factor *= 2;
     }
     return factor;

@@ -13,6 +13,7 @@
 #include <vtkCubeSource.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
+#include <vtkVolumeProperty.h>
 
 #include <gtest/gtest.h>
 
@@ -73,6 +74,22 @@ TEST(Frames, SayWhatTheyTook)
   EXPECT_GT(one.mapper->GetNumberOfSamples(), 10000);
   EXPECT_EQ(one.mapper->GetImageReduction(), 1);
   EXPECT_EQ(std::string(one.mapper->GetBackendInUse()).substr(0, 4), "CPU ");
+}
+
+TEST(Frames, GiveWayToCoarserOnesWhenTheyComeTooLate)
+{
+  for (const int mode : {0, 1}) { // ray marching, path tracing
+    OneVolume one;
+    one.mapper->SetRenderMode(mode);
+    one.mapper->SetAdaptiveSampling(false);
+    one.mapper->SetSampleDistance(0.001);
+    one.volume->GetProperty()->SetScalarOpacityUnitDistance(mode == 0 ? 1000 : 0.01);
+    one.scene.window->SetDesiredUpdateRate(200);
+    const inr::Image first = one.scene.capture();
+    EXPECT_GT(one.mapper->GetImageReduction(),
+              mode == 0 ? inr::ImageReduction::Unmeasured : inr::ImageReduction::UnmeasuredPaths);
+    EXPECT_GT(*std::max_element(first.pixels.begin(), first.pixels.end()), 0.0f) << mode;
+  }
 }
 
 TEST(Frames, ReadDepthOnlyWhenSomethingOpaqueIsVisible)
@@ -158,7 +175,7 @@ TEST(Frames, AreCoarserWhileInteracting)
   const inr::Image moving = one.scene.capture();
   EXPECT_EQ(one.mapper->GetImageReduction(), inr::ImageReduction::Largest);
   EXPECT_GT(LargestDifference(still, moving), 0);
-  EXPECT_GT(inr::ImagePsnr(still, moving), 20);
+  EXPECT_GT(inr::ImagePsnr(still, moving), 13); // a dozen pixels
   one.scene.window->SetDesiredUpdateRate(0.002);
   EXPECT_EQ(LargestDifference(still, one.scene.capture()), 0);
   EXPECT_EQ(one.mapper->GetImageReduction(), 1);
@@ -170,7 +187,7 @@ TEST(Frames, RespectOpaqueDepthWhileInteracting)
   one.addCube();
   const inr::Image still = one.scene.capture();
   one.scene.window->SetDesiredUpdateRate(1e6);
-  EXPECT_GT(inr::ImagePsnr(still, one.scene.capture()), 20);
+  EXPECT_GT(inr::ImagePsnr(still, one.scene.capture()), 13);
   EXPECT_EQ(one.mapper->GetImageReduction(), inr::ImageReduction::Largest);
 }
 
@@ -234,7 +251,8 @@ TEST(ImageReduction, IsAsSmallAsTheRateAllows)
   EXPECT_EQ(reduction.factor(5, 151), 2);
   EXPECT_EQ(reduction.factor(5, 601), 4);
   EXPECT_EQ(reduction.factor(5, 9600), 8);
-  EXPECT_EQ(reduction.factor(5, 1000000), 16);
+  EXPECT_EQ(reduction.factor(5, 9601), 16);
+  EXPECT_EQ(reduction.factor(5, 1000000), inr::ImageReduction::Largest);
 }
 
 TEST(ImageReduction, ExpectsFinerPicturesToCostMoreForEachPixel)

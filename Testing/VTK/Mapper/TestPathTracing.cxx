@@ -194,7 +194,7 @@ TEST(PathTracing, DoesNotGoByWhatRaysCost)
     return one.mapper->GetImageReduction();
   };
   EXPECT_EQ(reduction(vtkINRVolumeMapper::RAY_MARCHING), inr::ImageReduction::Unmeasured);
-  EXPECT_EQ(reduction(vtkINRVolumeMapper::PATH_TRACING), inr::ImageReduction::Largest);
+  EXPECT_EQ(reduction(vtkINRVolumeMapper::PATH_TRACING), inr::ImageReduction::UnmeasuredPaths);
   one.mapper->DeterministicOn(); // always the same
   for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(reduction(vtkINRVolumeMapper::PATH_TRACING), inr::ImageReduction::Unmeasured);
