@@ -11,8 +11,13 @@ namespace inr {
 
 namespace {
 
-/// Bricks inferred in one go: they share the threads, and time and abort are looked at in between.
-constexpr std::int64_t BricksAtOnce = 2;
+/// Bricks inferred in one go, outside of the memory of caches; time and abort are looked at in
+/// between. Large ones have layers enough for all threads.
+std::int64_t BricksAtOnce(const Hierarchy& hierarchy)
+{
+  constexpr std::int64_t large = std::int64_t{1} << 18; // voxels
+  return hierarchy.voxelsPerBrick() < large ? 2 : 1;
+}
 
 /// Bricks in the loader's queue at most, 0 where there is no room for more than one.
 std::int64_t LongestQueueIn(const Hierarchy& hierarchy, std::int64_t bytes)
@@ -85,12 +90,13 @@ BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Are
   }
   const std::int64_t voxels = this->Cache.hierarchy().voxelsPerBrick();
   const auto count = static_cast<std::int64_t>(keys.size());
-  std::vector<float> values(static_cast<std::size_t>(BricksAtOnce * voxels));
-  for (std::int64_t first = 0; first < count; first += BricksAtOnce) {
+  const std::int64_t atOnce = BricksAtOnce(this->Cache.hierarchy());
+  std::vector<float> values(static_cast<std::size_t>(atOnce * voxels));
+  for (std::int64_t first = 0; first < count; first += atOnce) {
     if (first > 0 && keepGoing && !keepGoing()) { // never without progress
       return {first, false};
     }
-    const std::int64_t batch = std::min(BricksAtOnce, count - first);
+    const std::int64_t batch = std::min(atOnce, count - first);
     this->Source->infer(keys.data() + first, batch, values.data(), arena);
     for (std::int64_t k = 0; k < batch; ++k) {
       const BrickKey key = keys[static_cast<std::size_t>(first + k)];

@@ -178,7 +178,11 @@ public:
   ///@}
 
   ///@{
-  /** Voxels per side of a cached brick. Default 40. A change empties the cache. */
+  /**
+   * Voxels per side of a cached brick. Default 40. A change empties the cache. Bricks are decoded
+   * whole, the first one before there is a picture: one of 256 voxels takes seconds, and 64 MiB
+   * besides the cache.
+   */
   vtkSetClampMacro(BrickSize, int, 4, 1024);
   vtkGetMacro(BrickSize, int);
   ///@}
