@@ -126,6 +126,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
               "float textures.";
   }
   this->Last.seconds = SecondsSince(start);
+  this->refineLater(renderer->GetRenderWindow(), settings.mode);
   return problem;
 }
 
@@ -154,7 +155,28 @@ double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) c
   if (!RefinementTimer::canRefine(window)) {
     return 0;
   }
-  return stillTimeLimit < 0 ? glance : stillTimeLimit;
+  const double limit = stillTimeLimit < 0 ? glance : stillTimeLimit;
+  // Nobody waits for what follows the first look; the application's events do.
+  constexpr double piece = 0.1;
+  return this->Refine.isPending() ? std::min(limit, piece) : limit;
+}
+
+void FramePainter::refineLater(vtkRenderWindow* window, RenderMode mode)
+{
+  if (window->GetDesiredUpdateRate() >= ImageReduction::StillRate) {
+    this->Refine.postpone(); // what follows an interactive picture is the application's business
+    return;
+  }
+  if (!RefinementTimer::canRefine(window)) {
+    return; // captured; what is on the screen goes on afterwards
+  }
+  if (this->Last.statistics.complete) {
+    this->Refine.cancel();
+    return;
+  }
+  // Bricks are decoded in the pause, too; paths are traced within pictures only.
+  const double share = mode == RenderMode::PathTracing ? 0.25 : 1;
+  this->Refine.request(window, std::clamp(share * this->Last.seconds, 0.02, 0.5));
 }
 
 bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
@@ -179,10 +201,6 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
     }
     reduction = std::min(4 * reduction, ImageReduction::Largest);
     deadline = this->deadline(rate, reduction);
-  }
-  // What follows an interactive picture is the application's business.
-  if (!this->Last.statistics.complete && rate < ImageReduction::StillRate) {
-    this->Refine.request(window);
   }
   return this->Blender.blend(renderer, viewport, this->Last.rgba);
 }

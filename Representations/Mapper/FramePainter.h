@@ -15,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 class vtkINRDataArray;
@@ -65,6 +66,8 @@ struct PaintedFrame
 class FramePainter
 {
 public:
+  /// `mayRefine`: see RefinementTimer.
+  explicit FramePainter(std::function<bool()> mayRefine) : Refine(std::move(mayRefine)) {}
   /// Draws one frame and returns an empty text, or draws nothing and returns why. A frame aborted
   /// by the render window is not drawn and not an error. Throws what Renderer throws.
   std::string paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
@@ -91,6 +94,8 @@ private:
   bool render(const Frame& scene, const Viewport& viewport, const std::vector<float>& depth,
               int reduction, const std::function<bool()>& keepGoing);
   double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;
+  /// Sees to it that an unfinished still picture goes on.
+  void refineLater(vtkRenderWindow* window, RenderMode mode);
 
   std::unique_ptr<Renderer> Caster;
   ModelPointer CasterModel;

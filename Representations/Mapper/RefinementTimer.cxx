@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RefinementTimer.h"
 
+#include "ImageReduction.h"
+
 #include <vtkCommand.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 
+#include <utility>
+
 namespace inr {
 
 namespace {
-constexpr unsigned long DelayInMilliseconds = 10;
+constexpr double Patience = 0.2; ///< seconds until a busy application is asked again
 }
 
-RefinementTimer::RefinementTimer()
+RefinementTimer::RefinementTimer(std::function<bool()> mayRefine) : MayRefine(std::move(mayRefine))
 {
   this->Command->SetClientData(this);
-  this->Command->SetCallback(&RefinementTimer::OnTimer);
+  this->Command->SetCallback(&RefinementTimer::OnEvent);
 }
 
 bool RefinementTimer::canRefine(vtkRenderWindow* window)
@@ -24,44 +28,82 @@ bool RefinementTimer::canRefine(vtkRenderWindow* window)
          window->GetSwapBuffers();
 }
 
-void RefinementTimer::request(vtkRenderWindow* window)
+void RefinementTimer::request(vtkRenderWindow* window, double pause)
 {
-  if (this->Timer != 0) {
-    return;
-  }
-  this->Interactor = window->GetInteractor();
-  this->Observer = this->Interactor->AddObserver(vtkCommand::TimerEvent, this->Command);
-  this->Timer = this->Interactor->CreateOneShotTimer(DelayInMilliseconds);
-  if (this->Timer == 0) { // no event loop to tell the time
-    this->cancel();
+  this->start(window->GetInteractor(), pause);
+}
+
+void RefinementTimer::postpone()
+{
+  if (this->Pending && this->Interactor) {
+    this->start(this->Interactor, Patience);
   }
 }
 
 void RefinementTimer::cancel()
 {
+  this->stop();
   if (this->Interactor) {
-    if (this->Timer != 0) {
-      this->Interactor->DestroyTimer(this->Timer);
-    }
-    this->Interactor->RemoveObserver(this->Observer);
+    this->Interactor->RemoveObserver(this->Command);
   }
   this->Interactor = nullptr;
+  this->Pending = false;
+}
+
+void RefinementTimer::start(vtkRenderWindowInteractor* interactor, double pause)
+{
+  this->stop();
+  if (this->Interactor != interactor) {
+    this->cancel();
+    this->Interactor = interactor;
+    this->Interacting = false;
+    for (const auto event : {vtkCommand::TimerEvent, vtkCommand::StartInteractionEvent,
+                             vtkCommand::EndInteractionEvent}) {
+      interactor->AddObserver(event, this->Command);
+    }
+  }
+  this->Timer = interactor->CreateOneShotTimer(static_cast<unsigned long>(pause * 1000));
+  this->Pending = this->Timer != 0; // else there is no event loop to tell the time
+}
+
+void RefinementTimer::stop()
+{
+  if (this->Interactor && this->Timer != 0) {
+    this->Interactor->DestroyTimer(this->Timer);
+  }
   this->Timer = 0;
 }
 
-void RefinementTimer::OnTimer(vtkObject* caller, unsigned long, void* self, void* timer)
+bool RefinementTimer::isBusy() const
+{
+  // VTK's styles have the rate of interactive pictures as long as a button is down; ParaView says
+  // so by events.
+  vtkRenderWindow* window = this->Interactor->GetRenderWindow();
+  return this->Interacting || !window ||
+         window->GetDesiredUpdateRate() >= ImageReduction::StillRate || !this->MayRefine();
+}
+
+void RefinementTimer::OnEvent(vtkObject*, unsigned long event, void* self, void* data)
 {
   auto* refinement = static_cast<RefinementTimer*>(self);
-  if (!timer || *static_cast<int*>(timer) != refinement->Timer) {
+  if (event != vtkCommand::TimerEvent) {
+    refinement->Interacting = event == vtkCommand::StartInteractionEvent;
+  } else if (data && refinement->Timer != 0 && *static_cast<int*>(data) == refinement->Timer) {
+    refinement->fire();
+  }
+}
+
+void RefinementTimer::fire()
+{
+  // VTK's interactor for X is going through its timers: the one that fires must stay until then.
+  vtkRenderWindowInteractor* interactor = this->Interactor;
+  interactor->DestroyTimer(this->Fired);
+  this->Fired = std::exchange(this->Timer, 0);
+  if (this->isBusy()) {
+    this->start(interactor, Patience);
     return;
   }
-  // VTK's interactor for X is going through its timers: the one that fires must stay until then.
-  auto* interactor = static_cast<vtkRenderWindowInteractor*>(caller);
-  interactor->DestroyTimer(refinement->Fired);
-  refinement->Fired = refinement->Timer;
-  refinement->Timer = 0;
-  refinement->cancel();
-  // Nothing of `refinement` from here on: rendering may delete the mapper.
+  // Nothing of this from here on: rendering may delete the mapper.
   interactor->Render();
 }
 

@@ -5,6 +5,8 @@
 #include <vtkNew.h>
 #include <vtkWeakPointer.h>
 
+#include <functional>
+
 class vtkObject;
 class vtkRenderWindow;
 class vtkRenderWindowInteractor;
@@ -13,11 +15,12 @@ namespace inr {
 
 /// Has a window rendered again a moment later, through its interactor: that way it is the
 /// application that renders, with everything it does around a picture, and only when its event loop
-/// is idle.
+/// is idle. Waits while somebody interacts with the window or the application says that it is busy.
 class RefinementTimer
 {
 public:
-  RefinementTimer();
+  /// `mayRefine` is asked right before a picture; false: again a little later.
+  explicit RefinementTimer(std::function<bool()> mayRefine);
   ~RefinementTimer() { this->cancel(); }
   RefinementTimer(const RefinementTimer&) = delete;
   RefinementTimer& operator=(const RefinementTimer&) = delete;
@@ -25,16 +28,26 @@ public:
   /// Whether `window` belongs to an application that can be asked. False while the picture is being
   /// captured: a screenshot has no later.
   static bool canRefine(vtkRenderWindow* window);
-  /// One more picture; does nothing while one is already asked for.
-  void request(vtkRenderWindow* window);
+  /// One more picture in `pause` seconds, instead of one that was asked for before.
+  void request(vtkRenderWindow* window, double pause);
+  /// Whether a picture is asked for, or being made because it was.
+  bool isPending() const { return this->Pending; }
+  /// If one is asked for, not before somebody has stopped to ask for interactive ones.
+  void postpone();
   void cancel();
 
 private:
-  static void OnTimer(vtkObject* caller, unsigned long event, void* self, void* timer);
+  static void OnEvent(vtkObject* caller, unsigned long event, void* self, void* data);
+  void fire();
+  bool isBusy() const;
+  void start(vtkRenderWindowInteractor* interactor, double pause);
+  void stop();
 
+  std::function<bool()> MayRefine;
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
   vtkNew<vtkCallbackCommand> Command;
-  unsigned long Observer = 0;
+  bool Pending = false;
+  bool Interacting = false; ///< a mouse button is down, whether the mouse moves or not
   int Timer = 0;
   int Fired = 0; ///< the timer before
 };

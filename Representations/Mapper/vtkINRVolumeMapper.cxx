@@ -19,11 +19,19 @@ vtkStandardNewMacro(vtkINRVolumeMapper);
 
 struct vtkINRVolumeMapper::Internals
 {
+  explicit Internals(vtkINRVolumeMapper* mapper)
+      : Painter([mapper] {
+          bool mayRefine = true;
+          mapper->InvokeEvent(RefineEvent, &mayRefine);
+          return mayRefine;
+        })
+  {}
+
   inr::FramePainter Painter;
   std::string LastError;
 };
 
-vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>()) {}
+vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>(this)) {}
 vtkINRVolumeMapper::~vtkINRVolumeMapper() = default;
 
 void vtkINRVolumeMapper::SetCacheMode(int mode)

@@ -40,6 +40,7 @@
 
 #include "vtkINRMapperModule.h" // for export macro
 
+#include <vtkCommand.h> // for RefineEvent
 #include <vtkVolumeMapper.h>
 
 #include <memory> // for std::unique_ptr
@@ -219,13 +220,20 @@ public:
   ///@{
   /**
    * Seconds after which a still frame is shown with what is there and refined in the following
-   * ones, which the mapper asks the window's interactor for. 0: a still frame is complete, however
-   * long it takes. Below 0, the default: 0.5 where the window has an interactor, else 0.
-   * Screenshots and offscreen windows are always complete.
+   * ones, which the mapper asks the window's interactor for: short ones, with pauses for events in
+   * between, and none while somebody interacts or RefineEvent is answered with no. 0: a still frame
+   * is complete, however long it takes. Below 0, the default: 0.5 where the window has an
+   * interactor, else 0. Screenshots and offscreen windows are always complete.
    */
   vtkSetMacro(StillTimeLimit, double);
   vtkGetMacro(StillTimeLimit, double);
   ///@}
+
+  /**
+   * Invoked before the mapper has its window refine a picture; the call data are a bool* that an
+   * observer in a busy application sets to false. It is then asked again a little later.
+   */
+  enum { RefineEvent = vtkCommand::UserEvent + 73 };
 
   ///@{
   /** Threads that compute a frame; 0, the default, means every core this process may use. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRVolumeRepresentation.h"
 
+#include "ClientWatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
@@ -16,11 +17,14 @@
 vtkStandardNewMacro(vtkINRVolumeRepresentation);
 
 vtkINRVolumeRepresentation::vtkINRVolumeRepresentation()
+    : Client(std::make_unique<inr::ClientWatch>())
 {
   this->VolumeMapper.TakeReference(vtkINRVolumeMapper::New());
   this->Actor.TakeReference(vtkINRLODVolume::New());
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
+  this->VolumeMapper->AddObserver(vtkINRVolumeMapper::RefineEvent, this,
+                                  &vtkINRVolumeRepresentation::OnRefine);
 }
 
 vtkINRVolumeRepresentation::~vtkINRVolumeRepresentation() = default;
@@ -39,6 +43,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
   } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
     vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
   } else if (request == vtkPVView::REQUEST_RENDER()) {
+    this->Client->update();
     this->UpdateMapperParameters();
     this->ReportColouring();
     this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
@@ -85,6 +90,13 @@ void vtkINRVolumeRepresentation::ReportColouring()
     vtkErrorMacro(<< problem);
   }
   this->LastProblem = problem;
+}
+
+void vtkINRVolumeRepresentation::OnRefine(vtkObject*, unsigned long, void* mayRefine)
+{
+  if (this->Client->isBusy()) {
+    *static_cast<bool*>(mayRefine) = false;
+  }
 }
 
 vtkINRVolumeMapper* vtkINRVolumeRepresentation::GetMapper()

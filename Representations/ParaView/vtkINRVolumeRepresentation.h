@@ -7,6 +7,7 @@
  * presents to filters. Colour, opacity and placement are those of ParaView's own volume
  * representation. The data never leave the process that has them: where that is not the process
  * that draws, the outline is shown. A colouring that leaves the picture blank is reported once.
+ * Pictures are not refined while an animation plays or a modal dialog is open.
  */
 #ifndef vtkINRVolumeRepresentation_h
 #define vtkINRVolumeRepresentation_h
@@ -14,9 +15,14 @@
 #include "vtkINRRepresentationsModule.h" // for the export macro
 #include "vtkImageVolumeRepresentation.h"
 
+#include <memory> // for Client
 #include <string> // for LastProblem
 
 class vtkINRVolumeMapper;
+
+namespace inr {
+class ClientWatch;
+}
 
 class VTKINRREPRESENTATIONS_EXPORT vtkINRVolumeRepresentation : public vtkImageVolumeRepresentation
 {
@@ -69,7 +75,9 @@ private:
   void DeliverOutline(vtkInformation* in, vtkInformation* out);
   std::string WhyBlank();
   void ReportColouring();
+  void OnRefine(vtkObject* mapper, unsigned long event, void* mayRefine);
 
+  std::unique_ptr<inr::ClientWatch> Client;
   std::string LastProblem;
 };
 

@@ -8,4 +8,4 @@ home=$(mktemp -d)
 trap 'rm -rf "$home"' EXIT
 HOME=$home XDG_RUNTIME_DIR=$home timeout --kill-after=10 120 "$paraview" \
   --plugin-search-paths="$plugins" --plugins=INRVolume --dr --data-directory="$data" \
-  --test-directory="$output" --test-script="$script" "$@" --exit
+  --test-directory="$output" --test-script="$script" "$@"

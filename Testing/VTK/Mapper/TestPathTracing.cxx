@@ -255,6 +255,61 @@ TEST(PathTracing, WindowsClearUpWhileTheyAreIdle)
   EXPECT_TRUE(one.mapper->GetConverged());
 }
 
+TEST(PathTracing, WindowsOfBusyApplicationsClearUpLater)
+{
+  Traced one;
+  one.mapper->SetAmbientLight(1, 1, 1);
+  one.mapper->SetSamplesPerPixel(6);
+  one.mapper->SetStillTimeLimit(1e-3);
+  one.scene.window->SetOffScreenRendering(0);
+  vtkNew<vtkRenderWindowInteractor> interactor;
+  interactor->SetRenderWindow(one.scene.window);
+  interactor->Initialize();
+  struct Application
+  {
+    vtkINRVolumeMapper* mapper = nullptr;
+    int asked = 0;
+    int refined = 0;
+    int refinedWhileBusy = 0;
+    std::chrono::steady_clock::time_point end =
+        std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    bool isBusy() const { return this->asked < 3; }
+  } application;
+  application.mapper = one.mapper;
+  vtkNew<vtkCallbackCommand> answer;
+  answer->SetClientData(&application);
+  answer->SetCallback([](vtkObject*, unsigned long, void* data, void* mayRefine) {
+    auto* asked = static_cast<Application*>(data);
+    *static_cast<bool*>(mayRefine) = !asked->isBusy();
+    ++asked->asked;
+  });
+  one.mapper->AddObserver(vtkINRVolumeMapper::RefineEvent, answer);
+  one.scene.window->Render();
+  vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&application);
+  count->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+    auto* counted = static_cast<Application*>(data);
+    ++counted->refined;
+    counted->refinedWhileBusy += counted->asked > 0 && counted->isBusy();
+  });
+  one.scene.window->AddObserver(vtkCommand::EndEvent, count);
+  vtkNew<vtkCallbackCommand> look;
+  look->SetClientData(&application);
+  look->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    const auto* watched = static_cast<Application*>(data);
+    if (watched->mapper->GetConverged() || std::chrono::steady_clock::now() > watched->end) {
+      static_cast<vtkRenderWindowInteractor*>(caller)->TerminateApp();
+    }
+  });
+  interactor->AddObserver(vtkCommand::TimerEvent, look);
+  interactor->CreateRepeatingTimer(20);
+  interactor->Start();
+  EXPECT_TRUE(one.mapper->GetConverged());
+  EXPECT_GT(application.asked, 3);
+  EXPECT_GT(application.refined, 0);
+  EXPECT_EQ(application.refinedWhileBusy, 0);
+}
+
 TEST(PathTracing, EqualsItsBaseline)
 {
   Traced one;
