@@ -170,7 +170,8 @@ void FramePainter::refineLater(vtkRenderWindow* window, RenderMode mode)
   if (!RefinementTimer::canRefine(window)) {
     return; // captured; what is on the screen goes on afterwards
   }
-  if (this->Last.statistics.complete) {
+  const bool unfinished = !this->Last.rgba.pixels.empty() && !this->Last.statistics.complete;
+  if (!unfinished) {
     this->Refine.cancel();
     return;
   }
@@ -202,7 +203,11 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
     reduction = std::min(4 * reduction, ImageReduction::Largest);
     deadline = this->deadline(rate, reduction);
   }
-  return this->Blender.blend(renderer, viewport, this->Last.rgba);
+  if (!this->Blender.blend(renderer, viewport, this->Last.rgba)) {
+    return false;
+  }
+  this->Last.converged = this->Last.statistics.complete;
+  return true;
 }
 
 /// When a picture is given up for one with fewer pixels, so that the window stays alive whatever a

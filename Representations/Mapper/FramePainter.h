@@ -60,6 +60,7 @@ struct PaintedFrame
   double seconds = 0;  ///< from the mapper's call to the blended picture
   int reduction = 0;   ///< viewport size / image size
   bool depthRead = false;
+  bool converged = false; ///< shown, and complete
 };
 
 /// Turns VTK's scene into a Frame, has it rendered and blends the picture into the window.

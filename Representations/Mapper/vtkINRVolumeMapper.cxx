@@ -12,7 +12,9 @@
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 
 vtkStandardNewMacro(vtkINRVolumeMapper);
@@ -61,17 +63,17 @@ vtkIdType vtkINRVolumeMapper::GetNumberOfClampedSamples() const
 
 int vtkINRVolumeMapper::GetImageReduction() const { return this->Self->Painter.last().reduction; }
 
-bool vtkINRVolumeMapper::GetConverged() const
-{
-  return this->Self->Painter.last().statistics.complete;
-}
+bool vtkINRVolumeMapper::GetConverged() const { return this->Self->Painter.last().converged; }
 
 double vtkINRVolumeMapper::GetCacheHitRate() const
 {
-  const inr::FrameStatistics& frame = this->Self->Painter.last().statistics;
-  return frame.samples > 0
-             ? 1.0 - static_cast<double>(frame.missed) / static_cast<double>(frame.samples)
-             : 0.0;
+  const inr::PaintedFrame& last = this->Self->Painter.last();
+  if (last.rgba.pixels.empty()) {
+    return 0;
+  }
+  const inr::FrameStatistics& frame = last.statistics;
+  return 1.0 - static_cast<double>(frame.missed) /
+                   static_cast<double>(std::max<std::int64_t>(frame.samples, 1));
 }
 
 double vtkINRVolumeMapper::GetCacheUsed() const

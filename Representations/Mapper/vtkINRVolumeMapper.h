@@ -275,10 +275,11 @@ public:
 
   ///@{
   /**
-   * About the last frame and the cache: whether every sample came from the level it asked for and,
-   * of path tracing, SamplesPerPixel were taken; the part of the samples that did (0 to 1), and the
-   * memory in MiB that the caches of all mappers of the process have in use now (0 while this one
-   * has none).
+   * About the last frame and the cache: whether it was shown and every sample came from the level
+   * it asked for and, of path tracing, SamplesPerPixel were taken (false before the first frame and
+   * when one is refused or aborted); the part of the samples that did (0 to 1; 1 where the view
+   * misses the volume, for nothing is missing, and 0 when nothing was drawn); and the memory in MiB
+   * that the caches of all mappers of the process have in use now (0 while this one has none).
    */
   bool GetConverged() const;
   double GetCacheHitRate() const;

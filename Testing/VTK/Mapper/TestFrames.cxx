@@ -11,6 +11,7 @@
 #include <vtkActor2D.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCubeSource.h>
+#include <vtkPlane.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkVolumeProperty.h>
@@ -191,6 +192,26 @@ TEST(Frames, RespectOpaqueDepthWhileInteracting)
   EXPECT_EQ(one.mapper->GetImageReduction(), inr::ImageReduction::Largest);
 }
 
+TEST(Frames, AreNotConvergedBeforeThereIsOne)
+{
+  OneVolume one;
+  EXPECT_FALSE(one.mapper->GetConverged());
+  EXPECT_EQ(one.mapper->GetCacheHitRate(), 0);
+}
+
+TEST(Frames, MissNothingWhereThereIsNothingToSee)
+{
+  OneVolume one;
+  vtkNew<vtkPlane> beyond;
+  beyond->SetOrigin(1e6, 0, 0);
+  beyond->SetNormal(1, 0, 0);
+  one.mapper->AddClippingPlane(beyond);
+  one.scene.capture();
+  EXPECT_EQ(one.mapper->GetNumberOfSamples(), 0);
+  EXPECT_TRUE(one.mapper->GetConverged());
+  EXPECT_EQ(one.mapper->GetCacheHitRate(), 1);
+}
+
 TEST(Frames, CanBeAborted)
 {
   OneVolume one;
@@ -202,6 +223,7 @@ TEST(Frames, CanBeAborted)
   const unsigned long tag = one.scene.window->AddObserver(vtkCommand::AbortCheckEvent, abort);
   const inr::Image aborted = one.scene.capture();
   EXPECT_EQ(*std::max_element(aborted.pixels.begin(), aborted.pixels.end()), 0);
+  EXPECT_FALSE(one.mapper->GetConverged());
   EXPECT_EQ(one.mapper->GetNumberOfSamples(), 0);
   EXPECT_EQ(messages.errors, 0);
 

@@ -39,6 +39,8 @@ protected:
   {
     EXPECT_FALSE(this->draws());
     EXPECT_FALSE(this->draws());
+    EXPECT_FALSE(this->mapper->GetConverged());
+    EXPECT_EQ(this->mapper->GetCacheHitRate(), 0);
     EXPECT_EQ(this->messages.errors, 1);
     EXPECT_NE(this->messages.last.find(word), std::string::npos) << this->messages.last;
   }
@@ -46,6 +48,7 @@ protected:
   void expectDrawn()
   {
     EXPECT_TRUE(this->draws());
+    EXPECT_TRUE(this->mapper->GetConverged());
     EXPECT_EQ(this->messages.errors, 0) << this->messages.last;
   }
 
