@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSMINRRepresentationProxy.h"
+
+#include "vtkObjectFactory.h"
+#include "vtkPVSession.h"
+
+vtkStandardNewMacro(vtkSMINRRepresentationProxy);
+
+void vtkSMINRRepresentationProxy::UpdatePropertyInformationInternal(vtkSMProperty* property)
+{
+  // A session without a server answers itself wherever it is told to ask.
+  const vtkTypeUInt32 everywhere = this->Location;
+  this->Location = everywhere & ~vtkTypeUInt32{vtkPVSession::CLIENT};
+  this->Superclass::UpdatePropertyInformationInternal(property);
+  this->Location = everywhere;
+}

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Connected to a server, the panel shows what the server's mapper says, for it is the one that draws.
+The argument is the server's port."""
+import os
+import sys
+
+from paraview import simple
+from pvtest import MODEL, check, load_plugin, look_at, picture, show_view
+
+simple.Connect("localhost", int(sys.argv[1]))
+simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=True, ns=vars(simple))
+load_plugin()
+view = show_view()
+view.RemoteRenderThreshold = 0
+display = simple.Show(simple.OpenDataFile(MODEL), view)
+look_at(view)
+
+
+def value(name):
+    display.UpdatePropertyInformation()
+    return display.GetPropertyValue(name)
+
+
+check(value("Converged") == 0, "converged before the first picture")
+check(picture(view, "server").std() > 0.05, "nothing is shown")
+check(value("Converged") == 1, "a still picture is not converged")
+check(value("CacheHitRate") == 1, "a still picture has misses:", value("CacheHitRate"))
+check(value("CacheUsed") > 0, "no cache in use")
+check(value("FrameTime") > 0, "no time taken")
+check(value("BackendInUse").startswith("CPU "), "drawn by", value("BackendInUse"))
+
+# A new cache, and a picture in a limited time.
+display.BrickSize = 12
+display.LevelOfDetailScale = 0
+view.SMProxy.InteractiveRender()
+check(value("Converged") == 0, "all bricks came in one interactive picture")
+check(value("CacheHitRate") < 1, "nothing is missing in an interactive picture")
+simple.Disconnect()
+os._exit(0)

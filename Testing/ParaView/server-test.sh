@@ -1,0 +1,20 @@
+#!/bin/bash
+# server-test.sh SCRIPT PVPYTHON PVSERVER [LAUNCHER...]: runs SCRIPT PORT in PVPYTHON while PVSERVER,
+# started by LAUNCHER, listens to PORT.
+set -u
+script=$1 pvpython=$2 pvserver=$3
+shift 3
+log=$(mktemp)
+port=$((11000 + $$ % 20000))
+"$@" "$pvserver" --server-port="$port" > "$log" 2>&1 &
+server=$!
+trap 'kill "$server" 2> /dev/null; wait "$server" 2> /dev/null; rm -f "$log"' EXIT
+for _ in $(seq 600); do
+  grep -q "Accepting connection" "$log" && break
+  kill -0 "$server" 2> /dev/null || break
+  sleep 0.1
+done
+timeout --kill-after=10 200 "$pvpython" "$script" "$port"
+status=$?
+[ "$status" -eq 0 ] || cat "$log"
+exit "$status"
