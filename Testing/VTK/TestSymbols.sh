@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # TestSymbols.sh FOLDER: our libraries share the host's process, so they show nothing but VTK
-# classes, their factories and wrappers, and the plugin's entry points.
+# classes (vtkSM...: ParaView's proxies), their factories and wrappers, and the plugin's entry points.
 set -eu
-allowed='^(vtkINR|pv_plugin_|INRVolume|real_initvtk|PyInit_|PyV[tT]K|(_init|_fini|_edata|_end|__bss_start)$)'
+allowed='^(vtk(SM)?INR|pv_plugin_|INRVolume|real_initvtk|PyInit_|PyV[tT]K|(_init|_fini|_edata|_end|__bss_start)$)'
 # Weak ones are not all ours to hide (templates of the standard library), but none may belong to Core
 # or to a library that we link statically.
 hidden='^_Z[A-Z]*N?[KVrO]*(3inr|3tbb|8nlohmann|[0-9]+Imf_|[0-9]+Imath_|3glm)'
