@@ -5,14 +5,32 @@
 #include "Core/Random.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <iomanip>
+#include <sstream>
 #include <string>
 
 namespace inr {
 
 namespace {
 constexpr auto Word = static_cast<std::int64_t>(sizeof(std::uint64_t));
+
+/// Hundredths, so that what is said to be enough is.
+std::string InMebibytes(std::int64_t bytes, double (*round)(double))
+{
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2)
+       << round(static_cast<double>(bytes) * 100 / (1 << 20)) / 100;
+  return text.str();
 }
+
+std::string SizeOf(const glm::ivec3& voxels)
+{
+  return std::to_string(voxels.x) + " x " + std::to_string(voxels.y) + " x " +
+         std::to_string(voxels.z);
+}
+} // namespace
 
 std::int64_t BrickCache::bytesPerBrick(const Hierarchy& hierarchy, CachePrecision precision)
 {
@@ -41,10 +59,11 @@ std::int64_t BrickCache::capacityFor(const Hierarchy& hierarchy, CachePrecision 
   const std::int64_t capacity = (bytes - PageTable::bytesFor(0)) / each;
   if (capacity < FewestBricks) {
     throw Error(ErrorCode::InvalidArgument,
-                "a cache of " + std::to_string(bytes) + " bytes does not hold " +
-                    std::to_string(FewestBricks) + " bricks; it needs at least " +
-                    std::to_string(PageTable::bytesFor(0) + FewestBricks * each) +
-                    ", or smaller bricks");
+                "a cache of " + InMebibytes(bytes, std::floor) + " MiB does not hold " +
+                    std::to_string(FewestBricks) + " bricks of " + SizeOf(hierarchy.brickDims()) +
+                    " voxels; make it at least " +
+                    InMebibytes(PageTable::bytesFor(0) + FewestBricks * each, std::ceil) +
+                    " MiB large, or the bricks smaller");
   }
   return std::min({capacity, std::max(most, FewestBricks), enough});
 }

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <set>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -43,6 +44,27 @@ TEST_F(BrickCacheTest, StaysWithinItsBudget)
     }
   }
   EXPECT_THROW(inr::BrickCache(this->Levels, inr::CachePrecision::Float32, 2000), inr::Error);
+}
+
+TEST(BrickCacheMessages, SayHowMuchIsEnough)
+{
+  const inr::Hierarchy levels(glm::i64vec3(256), 40);
+  constexpr double mebibyte = 1 << 20;
+  std::string message;
+  try {
+    inr::BrickCache(levels, inr::CachePrecision::Bits16, 1 << 19);
+  } catch (const inr::Error& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("0.50 MiB"), std::string::npos) << message;
+  const std::size_t advice = message.find("at least ");
+  ASSERT_NE(advice, std::string::npos) << message;
+  const double enough = std::stod(message.substr(advice + 9));
+  EXPECT_NO_THROW(inr::BrickCache(levels, inr::CachePrecision::Bits16,
+                                  static_cast<std::int64_t>(enough * mebibyte)));
+  EXPECT_THROW(inr::BrickCache(levels, inr::CachePrecision::Bits16,
+                               static_cast<std::int64_t>((enough - 0.02) * mebibyte)),
+               inr::Error);
 }
 
 TEST_F(BrickCacheTest, IsNoLargerThanTheVolume)
