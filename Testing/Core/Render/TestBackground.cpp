@@ -127,13 +127,13 @@ TEST(Background, CompleteFramesAreTheSameWhateverIsOnItsWay)
   }
 }
 
-/// Waits until nothing more is asked of `field`.
+/// Waits until nothing more is asked of `field`; on a busy machine those who ask come last.
 void Settle(const Field& field)
 {
   std::int64_t asked = -1;
-  for (int k = 0; k < 600 && field.asked() != asked; ++k) {
+  for (int k = 0; k < 120 && field.asked() != asked; ++k) {
     asked = field.asked();
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
   }
 }
 
