@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""In ParaView's window, nobody clicking: pictures are refined until they have converged, and neither
-while an animation plays nor under a modal dialog. GuiRefinement.xml opens that."""
+"""In ParaView's window, nobody clicking: pictures are refined until they have converged, but not
+while an animation plays, a modal dialog is open or a mouse button is down. GuiRefinement.xml opens
+the dialog."""
 import ctypes
 import os
 import sys
@@ -22,6 +23,7 @@ view = simple.GetActiveViewOrCreate("RenderView")
 display = simple.Show(simple.OpenDataFile(MODEL), view)
 simple.ResetCamera(view)
 window = view.GetRenderWindow()
+interactor = window.GetInteractor()
 pictures = []
 window.AddObserver("EndEvent", lambda *_: pictures.append(time.time()))
 
@@ -66,6 +68,15 @@ def pauses_under_a_dialog():
         yield
 
 
+def pauses_while_a_button_is_down():
+    interactor.InvokeEvent("StartInteractionEvent")
+    start = time.time()
+    while time.time() < start + 1.5:
+        yield
+    check(pictures_since(start) == 0, "refined while a button is down")
+    interactor.InvokeEvent("EndInteractionEvent")
+
+
 def converges_and_stops():
     display.RenderMode = "Ray Marching"
     display.BrickSize = 20
@@ -97,6 +108,8 @@ def watch():
     """Yields between two looks at the window."""
     yield from pauses_under_a_dialog()
     yield from refines("after the dialog")
+    yield from pauses_while_a_button_is_down()
+    yield from refines("after a click")
     yield from converges_and_stops()
     show_endless()
     pauses_while_an_animation_plays()
@@ -121,6 +134,5 @@ def look(*_):
         check(False, problem)
 
 
-interactor = window.GetInteractor()
 interactor.AddObserver("TimerEvent", look)
 interactor.CreateRepeatingTimer(50)
