@@ -21,15 +21,24 @@ def cpu_name():
             f"{' '.join(sets)})")
 
 
+def output(*command):
+    return subprocess.run(command, capture_output=True, text=True, check=True,
+                          cwd=FOLDER.parent).stdout.strip()
+
+
+def commit():
+    """What was measured; "-dirty" where anything but these files differs from the commit."""
+    changes = output("git", "status", "--porcelain", "--untracked-files=no", "--", ":/",
+                     ":(exclude)results")
+    return output("git", "rev-parse", "--short", "HEAD") + ("-dirty" if changes else "")
+
+
 def context():
-    def first_line(*command):
-        return subprocess.run(command, capture_output=True, text=True, check=True,
-                              cwd=FOLDER.parent).stdout.splitlines()[0]
     return {
         "cpu": cpu_name(),
         "cores": len(os.sched_getaffinity(0)),
-        "compiler": first_line("c++", "--version"),
-        "commit": first_line("git", "describe", "--always", "--dirty", "--exclude=*"),
+        "compiler": output("c++", "--version").splitlines()[0],
+        "commit": commit(),
         "date": datetime.date.today().isoformat(),
     }
 
