@@ -223,6 +223,28 @@ TEST(PathTracing, InteractiveFramesClearUp)
   EXPECT_EQ(one.mapper->GetImageReduction(), 1);
 }
 
+/// The window's event loop, in which alone VTK 9.1 fires timers; for a minute at most.
+void RunUntilConverged(vtkRenderWindowInteractor* interactor, vtkINRVolumeMapper* mapper)
+{
+  struct Watch
+  {
+    vtkINRVolumeMapper* mapper;
+    std::chrono::steady_clock::time_point end;
+  } watch{mapper, std::chrono::steady_clock::now() + std::chrono::seconds(60)};
+  vtkNew<vtkCallbackCommand> look;
+  look->SetClientData(&watch);
+  look->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    const auto* watched = static_cast<Watch*>(data);
+    if (watched->mapper->GetConverged() || std::chrono::steady_clock::now() > watched->end) {
+      static_cast<vtkRenderWindowInteractor*>(caller)->TerminateApp();
+    }
+  });
+  interactor->AddObserver(vtkCommand::TimerEvent, look);
+  interactor->CreateRepeatingTimer(20);
+  interactor->Start();
+  interactor->RemoveObserver(look);
+}
+
 TEST(PathTracing, WindowsClearUpWhileTheyAreIdle)
 {
   Traced one;
@@ -235,23 +257,7 @@ TEST(PathTracing, WindowsClearUpWhileTheyAreIdle)
   interactor->Initialize();
   one.scene.window->Render();
   EXPECT_FALSE(one.mapper->GetConverged());
-  // VTK 9.1 fires timers in its own event loop only.
-  struct Watch
-  {
-    vtkINRVolumeMapper* mapper;
-    std::chrono::steady_clock::time_point end;
-  } watch{one.mapper, std::chrono::steady_clock::now() + std::chrono::seconds(60)};
-  vtkNew<vtkCallbackCommand> look;
-  look->SetClientData(&watch);
-  look->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    const auto* watched = static_cast<Watch*>(data);
-    if (watched->mapper->GetConverged() || std::chrono::steady_clock::now() > watched->end) {
-      static_cast<vtkRenderWindowInteractor*>(caller)->TerminateApp();
-    }
-  });
-  interactor->AddObserver(vtkCommand::TimerEvent, look);
-  interactor->CreateRepeatingTimer(20);
-  interactor->Start();
+  RunUntilConverged(interactor, one.mapper);
   EXPECT_TRUE(one.mapper->GetConverged());
 }
 
@@ -267,15 +273,11 @@ TEST(PathTracing, WindowsOfBusyApplicationsClearUpLater)
   interactor->Initialize();
   struct Application
   {
-    vtkINRVolumeMapper* mapper = nullptr;
     int asked = 0;
     int refined = 0;
     int refinedWhileBusy = 0;
-    std::chrono::steady_clock::time_point end =
-        std::chrono::steady_clock::now() + std::chrono::seconds(60);
     bool isBusy() const { return this->asked < 3; }
   } application;
-  application.mapper = one.mapper;
   vtkNew<vtkCallbackCommand> answer;
   answer->SetClientData(&application);
   answer->SetCallback([](vtkObject*, unsigned long, void* data, void* mayRefine) {
@@ -293,17 +295,7 @@ TEST(PathTracing, WindowsOfBusyApplicationsClearUpLater)
     counted->refinedWhileBusy += counted->asked > 0 && counted->isBusy();
   });
   one.scene.window->AddObserver(vtkCommand::EndEvent, count);
-  vtkNew<vtkCallbackCommand> look;
-  look->SetClientData(&application);
-  look->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    const auto* watched = static_cast<Application*>(data);
-    if (watched->mapper->GetConverged() || std::chrono::steady_clock::now() > watched->end) {
-      static_cast<vtkRenderWindowInteractor*>(caller)->TerminateApp();
-    }
-  });
-  interactor->AddObserver(vtkCommand::TimerEvent, look);
-  interactor->CreateRepeatingTimer(20);
-  interactor->Start();
+  RunUntilConverged(interactor, one.mapper);
   EXPECT_TRUE(one.mapper->GetConverged());
   EXPECT_GT(application.asked, 3);
   EXPECT_GT(application.refined, 0);
