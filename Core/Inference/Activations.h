@@ -13,18 +13,23 @@ namespace INR_ISA {
 
 inline float ActivateOne(Activation activation, float x)
 {
-  const float y = 10.0f * x;
   switch (activation) {
   case Activation::Exponential:
     return __builtin_expf(x);
-  case Activation::Sigmoid:
-    return 1.0f / (1.0f + __builtin_expf(-x));
+  case Activation::Sigmoid: { // without overflow
+    const float e = __builtin_expf(-__builtin_fabsf(x));
+    return (x < 0.0f ? e : 1.0f) / (1.0f + e);
+  }
   case Activation::Sine:
     return __builtin_sinf(x);
-  case Activation::Squareplus:
+  case Activation::Squareplus: {
+    const float y = 10.0f * x; // here, not above: what overflows is to be what was asked for
     return 0.05f * (y + __builtin_sqrtf(y * y + 4.0f));
-  case Activation::Softplus: // ln(1 + e^y) without overflow
+  }
+  case Activation::Softplus: { // ln(1 + e^y) without overflow
+    const float y = 10.0f * x;
     return 0.1f * ((y > 0.0f ? y : 0.0f) + __builtin_log1pf(__builtin_expf(-__builtin_fabsf(y))));
+  }
   case Activation::Tanh:
     return __builtin_tanhf(x);
   default:

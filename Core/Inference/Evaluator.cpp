@@ -6,8 +6,12 @@
 #include "Core/Inference/GridKernel.h"
 #include "Core/Inference/HugePages.h"
 #include "Core/Inference/KernelTable.h"
+#include "Core/Inference/OverflowWatch.h"
+#include "Core/Inference/WideEvaluation.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace inr {
@@ -17,6 +21,31 @@ namespace {
 /// Points per task: enough to amortise scheduling, few enough to share out a small batch.
 constexpr std::int64_t TaskSize = 4096;
 
+/// By bits, which vectorises: a float without its sign grows with them.
+std::uint32_t LargestMagnitudeBits(const std::vector<float>& values)
+{
+  std::uint32_t largest = 0;
+  for (const float& value : values) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &value, sizeof(bits));
+    largest = std::max(largest, bits & 0x7fffffffu);
+  }
+  return largest;
+}
+
+void RequireFinite(const std::vector<float>& parameters)
+{
+  constexpr std::uint32_t infinity = 0x7f800000u;
+  if (LargestMagnitudeBits(parameters) < infinity) {
+    return;
+  }
+  const auto bad = std::find_if(parameters.begin(), parameters.end(),
+                                [](float parameter) { return !std::isfinite(parameter); });
+  throw Error(ErrorCode::InvalidModel, "parameter " + std::to_string(bad - parameters.begin()) +
+                                           " of the model is " + std::to_string(*bad) +
+                                           "; train it again");
+}
+
 Layout CheckedLayout(const Model& model)
 {
   Layout layout(model.description);
@@ -25,6 +54,7 @@ Layout CheckedLayout(const Model& model)
                 "the description asks for " + std::to_string(layout.parameterCount) +
                     " parameters, the model has " + std::to_string(model.parameters.size()));
   }
+  RequireFinite(model.parameters);
   return layout;
 }
 
@@ -52,7 +82,11 @@ public:
     const ModelView& model = this->Network.view();
     const auto floats = static_cast<std::size_t>(this->Kernel.workspace(model));
     const std::unique_ptr<float[]> workspace(new float[floats]); // left as it is: no need for zeros
+    OverflowWatch watch;
     this->Kernel.evaluate(model, &positions->x, count, values, workspace.get());
+    if (count > 0 && watch.overflowed()) {
+      this->widen(positions, count, values, workspace.get(), watch);
+    }
   }
 
   void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const override
@@ -61,12 +95,64 @@ public:
     const auto bytes = static_cast<std::size_t>(this->LatticeKernel.workspace(model));
     const std::unique_ptr<unsigned char[]> workspace(new unsigned char[bytes]);
     const LatticeAxis views[3] = {ViewOf(axes[0]), ViewOf(axes[1]), ViewOf(axes[2])};
+    OverflowWatch watch;
     this->LatticeKernel.evaluate(model, views, values, workspace.get());
+    if (watch.overflowed()) {
+      this->widenGrid(views, values, workspace.get(), watch);
+    }
   }
 
   std::string kernel() const override { return InstructionSetName(this->Set); }
 
 private:
+  /// Values of `count` positions some of which overflow: halves them until it is known which do, so
+  /// that a value stays independent of its neighbours in the batch.
+  void widen(const glm::vec3* positions, std::int64_t count, float* values, float* workspace,
+             OverflowWatch& watch) const
+  {
+    if (count == 1) {
+      *values = EvaluateWide(this->Network.view(), &positions->x);
+      return;
+    }
+    const std::int64_t half = count / 2;
+    for (const auto& [first, size] : {std::pair{std::int64_t{0}, half}, {half, count - half}}) {
+      watch.restart();
+      this->Kernel.evaluate(this->Network.view(), &positions[first].x, size, values + first,
+                            workspace);
+      if (watch.overflowed()) {
+        this->widen(positions + first, size, values + first, workspace, watch);
+      }
+    }
+  }
+
+  /// The same for a lattice.
+  void widenGrid(const LatticeAxis (&axes)[3], float* values, void* workspace,
+                 OverflowWatch& watch) const
+  {
+    int slowest = 2; // the slowest axis that can be halved: the halves are contiguous in `values`
+    while (slowest > 0 && axes[slowest].count == 1) {
+      --slowest;
+    }
+    const std::int64_t count = axes[slowest].count;
+    if (count == 1) {
+      const float position[3] = {*axes[0].u, *axes[1].u, *axes[2].u};
+      *values = EvaluateWide(this->Network.view(), position);
+      return;
+    }
+    const std::int64_t points = axes[0].count * axes[1].count * axes[2].count;
+    const std::int64_t half = count / 2;
+    for (const auto& [first, size] : {std::pair{std::int64_t{0}, half}, {half, count - half}}) {
+      LatticeAxis part[3] = {axes[0], axes[1], axes[2]};
+      part[slowest] = {axes[slowest].u + first, size};
+      watch.restart();
+      this->LatticeKernel.evaluate(this->Network.view(), part, values + points / count * first,
+                                   workspace);
+      if (watch.overflowed()) {
+        this->widenGrid(part, values + points / count * first, workspace, watch);
+      }
+    }
+  }
+
   ModelPointer Source;
   InstructionSet Set;
   const EvaluateKernel& Kernel;

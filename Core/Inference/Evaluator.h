@@ -20,8 +20,16 @@ public:
   virtual ~Evaluator() = default;
 
   /// Normalised values y at `count` positions in the unit cube, on the calling thread. Positions
-  /// are clamped to [0, 1]; y is the network's output, not clamped. float32 arithmetic; a value
-  /// does not depend on its neighbours in the batch. Best in batches of 64 or more.
+  /// are clamped to [0, 1], a NaN is 0; y is the network's output, not clamped. A value does not
+  /// depend on its neighbours in the batch. Best in batches of 64 or more.
+  ///
+  /// float32 arithmetic with gradual underflow: what a sum of n products loses is at most (n + 2)
+  /// 2^-24 of the sum of their magnitudes and n 2^-149, whatever the kernel. A sample for which a
+  /// number leaves float's range is done again in float64, up to a hundred times slower, and y
+  /// saturates at +-the largest float: it is always finite, and every kernel gives the same.
+  /// Denormal numbers cost what others do on processors that compute with them in hardware (AMD's
+  /// since Zen); on others a model that consists of them is many times slower. Floating-point modes
+  /// and flags of the thread stay as they are.
   virtual void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const = 0;
 
   /// Values y at all points of a lattice, x fastest in `values`, on the calling thread. The axes'
@@ -35,7 +43,7 @@ public:
 
 /// The fastest kernel that this processor runs; `kernel` asks for one by name (for tests) and
 /// Error(Unsupported) says that it is not to be had here. Throws Error(InvalidModel) when the
-/// parameter count does not fit the description.
+/// parameter count does not fit the description or a parameter is NaN or infinite.
 std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const std::string& kernel = "");
 
 /// `evaluate` with the batch spread over `arena`.

@@ -56,6 +56,13 @@ int RowsFrom(const LatticeAxis& y, std::int64_t j)
   return static_cast<int>(left < 0 ? 0 : left < StripHeight ? left : StripHeight);
 }
 
+/// Rows to encode so that whole vectors of samples hold `rows` of them and nothing else: the
+/// missing ones repeat the last, so that no number comes up that belongs to no sample.
+int WholeRows(int rows)
+{
+  return (rows * PieceWidth + LaneCount - 1) / LaneCount * LaneCount / PieceWidth;
+}
+
 /// `count` samples of each row of a layer, from `first` on; `layer` is the layer's values.
 void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t first, int count,
                    std::int64_t width, LevelPiece* pieces, StripPair& strips, float* layer)
@@ -66,7 +73,7 @@ void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t fi
   LoadCoordinates(y.u, RowsFrom(y, 0), heights);
   for (std::int64_t j = 0; j < y.count; j += StripHeight) {
     const int rows = RowsFrom(y, j);
-    EncodeStrip(model, heights, rows, pieces, strips.in.values);
+    EncodeStrip(model, heights, WholeRows(rows), pieces, strips.in.values);
     const int next = RowsFrom(y, j + StripHeight);
     if (next > 0) {
       LoadCoordinates(y.u + j + StripHeight, next, heights);
@@ -87,9 +94,6 @@ void EvaluateGrid(const ModelView& model, const LatticeAxis (&axes)[3], float* v
 {
   auto* const pieces = AlignToLine(static_cast<LevelPiece*>(workspace));
   StripPair strips = MakeStrips(model, reinterpret_cast<float*>(pieces + model.levelCount));
-  // A strip whose last rows do not exist computes with what is there: let it be numbers.
-  std::memset(strips.in.values, 0,
-              sizeof(float) * StripSize * static_cast<std::size_t>(model.widest));
   const std::int64_t width = axes[0].count;
   for (std::int64_t first = 0; first < width; first += PieceWidth) {
     const int count = width - first < PieceWidth ? static_cast<int>(width - first) : PieceWidth;

@@ -191,6 +191,21 @@ TEST(Evaluator, RefusesAWrongParameterCount)
   EXPECT_THROW(inr::MakeEvaluator(model), inr::Error);
 }
 
+TEST(Evaluator, RefusesParametersThatAreNotNumbers)
+{
+  for (const float bad : {NAN, std::numeric_limits<float>::infinity()}) {
+    auto model = RandomModel(SmallDescription());
+    model->parameters[77] = -bad;
+    try {
+      inr::MakeEvaluator(model);
+      FAIL() << "took " << bad;
+    } catch (const inr::Error& error) {
+      EXPECT_EQ(error.code(), inr::ErrorCode::InvalidModel);
+      EXPECT_NE(std::string(error.what()).find("77"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(Evaluator, NamesItsKernelAndRefusesUnknownOnes)
 {
   for (const std::string& kernel : UsableKernels()) {
