@@ -15,7 +15,8 @@ const char* InstructionSetName(InstructionSet set);
 bool IsUsable(InstructionSet set);
 
 /// The named one, or the best usable one for an empty name. Throws Error(Unsupported) when the name
-/// is unknown or not usable here.
-InstructionSet ChooseInstructionSet(const std::string& name);
+/// is unknown or not usable here, which `usable` says; Baseline always is.
+InstructionSet ChooseInstructionSet(const std::string& name,
+                                    bool (*usable)(InstructionSet) = IsUsable);
 
 } // namespace inr
