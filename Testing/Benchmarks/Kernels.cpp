@@ -53,12 +53,22 @@ std::vector<inr::BrickKey> SomeBricks(const inr::Hierarchy& levels, int level, i
   return keys;
 }
 
-void Inference(benchmark::State& state, const inr::Description& description,
-               const std::string& kernel, int threads)
+/// A random model, all of its features times `scale`.
+inr::ModelPointer ScaledFeatures(const inr::Description& description, float scale)
 {
-  const auto evaluator = inr::MakeEvaluator(RandomModel(description), kernel);
+  const auto model = RandomModel(description);
+  for (std::size_t k = inr::Layout(description).gridOffset; k < model->parameters.size(); ++k) {
+    model->parameters[k] *= scale;
+  }
+  return model;
+}
+
+void InferModel(benchmark::State& state, inr::ModelPointer model, const std::string& kernel,
+                int threads, std::int64_t points = 1 << 17)
+{
+  const auto evaluator = inr::MakeEvaluator(std::move(model), kernel);
   const inr::Arena arena(threads);
-  const std::vector<glm::vec3> positions = RandomPositions(1 << 17);
+  const std::vector<glm::vec3> positions = RandomPositions(points);
   std::vector<float> values(positions.size());
   for (auto step : state) {
     inr::EvaluateParallel(*evaluator, arena, positions.data(),
@@ -67,6 +77,12 @@ void Inference(benchmark::State& state, const inr::Description& description,
   }
   state.counters["threads_used"] = threads;
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(positions.size()));
+}
+
+void Inference(benchmark::State& state, const inr::Description& description,
+               const std::string& kernel, int threads)
+{
+  InferModel(state, RandomModel(description), kernel, threads);
 }
 
 /// Four bricks of 40^3 voxels per thread, all over a level of a volume of size^3.
@@ -157,6 +173,20 @@ void RegisterBricks(const std::string& what, const inr::ModelPointer& model, std
   }
 }
 
+/// What numbers cost that processors or floats are bad at: denormal ones, and those that overflow.
+void RegisterBadNumbers()
+{
+  for (const std::string& kernel : UsableKernels()) {
+    for (const auto& [what, scale] :
+         {std::pair{"denormal features", 1e-40f}, {"numbers beyond float's", 1e38f}}) {
+      const std::string name = std::string("inference, ") + what + ", 256^3 model, " + kernel;
+      benchmark::RegisterBenchmark((name + ", 1 thread").c_str(), InferModel,
+                                   ScaledFeatures(ChosenDescription(), scale), kernel, 1, 1 << 12)
+          ->MeasureProcessCPUTime();
+    }
+  }
+}
+
 void RegisterCeilings()
 {
   for (const std::string& kernel : UsableKernels()) {
@@ -179,6 +209,7 @@ void RegisterCeilings()
     RegisterBricks("brick, trained model", model, model->volume.dims.x);
   }
   Register("inference", Inference, false);
+  RegisterBadNumbers();
   Register("brick inference", Bricks, false);
   Register("training", Training, true);
   return true;
