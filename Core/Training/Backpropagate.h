@@ -151,7 +151,8 @@ inline void AddWeightGradient(const LayerView& layer, int usedColumns, const flo
   }
 }
 
-/// d |output - target| / d output, and the sum of the losses.
+/// d (output - target)^2 / d output, and the sum of the losses. Squares, because PSNR is what a
+/// model is judged by.
 inline double LossGradient(const TrainBlock& block, const float* output, std::int64_t samples,
                            float* delta)
 {
@@ -160,9 +161,8 @@ inline double LossGradient(const TrainBlock& block, const float* output, std::in
     const float residual = k < block.count ? output[k] - block.targets[k] : 0.0f;
     // A NaN target carries no gradient; a NaN output makes the loss one, which ends the training.
     const bool known = k < block.count && block.targets[k] == block.targets[k];
-    loss += known ? static_cast<double>(__builtin_fabsf(residual)) : 0.0;
-    const float sign = static_cast<float>(residual > 0.0f) - static_cast<float>(residual < 0.0f);
-    delta[k] = sign * block.gradientScale;
+    loss += known ? static_cast<double>(residual) * static_cast<double>(residual) : 0.0;
+    delta[k] = known ? 2.0f * residual * block.gradientScale : 0.0f;
   }
   return loss;
 }

@@ -20,7 +20,7 @@ constexpr float Epsilon = 1e-15f;
 constexpr float WeightDecay = 1e-6f; // of the MLP only
 
 /// Samples whose weight gradients are summed in one buffer; the buffers are then added in order.
-constexpr std::int64_t ShardSize = 4 * TrainBlockSize;
+constexpr std::int64_t ShardSize = 2 * TrainBlockSize;
 
 /// Samples between two looks at the StopCheck: a block, but less of one where the network is so
 /// large that a block takes seconds. A power of two; depends on the network alone, as sums do on
@@ -130,10 +130,12 @@ void GradientDescent::drawBatch(const SampleSource& source)
 {
   const std::uint64_t stream = StreamSeed(this->Seed, BatchStream);
   const std::uint64_t drawn = this->Steps * BatchSize;
+  if (!this->Boxes) {
+    this->Boxes.emplace(source.dims(), BatchSize);
+  }
   this->Threads.forEachBlock(BatchSize, ShardSize, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t k = begin; k < end; ++k) {
-      this->Positions[k] =
-          RandomPosition(stream, drawn + static_cast<std::uint64_t>(k), source.dims());
+      this->Positions[k] = this->Boxes->at(k, stream, drawn + static_cast<std::uint64_t>(k));
     }
     source.sample(&this->Positions[begin], end - begin, &this->Targets[begin]);
   });

@@ -5,6 +5,7 @@
 #include "Core/Parallel.h"
 #include "Core/Training/SampleSource.h"
 #include "Core/Training/StopCheck.h"
+#include "Core/Training/StratifiedPositions.h"
 #include "Core/Training/TrainKernel.h"
 
 #include <cstdint>
@@ -18,24 +19,24 @@ namespace inr {
 /// repeated by its number of steps.
 struct LearningRate
 {
-  float initial = 1e-2f;
-  std::uint64_t decayStart = 200;
-  std::uint64_t decayInterval = 20;
+  float initial = 5e-3f;
+  std::uint64_t decayStart = 800;
+  std::uint64_t decayInterval = 80;
   float decayFactor = 0.99f;
-  float floor = 1e-4f;
+  float floor = 5e-5f;
 
   float at(std::uint64_t step) const;
 };
 
 /// Positions per mini-batch.
-constexpr std::int64_t BatchSize = 1 << 16;
+constexpr std::int64_t BatchSize = 1 << 14;
 
 /// Xavier-uniform MLP weights (SIREN's for sine; Sitzmann et al., NeurIPS 2020) and grid features
 /// uniform in +-1e-4, from `seed`.
 std::vector<float> InitialParameters(const Description& description, const Layout& layout,
                                      std::uint64_t seed);
 
-/// Fits the parameters of one INR with Adam on mini-batches of random positions. The parameters
+/// Fits the parameters of one INR with Adam on mini-batches of StratifiedPositions. The parameters
 /// after n steps depend on description, seed, source and instruction set, not on the number of
 /// threads.
 class GradientDescent
@@ -46,12 +47,12 @@ public:
   GradientDescent(const GradientDescent&) = delete;
   GradientDescent& operator=(const GradientDescent&) = delete;
 
-  /// One mini-batch; returns the mean absolute error over it, before the update. Nothing when
+  /// One mini-batch; returns the mean squared error over it, before the update. Nothing when
   /// `check` stopped it: then no parameter has changed, and the next step draws the same batch. An
   /// update that has begun is always finished.
   std::optional<double> step(const SampleSource& source, const StopCheck& check = StopCheck());
 
-  /// Fills gradient() with d (mean |output - target|) / d parameter for `count` samples (targets
+  /// Fills gradient() with d (mean (output - target)^2) / d parameter for `count` samples (targets
   /// that are NaN count as fitted) and returns the mean; nothing when `check` stopped it.
   std::optional<double> computeGradient(const std::vector<glm::vec3>& positions,
                                         const std::vector<float>& targets,
@@ -85,6 +86,7 @@ private:
   std::vector<float> SecondMoments;
   std::vector<std::uint32_t> EntrySteps;
   std::vector<float> Corrections;
+  std::optional<StratifiedPositions> Boxes; ///< of the source's volume
   std::vector<glm::vec3> Positions;
   std::vector<float> Targets;
   std::vector<float> EncodedGradient;

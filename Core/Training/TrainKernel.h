@@ -22,7 +22,7 @@ struct TrainBlock
   float* encodedGradient;
   /// d loss / d MLP weight, in the parameter vector's order; added to.
   float* weightGradient;
-  double loss; ///< sum of |output - target| over the block; out
+  double loss; ///< sum of (output - target)^2 over the block; out
 };
 
 /// A run of Adam updates (Kingma and Ba, "Adam", ICLR 2015).

@@ -124,7 +124,7 @@ public:
   double seconds() const { return this->Clock.seconds(); }
 
 private:
-  static constexpr std::uint64_t PsnrInterval = 50;
+  static constexpr std::uint64_t PsnrInterval = 200;
   static constexpr double ReportInterval = 0.2; // seconds, within a step
 
   bool timeIsUp() const

@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::int64_t SampleCount = 1000; // not a multiple of any block
 
-/// Targets far to either side of any output keep the loss' kink away, so that it is smooth.
-std::vector<float> FarTargets()
+/// To either side of the outputs.
+std::vector<float> MixedTargets()
 {
   std::vector<float> targets(SampleCount);
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    targets[k] = k % 3 == 0 ? 100.0f : -100.0f;
+    targets[k] = k % 3 == 0 ? 2.0f : -2.0f;
   }
   return targets;
 }
@@ -28,7 +28,7 @@ struct Problem
 {
   Problem(const inr::Description& description, const std::string& kernel)
       : Threads(2), Descent(description, 1, inr::ChooseInstructionSet(kernel), Threads),
-        Positions(RandomPositions(SampleCount)), Targets(FarTargets())
+        Positions(RandomPositions(SampleCount)), Targets(MixedTargets())
   {
     for (std::size_t k = 0; k < this->Descent.parameters().size(); ++k) {
       this->Descent.parameters()[k] = 0.8f * inr::RandomUnit(5, k) - 0.4f;
