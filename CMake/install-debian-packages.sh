@@ -10,7 +10,7 @@ packages=(
   libglew-dev libfreetype-dev libx11-dev libgl-dev libexpat1-dev zlib1g-dev libpng-dev python3-dev
   openmpi-bin libgl1-mesa-dri
   # our own libraries and tools
-  g++ cmake ninja-build ccache git libtbb-dev libglm-dev libopenexr-dev nlohmann-json3-dev
+  g++ cmake ninja-build ccache git libtbb-dev libglm-dev libopenexr-dev nlohmann-json3-dev libzstd-dev
   python3-numpy xvfb xauth
 )
 if [ "${1:-}" = test ]; then

@@ -13,7 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::int64_t FormatVersion = 1;
+constexpr std::int64_t PlainVersion = 1;   // readable upstream, our section ignored
+constexpr std::int64_t CompactVersion = 2; // quantised parameters, packed blobs
 constexpr std::size_t MaximumNameLength = 1024;
 constexpr const char* ChecksumPrefix = "crc32:";
 constexpr const char* AxisNames[3] = {"x", "y", "z"};
@@ -184,13 +185,15 @@ glm::i64vec3 ParseDims(const JsonSection& section)
 InrSection ParseInrSection(const JsonSection& section)
 {
   const std::int64_t version = section.integer("format_version");
-  if (version != FormatVersion) {
+  if (version != PlainVersion && version != CompactVersion) {
     throw Error(ErrorCode::Unsupported, "the file has format version " + std::to_string(version) +
-                                            "; this program reads version " +
-                                            std::to_string(FormatVersion));
+                                            "; this program reads versions " +
+                                            std::to_string(PlainVersion) + " and " +
+                                            std::to_string(CompactVersion));
   }
   section.choice("transform", TransformNames);
   InrSection result;
+  result.compact = version == CompactVersion;
   result.volume = ParseVolume(section);
   result.rule = section.choice("hash_rule", RuleNames);
   result.provenance = section.choice("macrocell_provenance", ProvenanceNames);
@@ -208,7 +211,8 @@ InrSection ParseInrSection(const JsonSection& section)
 json InrSectionToJson(const Model& model, std::uint32_t checksum)
 {
   const VolumeInfo& volume = model.volume;
-  json section = {{"format_version", FormatVersion},
+  const bool compact = model.storedAs == ParameterType::Quantised;
+  json section = {{"format_version", compact ? CompactVersion : PlainVersion},
                   {"transform", NameOf(TransformNames, Transform::Linear)},
                   {"dims", AxesToJson(volume.dims)},
                   {"spacing", AxesToJson(volume.spacing)},

@@ -15,6 +15,7 @@ namespace inr {
 /// What the root key `inr` of our own files says; see FORMAT.md.
 struct InrSection
 {
+  bool compact = false; ///< format version 2: quantised parameters, packed blobs
   VolumeInfo volume;
   HashRule rule = HashRule::Wrapping;
   MacroCellProvenance provenance = MacroCellProvenance::File;

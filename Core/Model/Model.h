@@ -77,7 +77,11 @@ struct TrainingRecord
   std::uint64_t nonFinite = 0; ///< NaN and infinite voxels left out
 };
 
-enum class ParameterType { Half, Float };
+enum class ParameterType {
+  Half,
+  Float,
+  Quantised ///< multiples of `Model::steps`, packed; no upstream reads that
+};
 
 /// A trained INR: immutable once it is shared. `parameters` follows Layout(description).
 struct Model
@@ -85,6 +89,7 @@ struct Model
   Description description;
   std::vector<float> parameters;
   ParameterType storedAs = ParameterType::Half; ///< precision of `parameters` in the file
+  std::vector<float> steps; ///< of quantised parameters, one for each of their ParameterGroups
   VolumeInfo volume;
   MacroCells macroCells;
   std::optional<Quality> quality;

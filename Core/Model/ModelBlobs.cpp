@@ -197,13 +197,18 @@ std::string EncodeRanges(const std::vector<ValueRange>& ranges)
   std::vector<ValueRange> stored;
   stored.reserve(ranges.size());
   for (const ValueRange& range : ranges) {
-    if (!std::isfinite(range.low) || !std::isfinite(range.high)) {
-      throw Error(ErrorCode::InvalidModel,
-                  "macro-cell range " + std::to_string(stored.size()) + " is not finite");
-    }
+    RequireFiniteRange(range, stored.size());
     stored.push_back(ToOffset(range));
   }
   return BytesOf(stored);
+}
+
+void RequireFiniteRange(const ValueRange& range, std::size_t index)
+{
+  if (!std::isfinite(range.low) || !std::isfinite(range.high)) {
+    throw Error(ErrorCode::InvalidModel,
+                "macro-cell range " + std::to_string(index) + " is not finite");
+  }
 }
 
 std::uint32_t ContinueChecksum(std::uint32_t checksum, const void* data, std::size_t bytes)

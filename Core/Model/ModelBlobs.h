@@ -3,6 +3,7 @@
 
 #include "Core/Model/Document.h"
 #include "Core/Model/InputFile.h"
+#include "Core/Model/JsonSection.h"
 #include "Core/Model/Model.h"
 
 #include <cstdint>
@@ -11,7 +12,12 @@
 
 namespace inr {
 
-std::size_t ParameterSize(ParameterType type); ///< bytes
+constexpr NameTable<ParameterType, 3> ParameterTypeNames = {
+    {{"__half", ParameterType::Half},
+     {"float", ParameterType::Float},
+     {"quantised", ParameterType::Quantised}}};
+
+std::size_t ParameterSize(ParameterType type); ///< bytes; of Half and Float
 
 /// How a file spells macro-cell ranges; see FORMAT.md.
 enum class CellEncoding {
@@ -31,6 +37,9 @@ std::vector<ValueRange> DecodeRanges(const InputFile& file, const Blob& blob, Ce
 /// cannot hold. A range is rounded outwards, so that what is read back contains it.
 std::string EncodeParameters(const std::vector<float>& parameters, ParameterType type);
 std::string EncodeRanges(const std::vector<ValueRange>& ranges);
+
+/// Throws Error(InvalidModel) unless both ends are finite.
+void RequireFiniteRange(const ValueRange& range, std::size_t index);
 
 /// CRC-32 as in zlib, continued from `checksum` (0 at the start).
 std::uint32_t ContinueChecksum(std::uint32_t checksum, const void* data, std::size_t bytes);

@@ -31,17 +31,19 @@ Model ReadModelHeader(const std::string& path, const ModelOverrides& overrides =
 ModelPointer ReadModel(const std::string& path, const ModelOverrides& overrides = {});
 
 /// Writes `path` through a temporary file beside it and a rename: the file is there whole or not at
-/// all. The parameters are stored as `model.storedAs` says. Throws Error(CannotWrite),
+/// all. The parameters are stored as `model.storedAs` says; quantised ones make a compact file,
+/// which no upstream reads. Returns the file's size in bytes. Throws Error(CannotWrite),
 /// Error(TooLarge) for 2 GiB or more, or Error(InvalidModel) for what could not be read back: wrong
-/// counts, values that are not finite or that half precision cannot hold.
-void WriteModel(const Model& model, const std::string& path);
+/// counts, values that are not finite or that half precision or their step cannot express.
+std::int64_t WriteModel(const Model& model, const std::string& path);
 
 /// Throws what WriteModel would say of the model's description, volume and macro-cells, whatever
 /// its parameters are: to be asked before a long training.
 void RequireStorable(const Model& model);
 
 /// Size in bytes that WriteModel would produce; needs no parameters in `model`, only its
-/// description, macro-cells and metadata.
+/// description, macro-cells and metadata. Of a compact file (quantised parameters) it is an upper
+/// bound as long as there are no parameters, and takes as long as packing them when there are.
 std::int64_t ModelFileSize(const Model& model);
 
 } // namespace inr

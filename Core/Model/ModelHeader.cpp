@@ -2,8 +2,11 @@
 #include "Core/Model/ModelHeader.h"
 
 #include "Core/Error.h"
+#include "Core/Model/CompactBlobs.h"
+#include "Core/Model/Compression.h"
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/InrSection.h"
+#include "Core/Model/Quantised.h"
 
 #include <cmath>
 #include <string>
@@ -12,9 +15,6 @@ namespace inr {
 namespace {
 
 using nlohmann::json;
-
-constexpr NameTable<ParameterType, 2> ParameterTypeNames = {
-    {{"__half", ParameterType::Half}, {"float", ParameterType::Float}}};
 
 const Blob* FindBlob(const Document& document, const std::string& path)
 {
@@ -66,7 +66,9 @@ Description DescriptionFor(const json& model, std::uint64_t parameterCount)
 ParameterType TypeOf(const JsonSection& section, const Blob& blob, std::uint64_t count)
 {
   const auto fits = [&](ParameterType type) {
-    return static_cast<std::uint64_t>(blob.size) == count * ParameterSize(type);
+    return type == ParameterType::Quantised
+               ? MayExpand(blob.size, PlainParameterBytes(count))
+               : static_cast<std::uint64_t>(blob.size) == count * ParameterSize(type);
   };
   const ParameterType type =
       section.choice("params_type", ParameterTypeNames,
@@ -77,6 +79,24 @@ ParameterType TypeOf(const JsonSection& section, const Blob& blob, std::uint64_t
                                              std::to_string(count));
   }
   return type;
+}
+
+std::vector<float> ParseSteps(const JsonSection& section, const Description& description)
+{
+  const std::size_t count = ParameterGroups(description).size();
+  const json* values = section.find("steps");
+  if (values == nullptr || !values->is_array() || values->size() != count) {
+    section.refuse("steps", "must be an array of " + std::to_string(count) +
+                                " numbers, for each matrix and level one");
+  }
+  std::vector<float> steps;
+  for (const json& value : *values) {
+    if (!value.is_number() || !IsStep(value.get<double>())) {
+      section.refuse("steps", "must be positive numbers that single precision can hold 32,768 of");
+    }
+    steps.push_back(value.get<float>());
+  }
+  return steps;
 }
 
 void ReadParameterSection(const JsonSection& root, const Document& document, ModelHeader& header)
@@ -93,12 +113,18 @@ void ReadParameterSection(const JsonSection& root, const Document& document, Mod
   header.model.storedAs = TypeOf(section, *header.parameters, parameterCount);
   const json& configuration = root.has("model") ? *root.find("model") : document.header;
   header.model.description = DescriptionFor(configuration, parameterCount);
+  if (header.model.storedAs == ParameterType::Quantised) {
+    header.model.steps = ParseSteps(section, header.model.description);
+  }
 }
 
-void RequireValidCells(const JsonSection& section, const MacroCells& cells, const Blob& blob)
+void RequireValidCells(const JsonSection& section, const MacroCells& cells, const Blob& blob,
+                       bool compact)
 {
-  // Dividing what is left by each count keeps every product within the blob's size.
-  std::int64_t left = blob.size / static_cast<std::int64_t>(sizeof(ValueRange));
+  constexpr std::int64_t mostCells = std::int64_t{1} << 28; // of a packed table
+  constexpr auto rangeSize = static_cast<std::int64_t>(sizeof(ValueRange));
+  // Dividing what is left by each count keeps every product within bounds.
+  std::int64_t left = compact ? mostCells : blob.size / rangeSize;
   std::int64_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t along = cells.dims[axis];
@@ -112,7 +138,7 @@ void RequireValidCells(const JsonSection& section, const MacroCells& cells, cons
       section.refuse("spacings", "must be positive and let the cells cover the unit cube");
     }
   }
-  if (count * static_cast<std::int64_t>(sizeof(ValueRange)) != blob.size) {
+  if (compact ? !MayExpand(blob.size, PlainRangeBytes(count)) : count * rangeSize != blob.size) {
     section.refuse("dims", "do not fit the " + std::to_string(blob.size) + " bytes of ranges");
   }
 }
@@ -128,12 +154,17 @@ void ReadMacroCellSection(const JsonSection& root, const Document& document, Mod
   cells.dims = ParseDims(section.section("dims"));
   cells.spacing = {spacings.number("x"), spacings.number("y"), spacings.number("z")};
   header.ranges = &RequireBlob(document, "/macrocell/data");
-  RequireValidCells(section, cells, *header.ranges);
+  const bool compact = header.model.storedAs == ParameterType::Quantised;
+  RequireValidCells(section, cells, *header.ranges, compact);
 }
 
 void ReadOwnSection(const JsonSection& root, ModelHeader& header)
 {
   InrSection own = ParseInrSection(root.section("inr"));
+  if (own.compact != (header.model.storedAs == ParameterType::Quantised)) {
+    throw Error(ErrorCode::InvalidModel,
+                "format version 2 and quantised parameters belong together, and only one is there");
+  }
   header.model.volume = std::move(own.volume);
   header.model.description.grid.rule = own.rule;
   header.model.macroCells.provenance = own.provenance;
@@ -182,6 +213,9 @@ ModelHeader ParseModelHeader(const Document& document, const ModelOverrides& ove
   ReadMacroCellSection(root, document, header);
   if (root.has("inr")) {
     ReadOwnSection(root, header);
+  } else if (header.model.storedAs == ParameterType::Quantised) {
+    throw Error(ErrorCode::InvalidModel,
+                "the parameters are quantised, but section 'inr' is missing");
   } else {
     ReadVolumeSection(root, overrides, header.model);
   }

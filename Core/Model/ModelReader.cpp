@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
 #include "Core/Model/BsonScanner.h"
+#include "Core/Model/CompactBlobs.h"
 #include "Core/Model/LittleEndian.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/ModelHeader.h"
@@ -88,9 +89,14 @@ Model LoadBlobs(const InputFile& file, ModelHeader header)
 {
   Model& model = header.model;
   std::uint32_t checksum = 0;
-  model.parameters = DecodeParameters(file, *header.parameters, model.storedAs, checksum);
+  const bool compact = model.storedAs == ParameterType::Quantised;
+  model.parameters = compact ? DecodeQuantised(file, *header.parameters, model, checksum)
+                             : DecodeParameters(file, *header.parameters, model.storedAs, checksum);
   if (header.ranges != nullptr) {
-    model.macroCells.ranges = DecodeRanges(file, *header.ranges, header.encoding, checksum);
+    const glm::i64vec3& dims = model.macroCells.dims;
+    model.macroCells.ranges =
+        compact ? DecodeCompactRanges(file, *header.ranges, dims.x * dims.y * dims.z, checksum)
+                : DecodeRanges(file, *header.ranges, header.encoding, checksum);
   }
   RequireChecksum(header, checksum);
   if (model.macroCells.empty()) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
+#include "Core/Model/CompactBlobs.h"
+#include "Core/Model/Compression.h"
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/InrSection.h"
 #include "Core/Model/ModelBlobs.h"
 #include "Core/Model/ModelFile.h"
+#include "Core/Model/Quantised.h"
 
 #include <nlohmann/json.hpp>
 
@@ -20,16 +23,21 @@ using nlohmann::json;
 constexpr std::int64_t SizeLimit = std::numeric_limits<std::int32_t>::max();
 constexpr std::size_t LengthSize = sizeof(std::int32_t);
 
+struct BlobSizes
+{
+  std::int64_t ranges = 0;
+  std::int64_t parameters = 0;
+};
+
 // A file is text[0], macro-cell ranges, text[1], parameters, text[2].
 struct Framing
 {
   std::array<std::string, 3> text;
-  std::int64_t rangeBytes = 0;
-  std::int64_t parameterBytes = 0;
+  BlobSizes blobs;
 
   std::int64_t total() const
   {
-    std::int64_t sum = this->rangeBytes + this->parameterBytes;
+    std::int64_t sum = this->blobs.ranges + this->blobs.parameters;
     for (const std::string& piece : this->text) {
       sum += static_cast<std::int64_t>(piece.size());
     }
@@ -87,28 +95,35 @@ json ModelSection(const Description& description)
   return section;
 }
 
-// Root keys in byte order, as upstream's library writes them.
-Framing Frame(const Model& model, std::uint32_t checksum)
-{
-  const std::uint64_t count = Layout(model.description).parameterCount;
-  Framing framing;
-  framing.parameterBytes = static_cast<std::int64_t>(count * ParameterSize(model.storedAs));
-  framing.rangeBytes =
-      static_cast<std::int64_t>(model.macroCells.ranges.size() * sizeof(ValueRange));
+bool IsCompact(const Model& model) { return model.storedAs == ParameterType::Quantised; }
 
+json ParameterSection(const Model& model)
+{
+  json section = {{"n_params", Layout(model.description).parameterCount},
+                  {"params_type", NameOf(ParameterTypeNames, model.storedAs)}};
+  if (IsCompact(model)) {
+    section["steps"] = model.steps.empty()
+                           ? json(ParameterGroups(model.description).size(), 1.0) // for its size
+                           : json(model.steps);
+  }
+  return section;
+}
+
+// Root keys in byte order, as upstream's library writes them.
+Framing Frame(const Model& model, const BlobSizes& blobs, std::uint32_t checksum)
+{
+  Framing framing;
+  framing.blobs = blobs;
   framing.text[0] =
       std::string(LengthSize, '\0') + Element("inr", InrSectionToJson(model, checksum));
   if (!model.macroCells.empty()) {
     const auto [before, after] =
-        SplitElement("macrocell", MacroCellSection(model.macroCells), "data", framing.rangeBytes);
+        SplitElement("macrocell", MacroCellSection(model.macroCells), "data", blobs.ranges);
     framing.text[0] += before;
     framing.text[1] = after;
   }
-  const json parameters = {
-      {"n_params", count},
-      {"params_type", model.storedAs == ParameterType::Half ? "__half" : "float"}};
   const auto [before, after] =
-      SplitElement("parameters", parameters, "params_binary", framing.parameterBytes);
+      SplitElement("parameters", ParameterSection(model), "params_binary", blobs.parameters);
   framing.text[1] += Element("model", ModelSection(model.description)) + before;
   const glm::i64vec3& dims = model.volume.dims;
   const json volume = {{"dims", {{"x", dims.x}, {"y", dims.y}, {"z", dims.z}}}};
@@ -129,20 +144,58 @@ void RequireWritable(const Model& model)
   RequireStorable(model);
 }
 
-void WriteFile(const Model& model, const std::string& path)
+std::string ParameterBlob(const Model& model)
+{
+  return IsCompact(model) ? EncodeQuantised(model)
+                          : EncodeParameters(model.parameters, model.storedAs);
+}
+
+std::string RangeBlob(const Model& model)
+{
+  const std::vector<ValueRange>& ranges = model.macroCells.ranges;
+  return IsCompact(model) && !ranges.empty() ? EncodeCompactRanges(ranges) : EncodeRanges(ranges);
+}
+
+BlobSizes SizesOf(const std::string& ranges, const std::string& parameters)
+{
+  return {static_cast<std::int64_t>(ranges.size()), static_cast<std::int64_t>(parameters.size())};
+}
+
+// What they take at most, whatever the parameters are; exact but for compact files.
+BlobSizes LargestSizes(const Model& model)
+{
+  const std::uint64_t count = Layout(model.description).parameterCount;
+  const auto cells = static_cast<std::int64_t>(model.macroCells.ranges.size());
+  if (!IsCompact(model)) {
+    return {cells * static_cast<std::int64_t>(sizeof(ValueRange)),
+            static_cast<std::int64_t>(count * ParameterSize(model.storedAs))};
+  }
+  return {CompressedBound(PlainRangeBytes(cells)), CompressedBound(PlainParameterBytes(count))};
+}
+
+void RequireSize(std::int64_t bytes)
+{
+  if (bytes > SizeLimit) {
+    throw Error(ErrorCode::TooLarge, "the model would take " + std::to_string(bytes) +
+                                         " bytes; a model file must be smaller than 2 GiB");
+  }
+}
+
+std::int64_t WriteFile(const Model& model, const std::string& path)
 {
   RequireWritable(model);
   AtomicFile file(path);
-  const std::string parameters = EncodeParameters(model.parameters, model.storedAs);
-  const std::string ranges = EncodeRanges(model.macroCells.ranges);
+  const std::string parameters = ParameterBlob(model);
+  const std::string ranges = RangeBlob(model);
   const std::uint32_t checksum = ContinueChecksum(
       ContinueChecksum(0, parameters.data(), parameters.size()), ranges.data(), ranges.size());
-  const Framing framing = Frame(model, checksum);
+  const Framing framing = Frame(model, SizesOf(ranges, parameters), checksum);
   for (const std::string* piece :
        {&framing.text[0], &ranges, &framing.text[1], &parameters, &framing.text[2]}) {
     file.write(piece->data(), piece->size());
   }
   file.commit();
+  return framing.total();
 }
 
 } // namespace
@@ -155,19 +208,21 @@ void RequireStorable(const Model& model)
   if (!cells.empty() && cells.dims.x * cells.dims.y * cells.dims.z != cellCount) {
     throw Error(ErrorCode::InvalidModel, "the number of macro-cell ranges does not fit their dims");
   }
-  if (ModelFileSize(model) > SizeLimit) {
-    throw Error(ErrorCode::TooLarge, "the model would take " +
-                                         std::to_string(ModelFileSize(model)) +
-                                         " bytes; a model file must be smaller than 2 GiB");
-  }
+  RequireSize(Frame(model, LargestSizes(model), 0).total());
 }
 
-std::int64_t ModelFileSize(const Model& model) { return Frame(model, 0).total(); }
+std::int64_t ModelFileSize(const Model& model)
+{
+  const bool pack = IsCompact(model) && !model.parameters.empty();
+  const BlobSizes sizes =
+      pack ? SizesOf(RangeBlob(model), ParameterBlob(model)) : LargestSizes(model);
+  return Frame(model, sizes, 0).total();
+}
 
-void WriteModel(const Model& model, const std::string& path)
+std::int64_t WriteModel(const Model& model, const std::string& path)
 {
   try {
-    WriteFile(model, path);
+    return WriteFile(model, path);
   } catch (const Error& error) {
     // AtomicFile's messages say so already.
     throw error.code() == ErrorCode::CannotWrite ? error

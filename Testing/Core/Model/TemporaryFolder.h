@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Model/ModelFile.h"
+#include "Core/Model/Quantised.h"
 #include "Testing/Core/RandomModel.h"
 
 #include <gtest/gtest.h>
@@ -59,5 +60,18 @@ inline std::shared_ptr<inr::Model> FullModel()
   }
   model->quality = inr::Quality{41.25, 0.987, 3.5};
   model->training = inr::TrainingRecord{12345, ~std::uint64_t{0}, 67.5, "avx2", 3};
+  return model;
+}
+
+/// The same, quantised: every group of parameters has a step of its own.
+inline std::shared_ptr<inr::Model> CompactModel()
+{
+  auto model = FullModel();
+  model->storedAs = inr::ParameterType::Quantised;
+  for (const inr::ParameterGroup& group : inr::ParameterGroups(model->description)) {
+    const float step = 0.7f / static_cast<float>(3 + 4 * model->steps.size());
+    inr::RoundToStep(model->parameters.data() + group.offset, group.count, step);
+    model->steps.push_back(step);
+  }
   return model;
 }

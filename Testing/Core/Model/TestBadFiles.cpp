@@ -10,9 +10,11 @@ namespace {
 
 struct BadFiles : testing::Test
 {
-  BadFiles()
+  BadFiles() { this->start(*FullModel()); }
+
+  void start(const inr::Model& model)
   {
-    inr::WriteModel(*FullModel(), Folder.file("good.inr"));
+    inr::WriteModel(model, Folder.file("good.inr"));
     this->Good = ReadBytes(Folder.file("good.inr"));
   }
 

@@ -6,11 +6,11 @@
 
 namespace {
 
-struct Mutations : testing::Test
+struct Mutations : testing::TestWithParam<bool>
 {
   Mutations()
   {
-    inr::WriteModel(*FullModel(), Folder.file("good.inr"));
+    inr::WriteModel(this->GetParam() ? *CompactModel() : *FullModel(), Folder.file("good.inr"));
     this->Good = ReadBytes(Folder.file("good.inr"));
   }
 
@@ -32,7 +32,7 @@ struct Mutations : testing::Test
   std::string Good;
 };
 
-TEST_F(Mutations, OfRandomBytes)
+TEST_P(Mutations, OfRandomBytes)
 {
   int loaded = 0;
   for (std::uint64_t mutant = 0; mutant < 3000; ++mutant) {
@@ -50,7 +50,7 @@ TEST_F(Mutations, OfRandomBytes)
   EXPECT_LT(loaded, 1500); // most damage is noticed
 }
 
-TEST_F(Mutations, OfAWindowThatSlidesOverTheHeader)
+TEST_P(Mutations, OfAWindowThatSlidesOverTheHeader)
 {
   for (const char fill : {'\0', '\x7f', '\xff'}) {
     for (std::size_t at = 0; at + 4 <= std::min<std::size_t>(this->Good.size(), 2048); at += 2) {
@@ -61,7 +61,7 @@ TEST_F(Mutations, OfAWindowThatSlidesOverTheHeader)
   }
 }
 
-TEST_F(Mutations, OfLengths)
+TEST_P(Mutations, OfLengths)
 {
   for (std::uint64_t mutant = 0; mutant < 500; ++mutant) {
     std::string bytes = this->Good;
@@ -71,5 +71,7 @@ TEST_F(Mutations, OfLengths)
     EXPECT_FALSE(this->loads(bytes)) << "without bytes from " << at;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(PlainAndCompact, Mutations, testing::Bool());
 
 } // namespace

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Model/CompactBlobs.h"
+
+#include "Core/Error.h"
+#include "Core/Model/Compression.h"
+#include "Core/Model/ModelBlobs.h"
+#include "Core/Model/Quantised.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace inr {
+namespace {
+
+constexpr int Planes = 2; // bytes of a number, low ones first
+constexpr float LargestBound = 255.0f;
+
+// Small numbers of either sign become small ones: 0, -1, 1, -2, ... are 0, 1, 2, 3, ...
+std::uint16_t ZigZag(std::int16_t value)
+{
+  const auto twice = static_cast<std::uint16_t>(static_cast<std::uint16_t>(value) << 1);
+  return value < 0 ? static_cast<std::uint16_t>(~twice) : twice;
+}
+
+std::int16_t FromZigZag(std::uint16_t code)
+{
+  const auto half = static_cast<std::uint16_t>(code >> 1);
+  return static_cast<std::int16_t>((code & 1) != 0 ? ~half : half);
+}
+
+std::int16_t MultipleOf(float value, float step, std::uint64_t index)
+{
+  const double multiple = NearestMultiple(value, step);
+  if (!(std::abs(multiple) <= LargestMultiple)) {
+    throw Error(ErrorCode::InvalidModel, "parameter " + std::to_string(index) + " is " +
+                                             std::to_string(value) +
+                                             ", which its level's step cannot express; store the "
+                                             "model in half or single precision");
+  }
+  return static_cast<std::int16_t>(multiple);
+}
+
+// The blob as it is in the file, counted in the checksum.
+std::string Packed(const InputFile& file, const Blob& blob, std::uint32_t& checksum)
+{
+  std::string bytes;
+  if (blob.inMemory) {
+    bytes.assign(blob.bytes.begin(), blob.bytes.end());
+  } else {
+    bytes.resize(static_cast<std::size_t>(blob.size));
+    file.read(blob.offset, bytes.data(), bytes.size());
+  }
+  checksum = ContinueChecksum(checksum, bytes.data(), bytes.size());
+  return bytes;
+}
+
+// What the reader would refuse must not be written.
+std::string PackedReadably(const std::string& plain)
+{
+  std::string packed = Compress(plain);
+  if (!MayExpand(static_cast<std::int64_t>(packed.size()),
+                 static_cast<std::int64_t>(plain.size()))) {
+    throw Error(ErrorCode::InvalidModel,
+                "so much that is equal would not be accepted in a compact file; store the model in "
+                "half precision");
+  }
+  return packed;
+}
+
+float Bound(std::uint8_t code) { return static_cast<float>(code) / LargestBound; }
+
+std::uint8_t BoundBelow(float value)
+{
+  auto code = static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * LargestBound);
+  while (code > 0 && Bound(code) > value) {
+    --code;
+  }
+  return code;
+}
+
+std::uint8_t BoundAbove(float value)
+{
+  auto code = static_cast<std::uint8_t>(std::ceil(std::clamp(value, 0.0f, 1.0f) * LargestBound));
+  while (code < LargestBound && Bound(code) < value) {
+    ++code;
+  }
+  return code;
+}
+
+} // namespace
+
+std::int64_t PlainParameterBytes(std::uint64_t parameters)
+{
+  return static_cast<std::int64_t>(parameters) * Planes;
+}
+
+std::int64_t PlainRangeBytes(std::int64_t cells) { return 2 * cells; }
+
+std::string EncodeQuantised(const Model& model)
+{
+  const std::vector<ParameterGroup> groups = ParameterGroups(model.description);
+  if (model.steps.size() != groups.size() ||
+      !std::all_of(model.steps.begin(), model.steps.end(), IsStep)) {
+    throw Error(ErrorCode::InvalidModel,
+                "a quantised model needs a positive step for each of its " +
+                    std::to_string(groups.size()) + " matrices and levels");
+  }
+  const std::size_t count = model.parameters.size();
+  std::string plain(count * Planes, '\0');
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    const std::uint64_t end = groups[group].offset + groups[group].count;
+    for (std::uint64_t k = groups[group].offset; k < end; ++k) {
+      const std::uint16_t code = ZigZag(MultipleOf(model.parameters[k], model.steps[group], k));
+      plain[k] = static_cast<char>(code & 0xff);
+      plain[count + k] = static_cast<char>(code >> 8);
+    }
+  }
+  return PackedReadably(plain);
+}
+
+std::vector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
+                                   std::uint32_t& checksum)
+{
+  const std::vector<ParameterGroup> groups = ParameterGroups(header.description);
+  const std::uint64_t count = groups.back().offset + groups.back().count;
+  const auto plain =
+      Decompress(Packed(file, blob, checksum), PlainParameterBytes(count), "parameters");
+  std::vector<float> parameters(count);
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    const std::uint64_t end = groups[group].offset + groups[group].count;
+    for (std::uint64_t k = groups[group].offset; k < end; ++k) {
+      const auto code = static_cast<std::uint16_t>(plain[k] | plain[count + k] << 8);
+      parameters[k] = ValueOfMultiple(FromZigZag(code), header.steps[group]);
+    }
+  }
+  return parameters;
+}
+
+std::string EncodeCompactRanges(const std::vector<ValueRange>& ranges)
+{
+  std::string plain(ranges.size() * 2, '\0');
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    const ValueRange& range = ranges[k];
+    RequireFiniteRange(range, k);
+    plain[k] = static_cast<char>(range.empty() ? 255 : BoundBelow(range.low));
+    plain[ranges.size() + k] = static_cast<char>(range.empty() ? 0 : BoundAbove(range.high));
+  }
+  return PackedReadably(plain);
+}
+
+std::vector<ValueRange> DecodeCompactRanges(const InputFile& file, const Blob& blob,
+                                            std::int64_t cells, std::uint32_t& checksum)
+{
+  const auto plain =
+      Decompress(Packed(file, blob, checksum), PlainRangeBytes(cells), "macro-cell ranges");
+  std::vector<ValueRange> ranges(static_cast<std::size_t>(cells));
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    const std::uint8_t low = plain[k];
+    const std::uint8_t high = plain[ranges.size() + k];
+    ranges[k] = low > high ? ValueRange{} : ValueRange{Bound(low), Bound(high)};
+  }
+  return ranges;
+}
+
+} // namespace inr

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace inr {
+
+/// `bytes` as one zstd frame (RFC 8878). The same bytes give the same frame on any machine with the
+/// same zstd. Takes about a second for 8 MB.
+std::string Compress(const std::string& bytes);
+
+/// Bytes that `Compress` makes of so many at most.
+std::int64_t CompressedBound(std::int64_t bytes);
+
+/// Whether a file may claim that `compressed` bytes stand for `plain` ones. Up to 256 MiB any ratio
+/// is accepted (constant data pack at 30,000:1), beyond that 64:1, so that a small file cannot ask
+/// for all of the memory.
+bool MayExpand(std::int64_t compressed, std::int64_t plain);
+
+/// The `expected` bytes that one zstd frame stands for; what it says of its size itself is not
+/// believed. Throws Error(InvalidModel) "the packed `what` ..." for anything else.
+std::unique_ptr<std::uint8_t[]> Decompress(const std::string& frame, std::int64_t expected,
+                                           const char* what);
+
+} // namespace inr
