@@ -15,20 +15,38 @@ double DefaultParameters(double voxels) { return 128.0 * std::sqrt(voxels); }
 /// When nobody names a ratio, the parameters take at most half of the volume's bytes, down to the
 /// smallest model: the file of a volume of a few thousand voxels can be larger than the volume.
 constexpr double SmallestRatio = 2.0;
-constexpr double BytesPerParameter = 2.0; // half
+
+/// What trained models of the volumes in Testing take when 0.1 dB may be lost; see quantised.py.
+constexpr double QuantisedBytes = 0.625;
+
+double BytesPerParameter(ParameterType storedAs)
+{
+  switch (storedAs) {
+  case ParameterType::Half:
+    return 2.0;
+  case ParameterType::Float:
+    return 4.0;
+  default:
+    return QuantisedBytes;
+  }
+}
+
+constexpr double DefaultBytes = 2.0; // of a parameter: sizes are the same in every precision
 constexpr double FramingBytes = 2048.0;
 
-double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio)
+double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio,
+                       ParameterType storedAs)
 {
   const double voxels =
       static_cast<double>(dims.x) * static_cast<double>(dims.y) * static_cast<double>(dims.z);
   const double bytes = voxels * static_cast<double>(ScalarSize(type));
   if (ratio <= 0.0) {
-    return std::min(DefaultParameters(voxels), bytes / SmallestRatio / BytesPerParameter);
+    return std::min(DefaultParameters(voxels), bytes / SmallestRatio / DefaultBytes);
   }
   const MacroCells cells = MakeMacroCells(dims, DefaultMacroCellSize(dims));
-  const double cellBytes = 8.0 * static_cast<double>(cells.ranges.size());
-  return (bytes / ratio - cellBytes - FramingBytes) / BytesPerParameter;
+  const double bytesPerCell = storedAs == ParameterType::Quantised ? 2.0 : 8.0;
+  const double cellBytes = bytesPerCell * static_cast<double>(cells.ranges.size());
+  return (bytes / ratio - cellBytes - FramingBytes) / BytesPerParameter(storedAs);
 }
 
 /// Neighbouring levels' resolutions: more levels fit better for the same file than doubling does.
@@ -45,9 +63,10 @@ int LevelsFor(const glm::i64vec3& dims)
 
 } // namespace
 
-Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio)
+Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio,
+                              ParameterType storedAs)
 {
-  const double budget = ParameterBudget(dims, type, ratio);
+  const double budget = ParameterBudget(dims, type, ratio, storedAs);
   Description description;
   description.grid.features = 4;
   description.grid.baseResolution = BaseResolution;

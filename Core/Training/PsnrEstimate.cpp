@@ -4,6 +4,7 @@
 #include "Core/Model/Model.h"
 #include "Core/Random.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace inr {
@@ -22,31 +23,41 @@ PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed)
     this->Positions[k] = RandomPosition(stream, static_cast<std::uint64_t>(k), source.dims());
   }
   source.sample(this->Positions.data(), SampleCount, this->Targets.data());
+  this->Known = std::count_if(this->Targets.begin(), this->Targets.end(),
+                              [](float target) { return std::isfinite(target); });
 }
 
 double PsnrEstimate::measure(const ModelView& model, const EvaluateKernel& kernel,
                              const StopCheck& check) const
 {
+  const double squared = this->squaredError(this->values(model, kernel, check));
+  return check.goesOn() && this->Known > 0 ? -10.0 * std::log10(squared) : 0.0;
+}
+
+std::vector<float> PsnrEstimate::values(const ModelView& model, const EvaluateKernel& kernel,
+                                        const StopCheck& check) const
+{
   const PackedNetwork network(model);
   std::vector<float> values(SampleCount);
   std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(network.view())));
-  for (std::int64_t first = 0; first < SampleCount; first += BlockSize) {
-    if (!check.goesOn()) {
-      return 0.0;
-    }
+  for (std::int64_t first = 0; first < SampleCount && check.goesOn(); first += BlockSize) {
     kernel.evaluate(network.view(), &this->Positions[first].x, BlockSize, &values[first],
                     workspace.data());
   }
+  std::transform(values.begin(), values.end(), values.begin(), NormalisedOutput);
+  return values;
+}
+
+double PsnrEstimate::squaredError(const std::vector<float>& values) const
+{
   double squared = 0;
-  std::int64_t finite = 0;
   for (std::int64_t k = 0; k < SampleCount; ++k) {
     if (std::isfinite(this->Targets[k])) {
-      const double difference = NormalisedOutput(values[k]) - this->Targets[k];
+      const double difference = values[k] - this->Targets[k];
       squared += difference * difference;
-      ++finite;
     }
   }
-  return finite > 0 ? -10.0 * std::log10(squared / static_cast<double>(finite)) : 0.0;
+  return squared / static_cast<double>(std::max<std::int64_t>(1, this->Known));
 }
 
 } // namespace inr

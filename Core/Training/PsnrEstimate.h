@@ -16,13 +16,22 @@ class PsnrEstimate
 public:
   PsnrEstimate(const SampleSource& source, std::uint64_t seed);
 
-  /// In dB, peak 1; infinity for a perfect fit, 0 when `check` stopped it.
+  /// In dB, peak 1; infinity for a perfect fit, 0 when `check` stopped it or no target is finite.
   double measure(const ModelView& model, const EvaluateKernel& kernel,
                  const StopCheck& check) const;
+
+  /// Normalised outputs at the positions; unfinished when `check` stopped it.
+  std::vector<float> values(const ModelView& model, const EvaluateKernel& kernel,
+                            const StopCheck& check) const;
+
+  /// Mean squared difference of `values` from the targets, over those that are finite; 0 where none
+  /// is.
+  double squaredError(const std::vector<float>& values) const;
 
 private:
   std::vector<glm::vec3> Positions;
   std::vector<float> Targets;
+  std::int64_t Known = 0; ///< targets that are finite
 };
 
 } // namespace inr

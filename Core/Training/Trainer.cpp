@@ -4,9 +4,11 @@
 #include "Core/Error.h"
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Model/ModelFile.h"
+#include "Core/Model/Quantised.h"
 #include "Core/Training/GradientDescent.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Quality.h"
+#include "Core/Training/Quantise.h"
 #include "Core/Training/TrainingClock.h"
 
 #include <Imath/half.h>
@@ -44,6 +46,9 @@ void CheckArguments(const VolumeData& volume, const TrainingOptions& options)
 /// one.
 void RoundAsStored(Model& model)
 {
+  if (model.storedAs == ParameterType::Quantised) {
+    return;
+  }
   const auto fits = [](float parameter) { return std::abs(parameter) <= HALF_MAX; };
   if (!std::all_of(model.parameters.begin(), model.parameters.end(), fits)) {
     model.storedAs = ParameterType::Float;
@@ -55,10 +60,28 @@ void RoundAsStored(Model& model)
   }
 }
 
+/// Lets the observer stop what comes between training and measuring.
+StopCheck CheckOf(const TrainingObserver& observer, std::uint64_t steps)
+{
+  return StopCheck([&observer, steps, clock = TrainingClock(), last = 0.0]() mutable {
+    constexpr double interval = 0.2; // seconds
+    if (observer && clock.seconds() - last >= interval) {
+      last = clock.seconds();
+      if (!observer({TrainingPhase::Measuring, TrainingShare, steps, 0})) {
+        throw Error(ErrorCode::Cancelled, "stopped while quantising the parameters");
+      }
+    }
+    return true;
+  });
+}
+
 /// The model of a volume whose finite voxels are all equal: no step is needed to be exact.
 ModelPointer ConstantModel(Model model, const glm::i64vec3& dims)
 {
   model.parameters.assign(Layout(model.description).parameterCount, 0.0f);
+  if (model.storedAs == ParameterType::Quantised) {
+    model.steps.assign(ParameterGroups(model.description).size(), 1.0f);
+  }
   model.macroCells.provenance = MacroCellProvenance::Decoded;
   std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(), ValueRange{0, 0});
   // Whether there is a window without a gap is not worth a search.
@@ -199,7 +222,7 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
 
   Model model;
   model.description = options.description.value_or(
-      ChooseDescription(volume.dims, volume.type, options.targetRatio));
+      ChooseDescription(volume.dims, volume.type, options.targetRatio, options.storedAs));
   model.storedAs = options.storedAs;
   model.volume = info;
   model.volume.dims = volume.dims;
@@ -221,6 +244,10 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   model.training->steps = descent.steps();
   model.training->seconds = loop.seconds();
   model.parameters = descent.parameters();
+  if (options.storedAs == ParameterType::Quantised) {
+    Quantise(model, PsnrEstimate(source, options.seed), EvaluateKernelFor(set),
+             LimitsForRatio(model, options.targetRatio), CheckOf(observer, descent.steps()));
+  }
   RoundAsStored(model);
 
   const std::uint64_t steps = descent.steps();

@@ -21,9 +21,11 @@ struct TrainingOptions
   std::uint64_t seed = 1;
   int macroCellSize = 0;                  ///< voxels, a power of two; 0 = DefaultMacroCellSize
   std::optional<Description> description; ///< empty = ChooseDescription
-  ParameterType storedAs = ParameterType::Half; ///< Float where a half cannot hold a parameter
-  std::string kernel;                           ///< for tests; empty = the fastest
-  int threads = 0;                              ///< 0 = all
+  /// Half instead of Quantised where that would cost more than 0.1 dB, and Float where a half
+  /// cannot hold a parameter.
+  ParameterType storedAs = ParameterType::Quantised;
+  std::string kernel; ///< for tests; empty = the fastest
+  int threads = 0;    ///< 0 = all
 };
 
 enum class TrainingPhase { Training, Measuring };
@@ -41,9 +43,12 @@ struct TrainingProgress
 /// step's result is entered into it. Return false to stop, which throws Error(Cancelled).
 using TrainingObserver = std::function<bool(const TrainingProgress&)>;
 
-/// A model size for the volume: upstream-readable, about volume bytes / `ratio`; ratio 0 lets the
-/// volume's size decide. The smallest model takes a few KiB, whatever the volume and the ratio.
-Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio);
+/// A model size for the volume: upstream-readable, about volume bytes / `ratio` when its parameters
+/// are stored as said; ratio 0 lets the volume's size decide. The smallest model takes a few KiB,
+/// whatever the volume and the ratio. A Quantised one is expected to take 5 bits a parameter; what
+/// it takes is known after the training only, which then makes steps coarser if need be.
+Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio,
+                              ParameterType storedAs = ParameterType::Half);
 
 /// Fits an INR to `volume`; `info` gives geometry, name and type (its low and high are measured).
 ///

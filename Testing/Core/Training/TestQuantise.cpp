@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Model/ModelFile.h"
+#include "Core/Model/Quantised.h"
+#include "Core/Random.h"
+#include "Core/Training/Quantise.h"
+#include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Training/Fields.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+#include <numeric>
+#include <unistd.h>
+
+namespace {
+
+/// What a network that was trained on a field is quantised with.
+struct Quantising : testing::Test
+{
+  Quantising()
+  {
+    inr::TrainingOptions options = Steps(100);
+    options.storedAs = inr::ParameterType::Half;
+    options.description = SmallDescription();
+    this->Trained = *inr::TrainModel(this->Data.data(), {}, options);
+  }
+
+  void quantise(inr::Model& model, inr::QuantiseLimits limits = {}) const
+  {
+    inr::Quantise(model, this->Estimate, this->kernel(), limits);
+  }
+
+  double psnr(const inr::Model& model) const
+  {
+    const inr::Layout layout(model.description);
+    const inr::ModelViewStorage views(model.description, layout, model.parameters.data());
+    return this->Estimate.measure(views.view(), this->kernel(), inr::StopCheck());
+  }
+
+  const inr::EvaluateKernel& kernel() const
+  {
+    return inr::EvaluateKernelFor(inr::ChooseInstructionSet(""));
+  }
+
+  Field<float> Data = Waves();
+  inr::InMemorySource Source{this->Data.data(), -1, 1};
+  inr::PsnrEstimate Estimate{this->Source, 1};
+  inr::Model Trained;
+};
+
+TEST_F(Quantising, LosesWhatItMayAndNoLess)
+{
+  for (const double loss : {0.1, 1.0}) {
+    inr::Model model = this->Trained;
+    this->quantise(model, {loss, 0});
+    EXPECT_EQ(model.storedAs, inr::ParameterType::Quantised);
+    const double lost = this->psnr(this->Trained) - this->psnr(model);
+    EXPECT_LE(lost, loss + 1e-6);
+    EXPECT_GT(lost, loss / 2);
+  }
+}
+
+TEST_F(Quantising, GivesWhatAFileGivesBack)
+{
+  inr::Model model = this->Trained;
+  this->quantise(model);
+  const std::string path = (std::filesystem::path(testing::TempDir()) /
+                            ("quantise-" + std::to_string(getpid()) + ".inr"))
+                               .string();
+  inr::WriteModel(model, path);
+  const inr::ModelPointer read = inr::ReadModel(path);
+  std::filesystem::remove(path);
+  EXPECT_EQ(read->parameters, model.parameters);
+  EXPECT_EQ(read->steps, model.steps);
+}
+
+TEST_F(Quantising, HalvesTheFile)
+{
+  inr::Model model = this->Trained;
+  this->quantise(model);
+  constexpr std::int64_t header = 2000; // the same in both
+  EXPECT_LT(2 * (inr::ModelFileSize(model) - header), inr::ModelFileSize(this->Trained) - header);
+}
+
+// Features a million times as small under weights a million times as large are the same network.
+TEST_F(Quantising, DoesNotDependOnTheScaleOfFeatures)
+{
+  inr::Model model = this->Trained;
+  this->quantise(model);
+  for (const float scale : {0x1p-60f, 0x1p50f}) {
+    inr::Model scaled = this->Trained;
+    const inr::Layout layout(scaled.description);
+    const inr::LayerShape& first = layout.layers.front();
+    for (int k = 0; k < first.rows * first.columns; ++k) {
+      scaled.parameters[first.offset + static_cast<std::uint64_t>(k)] /= scale;
+    }
+    for (std::uint64_t k = layout.gridOffset; k < layout.parameterCount; ++k) {
+      scaled.parameters[k] *= scale;
+    }
+    this->quantise(scaled);
+    EXPECT_EQ(scaled.steps[0], model.steps[0] / scale);
+    EXPECT_EQ(scaled.steps.back(), model.steps.back() * scale);
+    EXPECT_EQ(scaled.parameters.back(), model.parameters.back() * scale);
+  }
+}
+
+TEST_F(Quantising, TakesGroupsOfZerosAndOfEqualNumbers)
+{
+  inr::Model model = this->Trained;
+  const std::vector<inr::ParameterGroup> groups = inr::ParameterGroups(model.description);
+  const auto fill = [&](std::size_t group, float value) {
+    std::fill_n(model.parameters.begin() + static_cast<std::ptrdiff_t>(groups[group].offset),
+                groups[group].count, value);
+  };
+  fill(groups.size() - 1, 0.0f);
+  fill(groups.size() - 2, 0.25f);
+  inr::Model zeros = this->Trained;
+  std::fill(zeros.parameters.begin(), zeros.parameters.end(), 0.0f);
+  for (inr::Model* each : {&model, &zeros}) {
+    const double before = this->psnr(*each);
+    this->quantise(*each);
+    EXPECT_EQ(each->storedAs, inr::ParameterType::Quantised);
+    EXPECT_NEAR(this->psnr(*each), before, 0.1001);
+    EXPECT_GT(inr::ModelFileSize(*each), 0); // throws where a step is none
+  }
+}
+
+TEST_F(Quantising, ClearsWhatNothingDependsOn)
+{
+  inr::Model model = this->Trained;
+  model.description.network.alignment = 16;
+  this->quantise(model);
+  const inr::LayerShape last = inr::Layout(model.description).layers.back();
+  ASSERT_EQ(last.rows, 16);
+  const float* weights = model.parameters.data() + last.offset;
+  EXPECT_NE(std::accumulate(weights, weights + last.columns, 0.0f), 0.0f);
+  EXPECT_TRUE(std::all_of(weights + last.columns, weights + 16 * last.columns,
+                          [](float weight) { return weight == 0; }));
+}
+
+// One number that dwarfs its level leaves no step for the others; here nothing reads it.
+TEST_F(Quantising, StaysInHalvesWhereSixteenBitsAreTooFew)
+{
+  inr::TrainingOptions options = Steps(100);
+  options.storedAs = inr::ParameterType::Half;
+  options.description = SmallDescription();
+  options.description->grid.baseResolution = 5; // 125 of 128 entries
+  inr::Model model = *inr::TrainModel(this->Data.data(), {}, options);
+  model.parameters[inr::Layout(model.description).gridOffset + 127 * 4] = 3e7f;
+  const double before = this->psnr(model);
+  this->quantise(model);
+  EXPECT_EQ(model.storedAs, inr::ParameterType::Half);
+  EXPECT_TRUE(model.steps.empty());
+  EXPECT_EQ(this->psnr(model), before);
+}
+
+TEST_F(Quantising, KeepsASizeAndGivesUpOnOneOutOfReach)
+{
+  inr::Model model = this->Trained;
+  this->quantise(model);
+  const std::int64_t free = inr::ModelFileSize(model);
+  const std::int64_t wanted = 2000 + (free - 2000) * 3 / 4;
+  inr::Model smaller = this->Trained;
+  this->quantise(smaller, {0.1, wanted});
+  EXPECT_LE(inr::ModelFileSize(smaller), wanted);
+  EXPECT_GT(inr::ModelFileSize(smaller), wanted * 8 / 10);
+  inr::Model hopeless = this->Trained;
+  this->quantise(hopeless, {0.1, 100});
+  EXPECT_EQ(hopeless.parameters, model.parameters);
+}
+
+TEST_F(Quantising, CanBeStopped)
+{
+  inr::Model model = this->Trained;
+  const inr::StopCheck check([]() -> bool { throw std::runtime_error("enough"); });
+  EXPECT_THROW(inr::Quantise(model, this->Estimate, this->kernel(), {}, check), std::runtime_error);
+}
+
+/// Bytes of the file of a model that was trained at a ratio, over the bytes asked for.
+template <class T> double Share(const Field<T>& field, double ratio)
+{
+  inr::TrainingOptions options = Steps(60);
+  options.targetRatio = ratio;
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
+  const double bytes = static_cast<double>(field.values.size() * sizeof(T));
+  return static_cast<double>(inr::ModelFileSize(*model)) * ratio / bytes;
+}
+
+TEST(TargetRatio, IsKept)
+{
+  Field<float> noise = Waves<float>({60, 50, 40}, inr::ScalarType::Float32, 0, 1);
+  for (std::size_t k = 0; k < noise.values.size(); ++k) {
+    noise.values[k] += inr::RandomUnit(5, k);
+  }
+  for (const double ratio : {8.0, 20.0, 40.0}) {
+    const double share = Share(noise, ratio);
+    EXPECT_LE(share, 1.0) << ratio;
+    EXPECT_GT(share, 0.3) << ratio;
+  }
+}
+
+TEST(TargetRatio, OutOfReachCostsNoQuality)
+{
+  inr::TrainingOptions options = Steps(60);
+  options.targetRatio = 1e6;
+  const double out = inr::TrainModel(Waves().data(), {}, options)->quality->psnr;
+  options.storedAs = inr::ParameterType::Half;
+  EXPECT_GT(out, inr::TrainModel(Waves().data(), {}, options)->quality->psnr - 0.2);
+}
+
+} // namespace
