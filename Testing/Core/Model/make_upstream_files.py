@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes model files as instantvnr and cINR do, byte by byte, without the library.
+"""Writes model files as instantvnr and cINR do, byte by byte, without the library; and compact files
+of our own from what FORMAT.md says of them.
 
     make_upstream_files.py OUTPUT_DIR
 
@@ -11,6 +12,7 @@ import math
 import random
 import struct
 import sys
+import zlib
 from pathlib import Path
 
 DIMS = (40, 30, 20)
@@ -32,6 +34,8 @@ def element(key, value):
         return b"\x05" + name + struct.pack("<iB", len(value), 0) + value
     if isinstance(value, dict):
         return b"\x03" + name + document(value)
+    if isinstance(value, list):
+        return b"\x04" + name + document({str(k): member for k, member in enumerate(value)})
     raise TypeError(type(value))
 
 
@@ -111,6 +115,43 @@ def model(**change):
     return root, expected
 
 
+def frame(content):
+    """A zstd frame (RFC 8878) of one block that is not compressed."""
+    header = struct.pack("<IBI", 0xFD2FB528, 0xA0, len(content))  # one segment, size in 4 bytes
+    return header + struct.pack("<I", len(content) << 3 | 1)[:3] + content
+
+
+def compact_model():
+    root, expected = model()
+    count = root["parameters"]["n_params"]
+    network = root["model"]["network"]["n_neurons"]
+    weights = network * 16 + network * network + 16 * network
+    groups = [network * 16, network * network, 16 * network] + [2 * n for n in (64, 256, 256)]
+    assert sum(groups) == count and sum(groups[:3]) == weights
+    steps = [2.0 ** -(k + 3) for k in range(len(groups))]
+    numbers = random.Random(2)
+    multiples = [numbers.choice((numbers.randrange(-40, 40), numbers.randrange(-32768, 32768)))
+                 for _ in range(count)]
+    codes = [2 * m if m >= 0 else -2 * m - 1 for m in multiples]
+    step_of = [step for step, size in zip(steps, groups) for _ in range(size)]
+    packed = frame(bytes(code & 255 for code in codes) + bytes(code >> 8 for code in codes))
+    root["parameters"] = dict(n_params=count, params_type="quantised", steps=steps,
+                              params_binary=packed)
+    lows = [255] + [20 * k for k in range(11)]
+    highs = [0] + [20 * k + 10 for k in range(11)]
+    root["macrocell"]["data"] = frame(bytes(lows) + bytes(highs))
+    checksum = zlib.crc32(root["macrocell"]["data"], zlib.crc32(packed))
+    axes = dict(x=1.0, y=1.0, z=1.0)
+    root["inr"] = dict(
+        format_version=2, checksum=f"crc32:{checksum:08x}", dims=dict(zip("xyz", DIMS)),
+        spacing=axes, origin=axes, direction=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        array_name="a", array_type="float32", data_range=dict(low=0.0, high=1.0),
+        transform="linear", hash_rule="wrapping", macrocell_provenance="file")
+    ranges = [[1, -1]] + [[low / 255, high / 255] for low, high in zip(lows[1:], highs[1:])]
+    return root, {**expected, "half": False, "ranges": ranges,
+                  "parameters": [m * step for m, step in zip(multiples, step_of)]}
+
+
 def cases():
     yield "cinr", model()
     yield "instantvnr", model(params_type=False)
@@ -131,6 +172,7 @@ def cases():
     root, expected = model()
     root.update(root.pop("parameters"))
     yield "old_root_layout", (root, expected)
+    yield "compact", compact_model()
 
 
 def as_text(root):
@@ -148,6 +190,8 @@ def main():
     files = {name: (document(root), expected) for name, (root, expected) in cases()}
     root, expected = model()
     files["text"] = (as_text(root), expected)
+    root, expected = compact_model()
+    files["compact_text"] = (as_text(root), expected)
     for name, (content, expected) in files.items():
         (target / f"{name}.upstream").write_bytes(content)
         (target / f"{name}.expected").write_text(json.dumps(expected))
