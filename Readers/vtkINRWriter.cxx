@@ -113,6 +113,8 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
   options.timeLimit = this->TimeLimit;
   options.seed = static_cast<std::uint64_t>(this->Seed);
   options.macroCellSize = this->MacroCellSize;
+  options.storedAs =
+      this->ReadableByInstantVNR ? inr::ParameterType::Half : inr::ParameterType::Quantised;
   if (this->ModelConfig && *this->ModelConfig) {
     options.description = inr::ParseDescription(std::string(this->ModelConfig));
   }
@@ -124,9 +126,7 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
     return !signals.Received() && !this->ShouldStop();
   };
   const inr::ModelPointer model = inr::TrainModel(input.data, input.info, options, observe);
-  inr::WriteModel(*model, this->FileName);
-
-  this->KeepResult(*model);
+  this->KeepResult(*model, inr::WriteModel(*model, this->FileName));
   this->UpdateProgress(1.0);
   if (model->training->nonFinite > 0) {
     vtkWarningMacro("Array '" << input.info.arrayName << "' has " << model->training->nonFinite
@@ -140,7 +140,7 @@ void vtkINRWriter::ForgetResult()
   this->Steps = 0;
 }
 
-void vtkINRWriter::KeepResult(const inr::Model& model)
+void vtkINRWriter::KeepResult(const inr::Model& model, vtkIdType fileSize)
 {
   const glm::dvec3 dims(model.volume.dims);
   const double bytes =
@@ -148,7 +148,7 @@ void vtkINRWriter::KeepResult(const inr::Model& model)
   this->PSNR = model.quality->psnr;
   this->SSIM = model.quality->ssim;
   this->MaximumError = model.quality->maxError;
-  this->Ratio = bytes / static_cast<double>(inr::ModelFileSize(model));
+  this->Ratio = bytes / static_cast<double>(fileSize);
   this->Steps = static_cast<vtkIdType>(model.training->steps);
   this->TrainingSeconds = model.training->seconds;
   vtkLog(INFO, << this->FileName << ": PSNR " << this->PSNR << " dB, SSIM " << this->SSIM
@@ -166,5 +166,6 @@ void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "TimeLimit: " << this->TimeLimit << "\n"
      << indent << "MacroCellSize: " << this->MacroCellSize << "\n"
      << indent << "Seed: " << this->Seed << "\n"
-     << indent << "ModelConfig: " << (this->ModelConfig ? this->ModelConfig : "(chosen)") << "\n";
+     << indent << "ModelConfig: " << (this->ModelConfig ? this->ModelConfig : "(chosen)") << "\n"
+     << indent << "ReadableByInstantVNR: " << (this->ReadableByInstantVNR ? "on" : "off") << "\n";
 }

