@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Our training and upstream's on one volume, with equally many samples and about as many
+// parameters.
+//
+//   bench_recipes VOXELS.raw TYPE NX NY NZ SAMPLES
+//
+// prints one JSON object: the parameters and the PSNR of ours, at the default size, and of
+// upstream's next smaller and next larger model. recipes.py writes the result file.
+#include "Core/Error.h"
+#include "Core/Training/Quality.h"
+#include "Testing/Benchmarks/Models.h"
+#include "Testing/Benchmarks/UpstreamRecipe.h"
+
+#include <Imath/half.h>
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+namespace {
+
+/// What a training came to.
+struct Outcome
+{
+  std::uint64_t parameters;
+  double psnr;
+};
+
+std::ostream& operator<<(std::ostream& stream, const Outcome& outcome)
+{
+  return stream << R"({"parameters": )" << outcome.parameters << R"(, "psnr": )" << outcome.psnr
+                << "}";
+}
+
+Outcome TrainOurs(const inr::VolumeData& volume, std::uint64_t samples)
+{
+  inr::TrainingOptions options;
+  options.maximumSteps = samples / inr::BatchSize;
+  options.timeLimit = 0;
+  options.storedAs = inr::ParameterType::Half;
+  const inr::ModelPointer model = inr::TrainModel(volume, {}, options);
+  return {model->parameters.size(), model->quality.value().psnr};
+}
+
+/// Upstream's default model with another size of table.
+inr::Description UpstreamDescription(int log2Size)
+{
+  inr::Description description = DefaultDescription();
+  description.grid.log2HashmapSize = log2Size;
+  return description;
+}
+
+Outcome TrainUpstream(const inr::VolumeData& volume, int log2Size, std::uint64_t samples)
+{
+  const inr::Arena arena;
+  const inr::InstructionSet set = inr::ChooseInstructionSet("");
+  const inr::VolumeStatistics range = inr::MeasureVolume(volume, arena);
+  const inr::InMemorySource source(volume, range.low, range.high);
+  auto model = std::make_shared<inr::Model>();
+  model->description = UpstreamDescription(log2Size);
+  model->volume.dims = volume.dims;
+  model->volume.low = range.low;
+  model->volume.high = range.high;
+  UpstreamRecipe recipe(model->description, set, arena);
+  for (std::uint64_t step = 0; step < samples / UpstreamRecipe::Batch; ++step) {
+    recipe.step(source);
+  }
+  for (const float parameter : recipe.parameters()) {
+    model->parameters.push_back(static_cast<float>(Imath::half(parameter)));
+  }
+  const inr::DecodedReport report =
+      inr::MeasureQuality(*inr::MakeEvaluator(model), volume, model->volume,
+                          inr::DefaultMacroCellSize(volume.dims), arena, {});
+  return {model->parameters.size(), report.quality.psnr};
+}
+
+/// Upstream's smallest table that gives at least `parameters`.
+int NextLargerTable(std::uint64_t parameters)
+{
+  int log2Size = 6;
+  while (inr::Layout(UpstreamDescription(log2Size)).parameterCount < parameters) {
+    ++log2Size;
+  }
+  return log2Size;
+}
+
+void Compare(const inr::VolumeData& volume, std::uint64_t samples)
+{
+  const Outcome ours = TrainOurs(volume, samples);
+  const int larger = NextLargerTable(ours.parameters);
+  std::cout << R"({"ours": )" << ours << R"(, "upstream": [)"
+            << TrainUpstream(volume, larger - 1, samples) << ", "
+            << TrainUpstream(volume, larger, samples) << "]}" << std::endl;
+}
+
+std::vector<char> ReadBytes(const char* path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  const auto type = argc == 7 ? inr::ScalarFromName(argv[2]) : std::nullopt;
+  if (!type) {
+    std::cerr << "usage: bench_recipes VOXELS.raw TYPE NX NY NZ SAMPLES\n";
+    return 2;
+  }
+  const std::vector<char> bytes = ReadBytes(argv[1]);
+  inr::VolumeData volume;
+  volume.values = bytes.data();
+  volume.type = *type;
+  volume.dims = {std::stoll(argv[3]), std::stoll(argv[4]), std::stoll(argv[5])};
+  if (bytes.size() != static_cast<std::size_t>(volume.voxels()) * inr::ScalarSize(*type)) {
+    std::cerr << argv[1] << " does not hold as many values\n";
+    return 1;
+  }
+  try {
+    Compare(volume, std::stoull(argv[6]));
+  } catch (const inr::Error& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+  return 0;
+}
