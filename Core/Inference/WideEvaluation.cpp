@@ -20,7 +20,8 @@ struct AxisCell
 AxisCell Locate(const LevelView& level, GridInterpolation interpolation, float u)
 {
   const float position = u * level.scale;
-  auto cell = static_cast<std::int32_t>(position + 0.5f);
+  const float raised = position + 0.5f;
+  auto cell = static_cast<std::int32_t>(raised);
   const double lost = static_cast<double>(u) * static_cast<double>(level.scale) - position;
   float weight = ((position - static_cast<float>(cell)) + 0.5f) + static_cast<float>(lost);
   const int move = weight < 0.0f ? -1 : (weight >= 1.0f ? 1 : 0);

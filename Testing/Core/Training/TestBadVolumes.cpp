@@ -2,6 +2,7 @@
 //
 // Training on volumes whose values or shape are at a limit: nothing diverges, nothing is NaN, and
 // what the model says of itself is true.
+#include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Random.h"
@@ -239,6 +240,40 @@ TEST(ConstantVolumes, AreExactWhateverTheNumberAndTheShape)
       ExpectExact<double>(Double, dims, value);
     }
   }
+}
+
+/// Whether a network of exponentials of exponentials says that it diverged, when it is stopped
+/// after so many steps; otherwise its numbers must be numbers.
+bool Diverges(int hiddenLayers, std::uint64_t steps)
+{
+  inr::TrainingOptions options = Steps(steps);
+  options.description = inr::ChooseDescription({24, 20, 17}, Float, 0);
+  options.description->network.activation = inr::Activation::Exponential;
+  options.description->network.outputActivation = inr::Activation::Exponential;
+  options.description->network.hiddenLayers = hiddenLayers;
+  try {
+    const inr::ModelPointer model = inr::TrainModel(Waves().data(), {}, options);
+    ExpectFinite(*model);
+    EXPECT_TRUE(std::isfinite(model->quality->psnr) && std::isfinite(model->quality->maxError));
+    return false;
+  } catch (const inr::Error& error) {
+    EXPECT_EQ(error.code(), inr::ErrorCode::InvalidModel);
+    return true;
+  }
+}
+
+/// The last update is followed by no loss that would tell.
+TEST(Divergence, IsSaidWhateverTheStepItComesIn)
+{
+  int diverged = 0;
+  int trained = 0;
+  for (const int layers : {1, 3, 4, 5}) {
+    for (std::uint64_t steps = 1; steps <= 4; ++steps) {
+      Diverges(layers, steps) ? ++diverged : ++trained;
+    }
+  }
+  EXPECT_GT(diverged, 0);
+  EXPECT_GT(trained, 0);
 }
 
 } // namespace
