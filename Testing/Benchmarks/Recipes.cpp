@@ -7,16 +7,14 @@
 //
 // prints one JSON object: the parameters and the PSNR of ours, at the default size, and of
 // upstream's next smaller and next larger model. recipes.py writes the result file.
-#include "Core/Error.h"
 #include "Core/Training/Quality.h"
 #include "Testing/Benchmarks/Models.h"
+#include "Testing/Benchmarks/RawVolume.h"
 #include "Testing/Benchmarks/UpstreamRecipe.h"
 
 #include <Imath/half.h>
 
-#include <fstream>
 #include <iostream>
-#include <iterator>
 
 namespace {
 
@@ -94,32 +92,16 @@ void Compare(const inr::VolumeData& volume, std::uint64_t samples)
             << TrainUpstream(volume, larger, samples) << "]}" << std::endl;
 }
 
-std::vector<char> ReadBytes(const char* path)
-{
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 } // namespace
 
 int main(int argc, char* argv[])
 {
-  const auto type = argc == 7 ? inr::ScalarFromName(argv[2]) : std::nullopt;
-  if (!type) {
+  if (argc != 7) {
     std::cerr << "usage: bench_recipes VOXELS.raw TYPE NX NY NZ SAMPLES\n";
     return 2;
   }
-  const std::vector<char> bytes = ReadBytes(argv[1]);
-  inr::VolumeData volume;
-  volume.values = bytes.data();
-  volume.type = *type;
-  volume.dims = {std::stoll(argv[3]), std::stoll(argv[4]), std::stoll(argv[5])};
-  if (bytes.size() != static_cast<std::size_t>(volume.voxels()) * inr::ScalarSize(*type)) {
-    std::cerr << argv[1] << " does not hold as many values\n";
-    return 1;
-  }
   try {
-    Compare(volume, std::stoull(argv[6]));
+    Compare(RawVolume(argv + 1).data(), std::stoull(argv[6]));
   } catch (const inr::Error& error) {
     std::cerr << error.what() << "\n";
     return 1;

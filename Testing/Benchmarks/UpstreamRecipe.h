@@ -32,8 +32,8 @@ public:
     this->drawBatch(source);
     this->aimBeyond();
     this->Descent.computeGradient(this->Positions, this->Targets);
-    this->update();
     ++this->Steps;
+    this->update();
   }
 
   const std::vector<float>& parameters() { return this->Descent.parameters(); }
@@ -90,10 +90,11 @@ private:
     });
   }
 
-  /// The factor is applied at step 2000, 3000, ...
+  /// The factor is applied after step 2000, 3000, ...
   double learningRate() const
   {
-    return 5e-3 * std::pow(0.99, this->Steps < 2000 ? 0.0 : (this->Steps - 1000) / 1000);
+    const std::uint64_t times = this->Steps > 2000 ? (this->Steps - 1001) / 1000 : 0;
+    return 5e-3 * std::pow(0.99, static_cast<double>(times));
   }
 
   /// Adam. A feature without gradient is left alone and counts its own updates; the network's
@@ -101,6 +102,9 @@ private:
   void update()
   {
     const std::vector<float>& gradient = this->Descent.gradient();
+    const auto updates = static_cast<double>(this->Steps);
+    this->Corrections.push_back(std::sqrt(1.0 - std::pow(0.999, updates)) /
+                                (1.0 - std::pow(0.9, updates)));
     const auto count = static_cast<std::int64_t>(gradient.size());
     const double rate = this->learningRate();
     this->Threads.forEachBlock(count, BlockSize, [&](std::int64_t begin, std::int64_t end) {
@@ -116,14 +120,14 @@ private:
 
   void updateOne(std::int64_t k, float gradient, double rate)
   {
-    constexpr float beta1 = 0.9f, beta2 = 0.999f, epsilon = 1e-15f;
+    constexpr float beta1 = 0.9f;
+    constexpr float beta2 = 0.999f;
+    constexpr float epsilon = 1e-15f;
     float& first = this->FirstMoments[k];
     float& second = this->SecondMoments[k];
-    const std::uint32_t updates = ++this->Updates[k];
+    const double correction = this->Corrections[++this->Updates[k]];
     first = beta1 * first + (1.0f - beta1) * gradient;
     second = beta2 * second + (1.0f - beta2) * gradient * gradient;
-    const double correction =
-        std::sqrt(1.0 - std::pow(beta2, updates)) / (1.0 - std::pow(beta1, updates));
     this->Descent.parameters()[k] -=
         static_cast<float>(rate * correction * first / (std::sqrt(second) + epsilon));
   }
@@ -134,7 +138,8 @@ private:
   inr::GradientDescent Descent;
   std::vector<float> FirstMoments;
   std::vector<float> SecondMoments;
-  std::vector<std::uint32_t> Updates;
+  std::vector<std::uint32_t> Updates;   ///< of each parameter
+  std::vector<double> Corrections{1.0}; ///< of Adam's bias, after so many updates
   std::vector<glm::vec3> Positions;
   std::vector<float> Targets;
   std::uint64_t Steps = 0;

@@ -1,65 +1,100 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Quality over file size for volumes, each trained for the same number of steps.
+"""Quality over file size for volumes, each trained for the same number of steps, and what zfp (and
+TTHRESH and SZ3, whose figures are given) makes of some of them.
 
-    PYTHONPATH=build/lib/python pvpython Testing/Benchmarks/rate_distortion.py STEPS VOLUME.vti...
+    cmake --preset core -DINR_BUILD_BENCHMARKS=ON
+    cmake --build --preset core --target bench_train
+    Testing/Benchmarks/rate_distortion.py build-core/Testing/Benchmarks/bench_train STEPS \\
+        VOLUME.vti...
+    Testing/Benchmarks/plots.py Testing/Benchmarks/results/MACHINE
 
-Every volume is saved at the default size and at four times that size's ratio; results go to
-rate-distortion.json.
+Every volume is saved at the default size and at four times that size's ratio, those that
+other_compressors.py has figures of at more ratios; results go to rate-distortion.json. Needs zfp's
+Python module (Debian: python3-zfpy).
 """
+import json
 import math
 import os
+import subprocess
 import sys
 import tempfile
 
-import inrvolume
-from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+import other_compressors
+import results_file
+import volumes
 
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import results_file  # noqa: E402
-
-
-def save(reader, folder, steps, ratio):
-    writer = inrvolume.vtkINRWriter()
-    writer.SetInputConnection(reader.GetOutputPort())
-    writer.SetFileName(os.path.join(folder, "model.inr"))
-    writer.SetMaximumSteps(steps)
-    writer.SetTimeLimit(0)
-    writer.SetTargetRatio(ratio)
-    writer.Write()
-    return writer
+RATIOS = (8, 16, 32, 64, 128, 256, 400)
 
 
-def measure(path, folder, steps):
-    reader = vtkXMLImageDataReader()
-    reader.SetFileName(path)
-    reader.Update()
-    low, high = reader.GetOutput().GetScalarRange()
-    name = os.path.basename(path)[:-len(".vti")]
-    results, ratio = [], 0.0
-    for size in ("default", "small"):
-        writer = save(reader, folder, steps, ratio)
-        note = (f"file ratio {writer.GetRatio():.1f}, {steps} steps, "
-                f"{writer.GetTrainingSeconds():.1f} s of training")
-        figures = (("PSNR", writer.GetPSNR(), "dB", "higher"), ("SSIM", writer.GetSSIM(), "", "higher"),
-                   ("maximum error", writer.GetMaximumError() / (high - low), "of the range", "lower"),
-                   ("ratio", writer.GetRatio(), "", "higher"))
-        for what, value, unit, better in figures:
-            if not math.isnan(value):
-                results.append(results_file.result(f"{name} {size} {what}", round(value, 5), unit,
-                                                   better, note))
-        print(f"{name} {size}: PSNR {writer.GetPSNR():.2f} dB, SSIM {writer.GetSSIM():.4f}, {note}",
-              flush=True)
-        ratio = 4.0 * writer.GetRatio()
-    return results
+class Writer:
+    """Saves one volume at any ratio."""
+
+    def __init__(self, program, steps, volume, folder):
+        self.program, self.steps, self.volume = program, steps, volume
+        self.path = os.path.join(folder, "model.inr")
+
+    def save(self, ratio):
+        """What Train.cpp says of the file, and a note."""
+        command = [self.program, *self.volume, str(self.steps), str(ratio), self.path]
+        output = subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout
+        file = json.loads(output.replace(b"nan", b"NaN"))
+        file["note"] = (f"file ratio {file['ratio']:.1f}, {file['parameters']:,} parameters, "
+                        f"{self.steps} steps, {file['seconds']:.1f} s of training")
+        return file
+
+
+def figures_of(file, name):
+    """Every figure of one file."""
+    for what, key, unit, better in (
+            ("PSNR", "psnr", "dB", "higher"), ("SSIM", "ssim", "", "higher"),
+            ("maximum error", "error", "of the range", "lower"), ("ratio", "ratio", "", "higher")):
+        if not math.isnan(file[key]):
+            yield results_file.result(f"{name} {what}", round(file[key], 5), unit, better,
+                                      file["note"])
+
+
+def point(name, method, ratio, psnr, note):
+    """A point of the plot."""
+    return results_file.result(f"{name}, {method}, PSNR at {ratio:.3g}", round(psnr, 3), "dB",
+                               "higher", note, ratio=round(ratio, 2))
+
+
+def two_sizes(name, writer):
+    default = writer.save(0)
+    yield from figures_of(default, f"{name} default")
+    yield from figures_of(writer.save(4 * default["ratio"]), f"{name} small")
+
+
+def curves(name, voxels, writer):
+    for ratio in RATIOS:
+        file = writer.save(ratio)
+        yield point(name, "INR", file["ratio"], file["psnr"], file["note"])
+    for method, ratio, psnr in other_compressors.zfp(voxels):
+        yield point(name, method, ratio, psnr, "")
+    for method, ratio, psnr in other_compressors.GIVEN[name]:
+        yield point(name, method, ratio, psnr, "given, not measured in this run")
+
+
+def measure(program, steps, path):
+    name, voxels = volumes.name_of(path), volumes.read(path)
+    with volumes.raw_file(voxels) as volume, tempfile.TemporaryDirectory() as folder:
+        writer = Writer(program, steps, volume, folder)
+        yield from two_sizes(name, writer)
+        if name in other_compressors.GIVEN:
+            yield from curves(name, voxels, writer)
 
 
 def main():
-    steps, volumes = int(sys.argv[1]), sys.argv[2:]
+    program, steps, *paths = sys.argv[1:]
     results = []
-    with tempfile.TemporaryDirectory() as folder:
-        for path in volumes:
-            results += measure(path, folder, steps)
+    for path in paths:
+        for result in measure(program, int(steps), path):
+            results.append(result)
+            print(f"{result['name']}: {result['value']} {result['unit']} ({result['note']})",
+                  flush=True)
     results_file.write("rate-distortion", results)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Quality of our training against upstream's recipe, on volumes; writes recipes.json.
 
-    cmake --preset core -DINR_BUILD_BENCHMARKS=ON && cmake --build --preset core --target bench_recipes
+    cmake --preset core -DINR_BUILD_BENCHMARKS=ON
+    cmake --build --preset core --target bench_recipes
     Testing/Benchmarks/recipes.py build-core/Testing/Benchmarks/bench_recipes VOLUME.vti...
 
-Both see 500 x 65,536 samples and are stored in half precision. Upstream's recipe is its default
-configuration (8 levels of 8 features from 16^3 on, each twice as fine as the one before, 64 x 4) with
-another size of table, trained as UpstreamRecipe.h says. As sizes of tables are powers of two, its
+Both see 200 x 65,536 samples and are stored in half precision. Upstream's recipe is its default
+configuration (8 levels of 8 features from 16^3 on, each twice as fine as the one before, 64 x 4)
+with another size of table, trained as UpstreamRecipe.h says. As sizes of tables are powers of two, its
 quality at our number of parameters is interpolated between the next smaller and the next larger
 model, over the logarithm of the number.
 """
@@ -15,21 +16,19 @@ import json
 import math
 import subprocess
 import sys
-import tempfile
 
 import results_file
 import volumes
 
-SAMPLES = 500 * 65536
+SAMPLES = 200 * 65536
 
 
 def train(program, path):
     """What the program found: {"ours": ..., "upstream": [smaller, larger]}."""
-    voxels = volumes.read(path)
-    with tempfile.NamedTemporaryFile() as file:
-        voxels.tofile(file.name)
-        command = [program, file.name, voxels.dtype.name, *map(str, voxels.shape[::-1]), str(SAMPLES)]
-        return json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout)
+    with volumes.raw_file(volumes.read(path)) as volume:
+        output = subprocess.run([program, *volume, str(SAMPLES)], stdout=subprocess.PIPE,
+                                check=True).stdout
+    return json.loads(output)
 
 
 def upstream_psnr(smaller, larger, parameters):
@@ -44,7 +43,8 @@ def results_of(name, found):
     note = (f"{ours['parameters']:,} parameters; upstream's {smaller['psnr']:.2f} dB with "
             f"{smaller['parameters']:,} and {larger['psnr']:.2f} dB with {larger['parameters']:,}")
     yield results_file.result(f"PSNR, {name}", round(ours["psnr"], 3), "dB", "higher", note)
-    yield results_file.result(f"upstream recipe PSNR, {name}", round(theirs, 3), "dB", "higher", note)
+    yield results_file.result(f"upstream recipe PSNR, {name}", round(theirs, 3), "dB", "higher",
+                              note)
     yield results_file.result(f"vs upstream recipe PSNR, {name}", round(ours["psnr"] - theirs, 3),
                               "dB", "higher", note, baseline=f"upstream recipe PSNR, {name}",
                               target=0)

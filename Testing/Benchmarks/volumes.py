@@ -2,8 +2,10 @@
 """Volumes for the comparisons: the first point array of a .vti file of one piece, read without VTK,
 whose reader a security update of expat broke for "appended" data."""
 import base64
+import contextlib
 import re
 import struct
+import tempfile
 import zlib
 from pathlib import Path
 
@@ -50,3 +52,11 @@ def inflated(stored):
         blocks.append(zlib.decompress(stored[at:at + size]))
         at += size
     return b"".join(blocks)
+
+
+@contextlib.contextmanager
+def raw_file(voxels):
+    """What programs with a RawVolume take: a file of the voxels alone, type and sizes."""
+    with tempfile.NamedTemporaryFile() as file:
+        voxels.tofile(file.name)
+        yield [file.name, voxels.dtype.name, *map(str, voxels.shape[::-1])]
