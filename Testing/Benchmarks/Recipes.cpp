@@ -6,7 +6,8 @@
 //   bench_recipes VOXELS.raw TYPE NX NY NZ SAMPLES
 //
 // prints one JSON object: the parameters and the PSNR of ours, at the default size, and of
-// upstream's next smaller and next larger model. recipes.py writes the result file.
+// upstream's next larger model with 8 and with 2 features a level. recipes.py writes the result
+// file.
 #include "Core/Training/Quality.h"
 #include "Testing/Benchmarks/Models.h"
 #include "Testing/Benchmarks/RawVolume.h"
@@ -41,26 +42,38 @@ Outcome TrainOurs(const inr::VolumeData& volume, std::uint64_t samples)
   return {model->parameters.size(), model->quality.value().psnr};
 }
 
-/// Upstream's default model with another size of table.
-inr::Description UpstreamDescription(int log2Size)
+/// Upstream's default model with fewer features or another size of table.
+inr::Description UpstreamDescription(int features, int log2Size)
 {
   inr::Description description = DefaultDescription();
+  description.grid.features = features;
   description.grid.log2HashmapSize = log2Size;
   return description;
 }
 
-Outcome TrainUpstream(const inr::VolumeData& volume, int log2Size, std::uint64_t samples)
+/// The smallest one that has at least `parameters`.
+inr::Description NextLarger(int features, std::uint64_t parameters)
+{
+  int log2Size = 6;
+  while (inr::Layout(UpstreamDescription(features, log2Size)).parameterCount < parameters) {
+    ++log2Size;
+  }
+  return UpstreamDescription(features, log2Size);
+}
+
+Outcome TrainUpstream(const inr::VolumeData& volume, const inr::Description& description,
+                      std::uint64_t samples)
 {
   const inr::Arena arena;
   const inr::InstructionSet set = inr::ChooseInstructionSet("");
   const inr::VolumeStatistics range = inr::MeasureVolume(volume, arena);
   const inr::InMemorySource source(volume, range.low, range.high);
   auto model = std::make_shared<inr::Model>();
-  model->description = UpstreamDescription(log2Size);
+  model->description = description;
   model->volume.dims = volume.dims;
   model->volume.low = range.low;
   model->volume.high = range.high;
-  UpstreamRecipe recipe(model->description, set, arena);
+  UpstreamRecipe recipe(description, set, arena);
   for (std::uint64_t step = 0; step < samples / UpstreamRecipe::Batch; ++step) {
     recipe.step(source);
   }
@@ -73,23 +86,12 @@ Outcome TrainUpstream(const inr::VolumeData& volume, int log2Size, std::uint64_t
   return {model->parameters.size(), report.quality.psnr};
 }
 
-/// Upstream's smallest table that gives at least `parameters`.
-int NextLargerTable(std::uint64_t parameters)
-{
-  int log2Size = 6;
-  while (inr::Layout(UpstreamDescription(log2Size)).parameterCount < parameters) {
-    ++log2Size;
-  }
-  return log2Size;
-}
-
 void Compare(const inr::VolumeData& volume, std::uint64_t samples)
 {
   const Outcome ours = TrainOurs(volume, samples);
-  const int larger = NextLargerTable(ours.parameters);
-  std::cout << R"({"ours": )" << ours << R"(, "upstream": [)"
-            << TrainUpstream(volume, larger - 1, samples) << ", "
-            << TrainUpstream(volume, larger, samples) << "]}" << std::endl;
+  std::cout << R"({"ours": )" << ours << R"(, "upstream": {"8": )"
+            << TrainUpstream(volume, NextLarger(8, ours.parameters), samples) << R"(, "2": )"
+            << TrainUpstream(volume, NextLarger(2, ours.parameters), samples) << "}}" << std::endl;
 }
 
 } // namespace
