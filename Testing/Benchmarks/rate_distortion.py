@@ -13,35 +13,17 @@ Every volume is saved at the default size and at four times that size's ratio, t
 other_compressors.py has figures of at more ratios; results go to rate-distortion.json. Needs zfp's
 Python module (Debian: python3-zfpy).
 """
-import json
 import math
 import os
-import subprocess
 import sys
 import tempfile
 
 import other_compressors
 import results_file
 import volumes
+from inr_files import Writer
 
 RATIOS = (8, 16, 32, 64, 128, 256, 400)
-
-
-class Writer:
-    """Saves one volume at any ratio."""
-
-    def __init__(self, program, steps, volume, folder):
-        self.program, self.steps, self.volume = program, steps, volume
-        self.path = os.path.join(folder, "model.inr")
-
-    def save(self, ratio):
-        """What Train.cpp says of the file, and a note."""
-        command = [self.program, *self.volume, str(self.steps), str(ratio), self.path]
-        output = subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout
-        file = json.loads(output.replace(b"nan", b"NaN"))
-        file["note"] = (f"file ratio {file['ratio']:.1f}, {file['parameters']:,} parameters, "
-                        f"{self.steps} steps, {file['seconds']:.1f} s of training")
-        return file
 
 
 def figures_of(file, name):
@@ -61,7 +43,7 @@ def point(name, method, ratio, psnr, note):
 
 
 def two_sizes(name, writer):
-    default = writer.save(0)
+    default = writer.save()
     yield from figures_of(default, f"{name} default")
     yield from figures_of(writer.save(4 * default["ratio"]), f"{name} small")
 
@@ -79,7 +61,7 @@ def curves(name, voxels, writer):
 def measure(program, steps, path):
     name, voxels = volumes.name_of(path), volumes.read(path)
     with volumes.raw_file(voxels) as volume, tempfile.TemporaryDirectory() as folder:
-        writer = Writer(program, steps, volume, folder)
+        writer = Writer(program, steps, volume, os.path.join(folder, "model.inr"))
         yield from two_sizes(name, writer)
         if name in other_compressors.GIVEN:
             yield from curves(name, voxels, writer)
@@ -93,7 +75,7 @@ def main():
             results.append(result)
             print(f"{result['name']}: {result['value']} {result['unit']} ({result['note']})",
                   flush=True)
-    results_file.write("rate-distortion", results)
+        results_file.write("rate-distortion", results)  # a long run may end early
 
 
 if __name__ == "__main__":

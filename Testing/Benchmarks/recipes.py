@@ -49,7 +49,7 @@ def main():
         for result in results_of(volumes.name_of(path), train(sys.argv[1], path)):
             results.append(result)
             print(f"{result['name']}: {result['value']} dB ({result['note']})", flush=True)
-    results_file.write("recipes", results)
+        results_file.write("recipes", results)  # a long run may end early
 
 
 if __name__ == "__main__":
