@@ -5,9 +5,8 @@
 //
 //   bench_recipes VOXELS.raw TYPE NX NY NZ SAMPLES
 //
-// prints one JSON object: the parameters and the PSNR of ours, at the default size, and of
-// upstream's next larger model with 8 and with 2 features a level. recipes.py writes the result
-// file.
+// prints one JSON object: the parameters and the PSNR of ours, at the default size, and of the next
+// larger ones of upstream's two example models. recipes.py writes the result file.
 #include "Core/Training/Quality.h"
 #include "Testing/Benchmarks/Models.h"
 #include "Testing/Benchmarks/RawVolume.h"
@@ -42,23 +41,26 @@ Outcome TrainOurs(const inr::VolumeData& volume, std::uint64_t samples)
   return {model->parameters.size(), model->quality.value().psnr};
 }
 
-/// Upstream's default model with fewer features or another size of table.
-inr::Description UpstreamDescription(int features, int log2Size)
+/// instantvnr's second example: 8 levels of 4 features from 4^3 on, 32 x 4.
+inr::Description SecondDescription()
 {
-  inr::Description description = DefaultDescription();
-  description.grid.features = features;
-  description.grid.log2HashmapSize = log2Size;
+  inr::Description description;
+  description.grid.levels = 8;
+  description.grid.features = 4;
+  description.grid.baseResolution = 4;
+  description.network.neurons = 32;
+  description.network.hiddenLayers = 4;
   return description;
 }
 
-/// The smallest one that has at least `parameters`.
-inr::Description NextLarger(int features, std::uint64_t parameters)
+/// The model with the smallest table that gives at least `parameters`.
+inr::Description NextLarger(inr::Description description, std::uint64_t parameters)
 {
-  int log2Size = 6;
-  while (inr::Layout(UpstreamDescription(features, log2Size)).parameterCount < parameters) {
-    ++log2Size;
+  description.grid.log2HashmapSize = 6;
+  while (inr::Layout(description).parameterCount < parameters) {
+    ++description.grid.log2HashmapSize;
   }
-  return UpstreamDescription(features, log2Size);
+  return description;
 }
 
 Outcome TrainUpstream(const inr::VolumeData& volume, const inr::Description& description,
@@ -89,9 +91,12 @@ Outcome TrainUpstream(const inr::VolumeData& volume, const inr::Description& des
 void Compare(const inr::VolumeData& volume, std::uint64_t samples)
 {
   const Outcome ours = TrainOurs(volume, samples);
-  std::cout << R"({"ours": )" << ours << R"(, "upstream": {"8": )"
-            << TrainUpstream(volume, NextLarger(8, ours.parameters), samples) << R"(, "2": )"
-            << TrainUpstream(volume, NextLarger(2, ours.parameters), samples) << "}}" << std::endl;
+  const auto train = [&](const inr::Description& description) {
+    return TrainUpstream(volume, NextLarger(description, ours.parameters), samples);
+  };
+  std::cout << R"({"ours": )" << ours << R"(, "upstream": {"8 features from 16^3 on": )"
+            << train(DefaultDescription()) << R"(, "4 features from 4^3 on": )"
+            << train(SecondDescription()) << "}}" << std::endl;
 }
 
 } // namespace

@@ -7,8 +7,8 @@ zfp stream of about the same PSNR. Writes random-access.json.
     cmake --build --preset core --target bench_train bench_random_access
     Testing/Benchmarks/random_access.py build-core/Testing/Benchmarks STEPS VOLUME.vti...
 
-A model gives any voxel for itself. zfp's stream with a bound on the error is decompressed whole (one
-at a fixed rate could be in parts, but takes several times the bytes for the same PSNR, see
+A model gives any voxel for itself. zfp's stream with a bound on the error is decompressed whole
+(one at a fixed rate could be in parts, but takes several times the bytes for the same PSNR, see
 rate_distortion.py), and so are TTHRESH's and SZ3's; what a picture takes comes on top of that. Two
 threads, and one for zfp, which never takes more to decompress. Needs zfp's Python module (Debian:
 python3-zfpy).

@@ -4,13 +4,13 @@
 
     cmake --preset core -DINR_BUILD_BENCHMARKS=ON
     cmake --build --preset core --target bench_recipes
-    Testing/Benchmarks/recipes.py build-core/Testing/Benchmarks/bench_recipes VOLUME.vti...
+    Testing/Benchmarks/recipes.py build-core/Testing/Benchmarks/bench_recipes STEPS VOLUME.vti...
 
-Both see 200 x 65,536 samples and are stored in half precision. Upstream's recipe is its default
-configuration (8 levels from 16^3 on, each twice as fine as the one before, 64 x 4), trained as
-UpstreamRecipe.h says. Its table has the size that gives at least as many parameters as ours, up to
-twice as many, and what counts is the better one of 8 features a level, its default, and 2, whose
-larger tables suit small models.
+Both see STEPS x 65,536 samples and are stored in half precision. Upstream's recipe is the better
+one of its two examples: 8 levels of 8 features from 16^3 on with a network of 64 x 4, which is its
+default, and 8 of 4 from 4^3 on with 32 x 4; each level twice as fine as the one before, a table of
+the size that gives at least as many parameters as ours (up to twice as many), trained as
+UpstreamRecipe.h says.
 """
 import json
 import subprocess
@@ -19,23 +19,21 @@ import sys
 import results_file
 import volumes
 
-SAMPLES = 200 * 65536
 
-
-def train(program, path):
-    """What the program found: {"ours": outcome, "upstream": {features: outcome}}."""
+def train(program, samples, path):
+    """What the program found: {"ours": outcome, "upstream": {model: outcome}}."""
     with volumes.raw_file(volumes.read(path)) as volume:
-        output = subprocess.run([program, *volume, str(SAMPLES)], stdout=subprocess.PIPE,
+        output = subprocess.run([program, *volume, str(samples)], stdout=subprocess.PIPE,
                                 check=True).stdout
     return json.loads(output)
 
 
-def results_of(name, found):
+def results_of(name, found, steps):
     ours, upstream = found["ours"], found["upstream"]
     theirs = max(outcome["psnr"] for outcome in upstream.values())
-    note = f"{ours['parameters']:,} parameters; upstream's " + " and ".join(
-        f"{outcome['psnr']:.2f} dB with {outcome['parameters']:,}, {features} features a level"
-        for features, outcome in upstream.items())
+    note = (f"{steps} x 65,536 samples, {ours['parameters']:,} parameters; upstream's " +
+            " and ".join(f"{outcome['psnr']:.2f} dB with {outcome['parameters']:,} ({model})"
+                         for model, outcome in upstream.items()))
     baseline = f"upstream recipe PSNR, {name}"
     yield results_file.result(f"PSNR, {name}", round(ours["psnr"], 3), "dB", "higher", note)
     yield results_file.result(baseline, round(theirs, 3), "dB", "higher", note)
@@ -44,9 +42,11 @@ def results_of(name, found):
 
 
 def main():
+    program, steps, *paths = sys.argv[1:]
     results = []
-    for path in sys.argv[2:]:
-        for result in results_of(volumes.name_of(path), train(sys.argv[1], path)):
+    for path in paths:
+        found = train(program, 65536 * int(steps), path)
+        for result in results_of(volumes.name_of(path), found, steps):
             results.append(result)
             print(f"{result['name']}: {result['value']} dB ({result['note']})", flush=True)
         results_file.write("recipes", results)  # a long run may end early
