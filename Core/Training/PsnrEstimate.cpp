@@ -4,6 +4,8 @@
 #include "Core/Model/Model.h"
 #include "Core/Random.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +15,14 @@ namespace {
 constexpr std::int64_t SampleCount = 1 << 15;
 constexpr std::int64_t BlockSize = 64;
 constexpr std::uint64_t EstimateStream = 3; // apart from those of GradientDescent
+
+glm::vec3 VoxelCentre(const glm::vec3& position, const glm::i64vec3& dims)
+{
+  const glm::dvec3 size(dims);
+  const glm::dvec3 voxel = glm::min(glm::floor(glm::dvec3(position) * size), size - 1.0);
+  return glm::vec3((voxel + 0.5) / size);
+}
+
 } // namespace
 
 PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed)
@@ -20,7 +30,8 @@ PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed)
 {
   const std::uint64_t stream = RandomBits(seed, EstimateStream);
   for (std::int64_t k = 0; k < SampleCount; ++k) {
-    this->Positions[k] = RandomPosition(stream, static_cast<std::uint64_t>(k), source.dims());
+    const auto drawn = static_cast<std::uint64_t>(k);
+    this->Positions[k] = VoxelCentre(RandomPosition(stream, drawn, source.dims()), source.dims());
   }
   source.sample(this->Positions.data(), SampleCount, this->Targets.data());
   this->Known = std::count_if(this->Targets.begin(), this->Targets.end(),

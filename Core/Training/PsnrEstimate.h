@@ -10,7 +10,8 @@
 
 namespace inr {
 
-/// PSNR of a network in training, on a fixed set of random positions that training does not draw.
+/// PSNR of a network in training, on a fixed set of random voxels: the quality of a file is
+/// measured at voxels, too.
 class PsnrEstimate
 {
 public:
@@ -20,7 +21,7 @@ public:
   double measure(const ModelView& model, const EvaluateKernel& kernel,
                  const StopCheck& check) const;
 
-  /// Normalised outputs at the positions; unfinished when `check` stopped it.
+  /// Normalised outputs at these voxels; unfinished when `check` stopped it.
   std::vector<float> values(const ModelView& model, const EvaluateKernel& kernel,
                             const StopCheck& check) const;
 

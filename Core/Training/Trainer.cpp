@@ -130,7 +130,7 @@ public:
       // At fixed steps, so that a run which ends by quality ends at the same step every time.
       if (this->Options.targetPsnr > 0 && descent.steps() % PsnrInterval == 0) {
         this->Psnr = estimate.measure(descent.view(), kernel, check);
-        if (this->Psnr >= this->Options.targetPsnr) {
+        if (this->Psnr >= this->wantedPsnr()) {
           break;
         }
       }
@@ -149,6 +149,13 @@ public:
 private:
   static constexpr std::uint64_t PsnrInterval = 200;
   static constexpr double ReportInterval = 0.2; // seconds, within a step
+
+  /// With what storing the parameters may cost afterwards.
+  double wantedPsnr() const
+  {
+    const bool loses = this->Options.storedAs == ParameterType::Quantised;
+    return this->Options.targetPsnr + (loses ? QuantiseLimits().loss : 0.0);
+  }
 
   bool timeIsUp() const
   {
