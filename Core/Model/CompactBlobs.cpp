@@ -55,9 +55,9 @@ std::string Packed(const InputFile& file, const Blob& blob, std::uint32_t& check
 }
 
 // What the reader would refuse must not be written.
-std::string PackedReadably(const std::string& plain)
+std::string PackedReadably(const std::string& plain, const std::vector<std::size_t>& boundaries)
 {
-  std::string packed = Compress(plain);
+  std::string packed = Compress(plain, boundaries);
   if (!MayExpand(static_cast<std::int64_t>(packed.size()),
                  static_cast<std::int64_t>(plain.size()))) {
     throw Error(ErrorCode::InvalidModel,
@@ -65,6 +65,55 @@ std::string PackedReadably(const std::string& plain)
                 "half precision");
   }
   return packed;
+}
+
+// Parameters that are distributed alike and lie together in the blob: a matrix, or one feature of a
+// level.
+struct Run
+{
+  std::uint64_t first; // parameter
+  std::uint64_t stride;
+  std::uint64_t count;
+  std::size_t group;
+};
+
+std::vector<Run> RunsOf(const Description& description)
+{
+  const std::size_t matrices = Layout(description).layers.size();
+  const std::vector<ParameterGroup> groups = ParameterGroups(description);
+  std::vector<Run> runs;
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const auto features = static_cast<std::uint64_t>(k < matrices ? 1 : description.grid.features);
+    for (std::uint64_t feature = 0; feature < features; ++feature) {
+      runs.push_back({groups[k].offset + feature, features, groups[k].count / features, k});
+    }
+  }
+  return runs;
+}
+
+// Calls body(place in the blob, parameter, group) for every parameter.
+template <typename Body> void ForEachParameter(const std::vector<Run>& runs, const Body& body)
+{
+  std::size_t place = 0;
+  for (const Run& run : runs) {
+    for (std::uint64_t k = 0; k < run.count; ++k) {
+      body(place++, run.first + k * run.stride, run.group);
+    }
+  }
+}
+
+// Where runs end in the low bytes, then in the high ones.
+std::vector<std::size_t> BoundariesOf(const std::vector<Run>& runs)
+{
+  std::vector<std::size_t> boundaries;
+  std::size_t end = 0;
+  for (int plane = 0; plane < Planes; ++plane) {
+    for (const Run& run : runs) {
+      boundaries.push_back(end += run.count);
+    }
+  }
+  boundaries.pop_back(); // the end of it all
+  return boundaries;
 }
 
 float Bound(std::uint8_t code) { return static_cast<float>(code) / LargestBound; }
@@ -96,6 +145,17 @@ std::int64_t PlainParameterBytes(std::uint64_t parameters)
 
 std::int64_t PlainRangeBytes(std::int64_t cells) { return 2 * cells; }
 
+std::int64_t LargestQuantised(const Description& description)
+{
+  return CompressedBound(PlainParameterBytes(Layout(description).parameterCount),
+                         Planes * RunsOf(description).size());
+}
+
+std::int64_t LargestCompactRanges(std::int64_t cells)
+{
+  return CompressedBound(PlainRangeBytes(cells), 1);
+}
+
 std::string EncodeQuantised(const Model& model)
 {
   const std::vector<ParameterGroup> groups = ParameterGroups(model.description);
@@ -107,32 +167,27 @@ std::string EncodeQuantised(const Model& model)
   }
   const std::size_t count = model.parameters.size();
   std::string plain(count * Planes, '\0');
-  for (std::size_t group = 0; group < groups.size(); ++group) {
-    const std::uint64_t end = groups[group].offset + groups[group].count;
-    for (std::uint64_t k = groups[group].offset; k < end; ++k) {
-      const std::uint16_t code = ZigZag(MultipleOf(model.parameters[k], model.steps[group], k));
-      plain[k] = static_cast<char>(code & 0xff);
-      plain[count + k] = static_cast<char>(code >> 8);
-    }
-  }
-  return PackedReadably(plain);
+  const std::vector<Run> runs = RunsOf(model.description);
+  ForEachParameter(runs, [&](std::size_t place, std::uint64_t k, std::size_t group) {
+    const std::uint16_t code = ZigZag(MultipleOf(model.parameters[k], model.steps[group], k));
+    plain[place] = static_cast<char>(code & 0xff);
+    plain[count + place] = static_cast<char>(code >> 8);
+  });
+  return PackedReadably(plain, BoundariesOf(runs));
 }
 
 std::vector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
                                    std::uint32_t& checksum)
 {
-  const std::vector<ParameterGroup> groups = ParameterGroups(header.description);
-  const std::uint64_t count = groups.back().offset + groups.back().count;
+  const std::uint64_t count = Layout(header.description).parameterCount;
   const auto plain =
       Decompress(Packed(file, blob, checksum), PlainParameterBytes(count), "parameters");
   std::vector<float> parameters(count);
-  for (std::size_t group = 0; group < groups.size(); ++group) {
-    const std::uint64_t end = groups[group].offset + groups[group].count;
-    for (std::uint64_t k = groups[group].offset; k < end; ++k) {
-      const auto code = static_cast<std::uint16_t>(plain[k] | plain[count + k] << 8);
-      parameters[k] = ValueOfMultiple(FromZigZag(code), header.steps[group]);
-    }
-  }
+  ForEachParameter(
+      RunsOf(header.description), [&](std::size_t place, std::uint64_t k, std::size_t group) {
+        const auto code = static_cast<std::uint16_t>(plain[place] | plain[count + place] << 8);
+        parameters[k] = ValueOfMultiple(FromZigZag(code), header.steps[group]);
+      });
   return parameters;
 }
 
@@ -145,7 +200,7 @@ std::string EncodeCompactRanges(const std::vector<ValueRange>& ranges)
     plain[k] = static_cast<char>(range.empty() ? 255 : BoundBelow(range.low));
     plain[ranges.size() + k] = static_cast<char>(range.empty() ? 0 : BoundAbove(range.high));
   }
-  return PackedReadably(plain);
+  return PackedReadably(plain, {ranges.size()});
 }
 
 std::vector<ValueRange> DecodeCompactRanges(const InputFile& file, const Blob& blob,

@@ -18,6 +18,10 @@ namespace inr {
 std::int64_t PlainParameterBytes(std::uint64_t parameters);
 std::int64_t PlainRangeBytes(std::int64_t cells);
 
+/// Bytes that the blobs take at most.
+std::int64_t LargestQuantised(const Description& description);
+std::int64_t LargestCompactRanges(std::int64_t cells);
+
 /// The parameters as multiples of `model.steps`. Throws Error(InvalidModel) for a value that is not
 /// finite or not within 16 bits of its step, and for steps that are not one for each group.
 std::string EncodeQuantised(const Model& model);

@@ -4,15 +4,17 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace inr {
 
-/// `bytes` as one zstd frame (RFC 8878). The same bytes give the same frame on any machine with the
-/// same zstd. Takes about a second for 8 MB.
-std::string Compress(const std::string& bytes);
+/// `bytes` as one zstd frame (RFC 8878). A block of it, with code lengths of its own, ends at each
+/// of `boundaries`, which rise: they part bytes that are distributed differently. The same bytes
+/// give the same frame on any machine with the same zstd. Takes about a second for 8 MB.
+std::string Compress(const std::string& bytes, const std::vector<std::size_t>& boundaries = {});
 
 /// Bytes that `Compress` makes of so many at most.
-std::int64_t CompressedBound(std::int64_t bytes);
+std::int64_t CompressedBound(std::int64_t bytes, std::size_t boundaries = 0);
 
 /// Whether a file may claim that `compressed` bytes stand for `plain` ones. Up to 256 MiB any ratio
 /// is accepted (constant data pack at 30,000:1), beyond that 64:1, so that a small file cannot ask

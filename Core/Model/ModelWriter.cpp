@@ -2,7 +2,6 @@
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
 #include "Core/Model/CompactBlobs.h"
-#include "Core/Model/Compression.h"
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/InrSection.h"
 #include "Core/Model/ModelBlobs.h"
@@ -132,8 +131,7 @@ Framing Frame(const Model& model, const BlobSizes& blobs, std::uint32_t checksum
   return framing;
 }
 
-// What the reader would refuse must not be written.
-void RequireWritable(const Model& model)
+void RequireParameters(const Model& model)
 {
   const std::uint64_t count = Layout(model.description).parameterCount;
   if (model.parameters.size() != count) {
@@ -141,11 +139,11 @@ void RequireWritable(const Model& model)
                 "the model has " + std::to_string(model.parameters.size()) +
                     " parameters where its description needs " + std::to_string(count));
   }
-  RequireStorable(model);
 }
 
 std::string ParameterBlob(const Model& model)
 {
+  RequireParameters(model);
   return IsCompact(model) ? EncodeQuantised(model)
                           : EncodeParameters(model.parameters, model.storedAs);
 }
@@ -164,13 +162,13 @@ BlobSizes SizesOf(const std::string& ranges, const std::string& parameters)
 // What they take at most, whatever the parameters are; exact but for compact files.
 BlobSizes LargestSizes(const Model& model)
 {
-  const std::uint64_t count = Layout(model.description).parameterCount;
   const auto cells = static_cast<std::int64_t>(model.macroCells.ranges.size());
   if (!IsCompact(model)) {
+    const std::uint64_t count = Layout(model.description).parameterCount;
     return {cells * static_cast<std::int64_t>(sizeof(ValueRange)),
             static_cast<std::int64_t>(count * ParameterSize(model.storedAs))};
   }
-  return {CompressedBound(PlainRangeBytes(cells)), CompressedBound(PlainParameterBytes(count))};
+  return {LargestCompactRanges(cells), LargestQuantised(model.description)};
 }
 
 void RequireSize(std::int64_t bytes)
@@ -183,7 +181,7 @@ void RequireSize(std::int64_t bytes)
 
 std::int64_t WriteFile(const Model& model, const std::string& path)
 {
-  RequireWritable(model);
+  RequireStorable(model);
   AtomicFile file(path);
   const std::string parameters = ParameterBlob(model);
   const std::string ranges = RangeBlob(model);

@@ -186,6 +186,14 @@ TEST_F(CompactFile, RangesKeepEmptinessAndWhatIsExact)
   EXPECT_EQ(ranges[3].high, 1.0f);
 }
 
+TEST_F(CompactFile, WrongCountsOfParametersAreNoted)
+{
+  auto model = CompactModel();
+  model->parameters.pop_back();
+  this->expectUnwritable(*model, "parameters");
+  EXPECT_THROW(inr::ModelFileSize(*model), inr::Error);
+}
+
 TEST_F(CompactFile, NeedsNoMacroCells)
 {
   auto model = CompactModel();
@@ -275,6 +283,20 @@ TEST_F(Frames, OfTheRightSizeAreRead)
   const std::size_t cells = CompactModel()->macroCells.ranges.size();
   WriteBytes(this->path(), this->withRanges(inr::Compress(std::string(2 * cells, '\x33'))));
   EXPECT_EQ(inr::ReadModel(this->path())->macroCells.ranges[0].high, 0.2f);
+}
+
+TEST_F(Frames, MayEndBlocksAnywhere)
+{
+  std::string bytes;
+  std::vector<std::size_t> boundaries;
+  for (std::size_t k = 0; k < 3000; ++k) {
+    boundaries.push_back(k);
+    bytes += static_cast<char>(inr::RandomBits(1, k));
+  }
+  const std::string frame = inr::Compress(bytes, boundaries);
+  EXPECT_LE(static_cast<std::int64_t>(frame.size()), inr::CompressedBound(3000, 3000));
+  const auto plain = inr::Decompress(frame, 3000, "bytes");
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(plain.get()), 3000), bytes);
 }
 
 TEST_F(Frames, OfOtherSizesAreRefused)

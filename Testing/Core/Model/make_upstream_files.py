@@ -134,7 +134,11 @@ def compact_model():
                  for _ in range(count)]
     codes = [2 * m if m >= 0 else -2 * m - 1 for m in multiples]
     step_of = [step for step, size in zip(steps, groups) for _ in range(size)]
-    packed = frame(bytes(code & 255 for code in codes) + bytes(code >> 8 for code in codes))
+    order, first = list(range(sum(groups[:3]))), sum(groups[:3])
+    for size in groups[3:]:  # a level's first feature of all entries, then the second
+        order += [*range(first, first + size, 2), *range(first + 1, first + size, 2)]
+        first += size
+    packed = frame(bytes(codes[k] & 255 for k in order) + bytes(codes[k] >> 8 for k in order))
     root["parameters"] = dict(n_params=count, params_type="quantised", steps=steps,
                               params_binary=packed)
     lows = [255] + [20 * k for k in range(11)]
