@@ -118,22 +118,15 @@ std::vector<std::size_t> BoundariesOf(const std::vector<Run>& runs)
 
 float Bound(std::uint8_t code) { return static_cast<float>(code) / LargestBound; }
 
+// Rounding the product never carries a value over a bound: not even the floats next to one.
 std::uint8_t BoundBelow(float value)
 {
-  auto code = static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * LargestBound);
-  while (code > 0 && Bound(code) > value) {
-    --code;
-  }
-  return code;
+  return static_cast<std::uint8_t>(std::floor(std::clamp(value, 0.0f, 1.0f) * LargestBound));
 }
 
 std::uint8_t BoundAbove(float value)
 {
-  auto code = static_cast<std::uint8_t>(std::ceil(std::clamp(value, 0.0f, 1.0f) * LargestBound));
-  while (code < LargestBound && Bound(code) < value) {
-    ++code;
-  }
-  return code;
+  return static_cast<std::uint8_t>(std::ceil(std::clamp(value, 0.0f, 1.0f) * LargestBound));
 }
 
 } // namespace

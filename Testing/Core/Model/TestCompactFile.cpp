@@ -158,7 +158,8 @@ TEST_F(CompactFile, RangesContainWhatTheyWere)
   for (std::size_t k = 0; k < ranges.size(); ++k) {
     float low = inr::RandomUnit(1, k);
     if (k % 2 == 0) { // on a bound that can be stored, or beside it
-      low = std::nextafter(static_cast<float>(k % 256) / 255.0f, static_cast<float>(k % 3) - 0.5f);
+      low = std::nextafter(static_cast<float>(k / 2 % 256) / 255.0f,
+                           static_cast<float>(k % 3) - 0.5f);
       low = std::fmin(std::fmax(low, 0.0f), 1.0f);
     }
     ranges[k] = {low, low + (1 - low) * inr::RandomUnit(2, k) * static_cast<float>(k % 5 != 0)};
@@ -353,14 +354,15 @@ TEST_F(Frames, CannotClaimMoreThanTheyMay)
 
 TEST_F(Frames, ManyMoreCellsThanBytesAreRefused)
 {
-  std::string bytes = this->Bytes;
-  const std::size_t dims = bytes.find("dims", bytes.find(std::string("macrocell\0", 10)));
-  for (const char* axis : {"x", "y", "z"}) {
-    const std::size_t at = bytes.find(std::string("\x10") + axis + '\0', dims);
-    const std::int32_t many = 1 << 12;
-    std::memcpy(bytes.data() + at + 3, &many, 4);
+  for (const glm::ivec3 many : {glm::ivec3(4096, 4096, 16), {4096, 4096, 4096}, {-1, 1, 1}}) {
+    std::string bytes = this->Bytes;
+    const std::size_t dims = bytes.find("dims", bytes.find(std::string("macrocell\0", 10)));
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t at = bytes.find(std::string("\x10") + "xyz"[axis] + '\0', dims);
+      std::memcpy(bytes.data() + at + 3, &many[axis], 4);
+    }
+    this->expectRefused(bytes, "dims");
   }
-  this->expectRefused(bytes, "dims");
 }
 
 struct Steps : CompactFile
