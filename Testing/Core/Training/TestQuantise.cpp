@@ -75,6 +75,15 @@ TEST_F(Quantising, GivesWhatAFileGivesBack)
   EXPECT_EQ(read->steps, model.steps);
 }
 
+// A level's parameters matter less the more of them there are.
+TEST_F(Quantising, GivesFineLevelsCoarserSteps)
+{
+  inr::Model model = this->Trained;
+  this->quantise(model);
+  const std::size_t matrices = inr::Layout(model.description).layers.size();
+  EXPECT_GT(model.steps.back(), 1.5f * model.steps[matrices]);
+}
+
 TEST_F(Quantising, HalvesTheFile)
 {
   inr::Model model = this->Trained;
