@@ -193,6 +193,23 @@ void Time(const std::function<std::size_t()>& work)
             << static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC << std::endl;
 }
 
+/// Prepares FOLDER, then answers lines until there are no more.
+void Serve(bool chosen, int threads, const std::string& folder)
+{
+  const inr::Description description = chosen ? ChosenDescription() : DefaultDescription();
+  Inference inference(description, chosen ? 256 : 4096, threads, folder);
+  Training training(description, threads, folder);
+  std::cout << R"({"kernel": ")" << inference.kernel() << R"(", "loss": )" << training.loss()
+            << R"(, "learning_rate": )" << inr::LearningRate().at(0) << "}" << std::endl;
+  const std::map<std::string, std::function<std::size_t()>> rounds = {
+      {"scattered", [&] { return inference.scattered(); }},
+      {"bricks", [&] { return inference.bricks(); }},
+      {"training", [&] { return training.step(); }}};
+  for (std::string line; std::getline(std::cin, line);) {
+    Time(rounds.at(line));
+  }
+}
+
 } // namespace
 
 int main(int argc, char* argv[])
@@ -202,19 +219,11 @@ int main(int argc, char* argv[])
     std::cerr << "usage: bench_against_pytorch default|chosen THREADS FOLDER\n";
     return 2;
   }
-  const bool chosen = which == "chosen";
-  const inr::Description description = chosen ? ChosenDescription() : DefaultDescription();
-  const int threads = std::stoi(argv[2]);
-  Inference inference(description, chosen ? 256 : 4096, threads, argv[3]);
-  Training training(description, threads, argv[3]);
-  std::cout << R"({"kernel": ")" << inference.kernel() << R"(", "loss": )" << training.loss()
-            << R"(, "learning_rate": )" << inr::LearningRate().at(0) << "}" << std::endl;
-  const std::map<std::string, std::function<std::size_t()>> rounds = {
-      {"scattered", [&] { return inference.scattered(); }},
-      {"bricks", [&] { return inference.bricks(); }},
-      {"training", [&] { return training.step(); }}};
-  for (std::string line; std::getline(std::cin, line);) {
-    Time(rounds.at(line));
+  try {
+    Serve(which == "chosen", std::stoi(argv[2]), argv[3]);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
   }
   return 0;
 }

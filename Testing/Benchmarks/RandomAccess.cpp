@@ -60,6 +60,13 @@ void Draw(const char* path, double timeLimit)
   renderer.render(frame, picture);
 }
 
+void Measure(const char* path, std::int64_t side)
+{
+  std::cout << R"({"part": )" << Seconds([&] { DecodeMiddle(path, side); })
+            << R"(, "first picture": )" << Seconds([&] { Draw(path, Interactive); })
+            << R"(, "complete picture": )" << Seconds([&] { Draw(path, 0); }) << "}" << std::endl;
+}
+
 } // namespace
 
 int main(int argc, char* argv[])
@@ -68,10 +75,11 @@ int main(int argc, char* argv[])
     std::cerr << "usage: bench_random_access MODEL.inr SIDE\n";
     return 2;
   }
-  const std::int64_t side = std::stoll(argv[2]);
-  std::cout << R"({"part": )" << Seconds([&] { DecodeMiddle(argv[1], side); })
-            << R"(, "first picture": )" << Seconds([&] { Draw(argv[1], Interactive); })
-            << R"(, "complete picture": )" << Seconds([&] { Draw(argv[1], 0); }) << "}"
-            << std::endl;
+  try {
+    Measure(argv[1], std::stoll(argv[2]));
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
   return 0;
 }

@@ -109,7 +109,7 @@ int main(int argc, char* argv[])
   }
   try {
     Compare(RawVolume(argv + 1).data(), std::stoull(argv[6]));
-  } catch (const inr::Error& error) {
+  } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;
   }

@@ -42,7 +42,7 @@ int main(int argc, char* argv[])
   }
   try {
     Train(RawVolume(argv + 1), std::stoull(argv[6]), std::stod(argv[7]), argv[8]);
-  } catch (const inr::Error& error) {
+  } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;
   }
