@@ -54,7 +54,7 @@ public:
   ///@}
 
   ///@{
-  /// Stop after so many steps of 65,536 samples; 0 (default) = no limit.
+  /// Stop after so many steps of 16,384 samples; 0 (default) = no limit.
   vtkSetClampMacro(MaximumSteps, vtkIdType, 0, VTK_ID_MAX);
   vtkGetMacro(MaximumSteps, vtkIdType);
   ///@}

@@ -64,7 +64,7 @@ protected:
   {
     this->Algorithm->SetFileName(this->path().c_str());
     this->Algorithm->SetModelConfig(SmallModel);
-    this->Algorithm->SetMaximumSteps(20);
+    this->Algorithm->SetMaximumSteps(80);
   }
 
   std::string path() const { return this->Folder / "saved.inr"; }
@@ -128,7 +128,7 @@ TEST_P(WriterOfType, KeepsTypeAndValues)
   const TypeCase& given = this->GetParam();
   const auto image = MakeImage({17, 14, 11}, given.type, given.low, given.high);
   const MessageCapture messages;
-  this->Algorithm->SetMaximumSteps(60);
+  this->Algorithm->SetMaximumSteps(240);
   this->write(image);
   EXPECT_TRUE(messages.errors().empty()) << messages.text();
 
@@ -137,7 +137,7 @@ TEST_P(WriterOfType, KeepsTypeAndValues)
             image->GetPointData()->GetScalars()->GetDataTypeSize());
   EXPECT_EQ(decoded->GetPointData()->GetScalars()->GetDataTypeMin(),
             image->GetPointData()->GetScalars()->GetDataTypeMin());
-  EXPECT_EQ(this->Algorithm->GetSteps(), 60);
+  EXPECT_EQ(this->Algorithm->GetSteps(), 240);
   EXPECT_GT(this->Algorithm->GetPSNR(), 35.0);
   // Besides what the training leaves, integers are rounded.
   const double error = LargestError(image, decoded);
@@ -413,7 +413,7 @@ TEST_F(Writer, ReportsProgressAndStopsWhenAsked)
 
   watcher = ProgressWatcher();
   this->Algorithm->SetAbortExecute(0); // VTK 9.1 does it by itself, 9.2 leaves it to the caller
-  this->Algorithm->SetMaximumSteps(20);
+  this->Algorithm->SetMaximumSteps(80);
   this->write(image);
   EXPECT_EQ(this->Folder.entries(), 1);
 }
