@@ -90,6 +90,20 @@ inline Floats Minimum(Floats a, Floats b)
 #endif
 }
 
+inline Floats SquareRoot(Floats value)
+{
+#if defined(__AVX512F__)
+  return _mm512_maskz_sqrt_ps(0xffff, value);
+#elif defined(__AVX2__)
+  return _mm256_sqrt_ps(value);
+#else
+  for (int k = 0; k < LaneCount; ++k) {
+    value[k] = __builtin_sqrtf(value[k]);
+  }
+  return value;
+#endif
+}
+
 /// True when every bit of `value` is 0.
 inline bool IsZero(UInts value)
 {

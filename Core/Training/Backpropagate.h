@@ -4,7 +4,6 @@
 #pragma once
 
 #include "Core/Inference/Activations.h"
-#include "Core/Inference/Encode.h"
 #include "Core/Inference/Mlp.h"
 #include "Core/Training/TrainKernel.h"
 
@@ -24,11 +23,15 @@ inline bool SlopeFromResult(Activation activation)
 struct Activity
 {
   const ModelView& model;
+  float* encoded;
   float* workspace;
 
   std::int64_t plane() const { return this->model.widest * TrainBlockSize; }
   /// Input of layer l; of layerCount: the output.
-  float* input(int layer) const { return this->workspace + layer * this->plane(); }
+  float* input(int layer) const
+  {
+    return layer == 0 ? this->encoded : this->workspace + (layer - 1) * this->plane();
+  }
   /// Layer l's result before its activation.
   float* before(int layer) const
   {
@@ -36,15 +39,15 @@ struct Activity
     const Activation activation = last ? this->model.outputActivation : this->model.activation;
     return SlopeFromResult(activation)
                ? this->input(layer + 1)
-               : this->workspace + (this->model.layerCount + 1 + layer) * this->plane();
+               : this->workspace + (this->model.layerCount + layer) * this->plane();
   }
   float* scratch(int which) const
   {
-    return this->workspace + (2 * this->model.layerCount + 1 + which) * this->plane();
+    return this->workspace + (2 * this->model.layerCount + which) * this->plane();
   }
   static std::int64_t size(const ModelView& model)
   {
-    return (2 * model.layerCount + 3) * model.widest * TrainBlockSize;
+    return (2 * model.layerCount + 2) * model.widest * TrainBlockSize;
   }
 };
 
@@ -53,16 +56,20 @@ inline Activation ActivationOf(const ModelView& model, int layer)
   return layer + 1 == model.layerCount ? model.outputActivation : model.activation;
 }
 
-inline void Forward(const ModelView& model, const Activity& activity, const float* xyz,
-                    std::int64_t count, std::int64_t samples)
+/// Columns of a layer that have an input: padding has none, and its weights stay as they are.
+inline int UsedColumns(const ModelView& model, int layer)
 {
-  EncodeBlock(model, xyz, count, activity.input(0), TrainBlockSize);
+  return layer == 0 ? model.encodedWidth : model.layers[layer].columns;
+}
+
+inline void Forward(const ModelView& model, const Activity& activity, std::int64_t samples)
+{
   for (int l = 0; l < model.layerCount; ++l) {
     const LayerView& layer = model.layers[l];
     float* before = activity.before(l);
     float* after = activity.input(l + 1);
-    MultiplyBlock({layer.weights, layer.rows, layer.columns, layer.columns, 1}, activity.input(l),
-                  TrainBlockSize, samples, before);
+    MultiplyBlock({layer.weights, layer.rows, UsedColumns(model, l), layer.columns, 1},
+                  activity.input(l), TrainBlockSize, samples, before);
     for (int row = 0; row < layer.rows; ++row) {
       if (before != after) {
         std::memcpy(after + row * TrainBlockSize, before + row * TrainBlockSize,
@@ -169,19 +176,19 @@ inline double LossGradient(const TrainBlock& block, const float* output, std::in
 
 inline void BackpropagateBlock(const ModelView& model, TrainBlock& block, float* workspace)
 {
-  const Activity activity{model, workspace};
+  const Activity activity{model, block.encoded, workspace};
   const std::int64_t samples = (block.count + LaneCount - 1) / LaneCount * LaneCount;
-  Forward(model, activity, block.xyz, block.count, samples);
+  Forward(model, activity, samples);
   float* delta = activity.scratch(0);
   float* next = activity.scratch(1);
   block.loss = LossGradient(block, activity.input(model.layerCount), samples, delta);
   for (int l = model.layerCount - 1; l >= 0; --l) {
     const LayerView& layer = model.layers[l];
-    const int usedColumns = l == 0 ? model.encodedWidth : layer.columns; // padding stays as it is
+    const int usedColumns = UsedColumns(model, l);
     ApplySlope(model, activity, l, delta, samples);
     AddWeightGradient(layer, usedColumns, delta, activity.input(l), samples,
                       block.weightGradient + (layer.weights - model.layers[0].weights));
-    float* out = l == 0 ? block.encodedGradient : next;
+    float* out = l == 0 ? block.encoded : next;
     MultiplyBlock({layer.weights, usedColumns, layer.rows, 1, layer.columns}, delta, TrainBlockSize,
                   samples, out);
     next = delta;

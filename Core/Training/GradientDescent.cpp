@@ -22,6 +22,10 @@ constexpr float WeightDecay = 1e-6f; // of the MLP only
 /// Samples whose weight gradients are summed in one buffer; the buffers are then added in order.
 constexpr std::int64_t ShardSize = 2 * TrainBlockSize;
 
+/// Samples that a thread encodes on a level at a time: many, so that it stays with the level's
+/// table.
+constexpr std::int64_t EncodePiece = 8 * TrainBlockSize;
+
 /// Samples between two looks at the StopCheck: a block, but less of one where the network is so
 /// large that a block takes seconds. A power of two; depends on the network alone, as sums do on
 /// it.
@@ -37,7 +41,7 @@ std::int64_t SamplesPerCheck(std::uint64_t weights)
 }
 
 /// From this many updates on an entry's bias correction is 1 to float precision.
-constexpr std::uint32_t LastCorrectedStep = 16384;
+constexpr std::uint16_t LastCorrectedStep = 16384;
 
 /// Streams of random numbers from one seed.
 enum RandomStream : std::uint64_t { InitialStream = 1, BatchStream = 2 };
@@ -106,10 +110,10 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
     : Threads(arena), Kernel(TrainKernelFor(set)), Shape(description), Seed(seed),
       Parameters(InitialParameters(description, this->Shape, seed)),
       Views(description, this->Shape, this->Parameters.data()), Gradient(this->Parameters.size()),
+      Grid(this->Views.view(), this->Gradient.data() + this->Shape.gridOffset),
       FirstMoments(this->Parameters.size()), SecondMoments(this->Parameters.size()),
-      EntrySteps((this->Parameters.size() - this->Shape.gridOffset) /
-                 static_cast<std::size_t>(description.grid.features)),
-      Corrections(BiasCorrections()), Positions(BatchSize), Targets(BatchSize)
+      Updates(this->Parameters.size() - this->Shape.gridOffset), Corrections(BiasCorrections()),
+      Positions(BatchSize), Targets(BatchSize)
 {}
 
 std::optional<double> GradientDescent::step(const SampleSource& source, const StopCheck& check)
@@ -148,13 +152,15 @@ std::optional<double> GradientDescent::computeGradient(const std::vector<glm::ve
   const auto count = static_cast<std::int64_t>(positions.size());
   const std::int64_t shards = (count + ShardSize - 1) / ShardSize;
   const std::int64_t blocks = (count + TrainBlockSize - 1) / TrainBlockSize;
-  this->EncodedGradient.resize(
+  this->Encoded.resize(
       static_cast<std::size_t>(blocks * this->Shape.encodedWidth * TrainBlockSize));
+  this->Grid.clear(); // an update leaves nothing, but not every gradient is entered
   this->ShardGradients.resize(static_cast<std::size_t>(shards));
   this->ShardLosses.assign(static_cast<std::size_t>(shards), 0.0);
   const float* xyz = &positions.data()->x;
+  this->encode(xyz, count, check);
   this->Threads.forEachBlock(count, ShardSize, [&](std::int64_t begin, std::int64_t end) {
-    this->backpropagateShard(begin / ShardSize, xyz, targets.data(), begin, end, count, check);
+    this->backpropagateShard(begin / ShardSize, targets.data(), begin, end, count, check);
   });
   if (!check.goesOn()) {
     return std::nullopt;
@@ -168,7 +174,21 @@ std::optional<double> GradientDescent::computeGradient(const std::vector<glm::ve
          static_cast<double>(count);
 }
 
-void GradientDescent::backpropagateShard(std::int64_t shard, const float* xyz, const float* targets,
+void GradientDescent::encode(const float* xyz, std::int64_t count, const StopCheck& check)
+{
+  const ModelView& model = this->Views.view();
+  const std::int64_t pieces = (count + EncodePiece - 1) / EncodePiece;
+  this->Threads.forEachBlock(model.levelCount * pieces, 1, [&](std::int64_t task, std::int64_t) {
+    const std::int64_t first = task % pieces * EncodePiece;
+    if (check.goesOn()) {
+      this->Kernel.encode(model, static_cast<int>(task / pieces), xyz + 3 * first,
+                          std::min(EncodePiece, count - first),
+                          this->Encoded.data() + first * model.encodedWidth);
+    }
+  });
+}
+
+void GradientDescent::backpropagateShard(std::int64_t shard, const float* targets,
                                          std::int64_t begin, std::int64_t end, std::int64_t total,
                                          const StopCheck& check)
 {
@@ -183,12 +203,10 @@ void GradientDescent::backpropagateShard(std::int64_t shard, const float* xyz, c
   for (std::int64_t first = begin; first < end && check.goesOn(); first += samples) {
     const std::int64_t within = first % TrainBlockSize;
     TrainBlock block{};
-    block.xyz = xyz + 3 * first;
     block.targets = targets + first;
     block.count = std::min(samples, end - first);
     block.gradientScale = 1.0f / static_cast<float>(total);
-    block.encodedGradient =
-        this->EncodedGradient.data() + (first - within) * this->Shape.encodedWidth + within;
+    block.encoded = this->Encoded.data() + (first - within) * this->Shape.encodedWidth + within;
     block.weightGradient = weightGradient.data();
     this->Kernel.backpropagate(model, block, workspace.data());
     this->ShardLosses[static_cast<std::size_t>(shard)] += block.loss;
@@ -207,16 +225,13 @@ void GradientDescent::sumShards()
 
 void GradientDescent::scatter(const float* xyz, std::int64_t count, const StopCheck& check)
 {
-  const ModelView& model = this->Views.view();
-  float* grid = this->Gradient.data() + this->Shape.gridOffset;
-  std::fill(this->Gradient.begin() + static_cast<std::ptrdiff_t>(this->Shape.gridOffset),
-            this->Gradient.end(), 0.0f);
   // One task per level: levels share no entry, and within a level the order stays that of the
   // samples.
-  this->Threads.forEachBlock(model.levelCount, 1, [&](std::int64_t level, std::int64_t) {
+  const ModelView& model = this->Views.view();
+  this->Threads.forEachBlock(model.levelCount, 1, [&](std::int64_t task, std::int64_t) {
+    const int level = static_cast<int>(task);
     if (check.goesOn()) {
-      this->Kernel.scatter(model, static_cast<int>(level), xyz, count, this->EncodedGradient.data(),
-                           grid);
+      this->Kernel.scatter(model, level, xyz, count, this->Encoded.data(), this->Grid.level(level));
     }
   });
 }
@@ -238,11 +253,12 @@ void GradientDescent::updateNetwork(float learningRate)
 
 void GradientDescent::updateGrid(float learningRate)
 {
-  constexpr std::int64_t entriesPerTask = 1 << 14;
-  const int features = this->Views.view().features;
-  const auto entries = static_cast<std::int64_t>(this->EntrySteps.size());
-  this->Threads.forEachBlock(entries, entriesPerTask, [&](std::int64_t begin, std::int64_t end) {
-    const std::size_t first = this->Shape.gridOffset + static_cast<std::size_t>(begin * features);
+  const AdamCorrections corrections{this->Corrections.data(), LastCorrectedStep};
+  const std::vector<GridGradient::Piece>& pieces = this->Grid.pieces();
+  const auto count = static_cast<std::int64_t>(pieces.size());
+  this->Threads.forEachBlock(count, 1, [&](std::int64_t task, std::int64_t) {
+    const GridGradient::Piece& piece = pieces[static_cast<std::size_t>(task)];
+    const std::size_t first = this->Shape.gridOffset + piece.first;
     const AdamRun run{&this->Parameters[first],
                       &this->Gradient[first],
                       &this->FirstMoments[first],
@@ -251,8 +267,8 @@ void GradientDescent::updateGrid(float learningRate)
                       Beta2,
                       Epsilon,
                       0.0f};
-    this->Kernel.adamSparse(run, end - begin, features, learningRate, &this->EntrySteps[begin],
-                            this->Corrections.data(), LastCorrectedStep);
+    this->Kernel.adamSparse(run, piece.count, piece.touched, learningRate,
+                            &this->Updates[piece.first], corrections);
   });
 }
 

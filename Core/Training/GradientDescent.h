@@ -3,6 +3,7 @@
 
 #include "Core/Inference/ModelView.h"
 #include "Core/Parallel.h"
+#include "Core/Training/GridGradient.h"
 #include "Core/Training/SampleSource.h"
 #include "Core/Training/StopCheck.h"
 #include "Core/Training/StratifiedPositions.h"
@@ -65,9 +66,9 @@ public:
 
 private:
   void drawBatch(const SampleSource& source);
-  void backpropagateShard(std::int64_t shard, const float* xyz, const float* targets,
-                          std::int64_t begin, std::int64_t end, std::int64_t total,
-                          const StopCheck& check);
+  void encode(const float* xyz, std::int64_t count, const StopCheck& check);
+  void backpropagateShard(std::int64_t shard, const float* targets, std::int64_t begin,
+                          std::int64_t end, std::int64_t total, const StopCheck& check);
   void sumShards();
   void scatter(const float* xyz, std::int64_t count, const StopCheck& check);
   void updateNetwork(float learningRate);
@@ -82,14 +83,15 @@ private:
   std::vector<float> Parameters;
   ModelViewStorage Views;
   std::vector<float> Gradient;
+  GridGradient Grid; ///< marks in `Gradient`
   std::vector<float> FirstMoments;
   std::vector<float> SecondMoments;
-  std::vector<std::uint32_t> EntrySteps;
+  std::vector<std::uint16_t> Updates; ///< of each parameter of the grid
   std::vector<float> Corrections;
   std::optional<StratifiedPositions> Boxes; ///< of the source's volume
   std::vector<glm::vec3> Positions;
   std::vector<float> Targets;
-  std::vector<float> EncodedGradient;
+  std::vector<float> Encoded; ///< features of the batch, then their gradients
   std::vector<std::vector<float>> ShardGradients;
   std::vector<double> ShardLosses;
 };

@@ -14,44 +14,67 @@ constexpr std::int64_t TrainBlockSize = 512;
 /// One block of samples and where their gradients go.
 struct TrainBlock
 {
-  const float* xyz;     ///< `count` interleaved positions
   const float* targets; ///< `count` normalised values; NaN = carries no gradient
   std::int64_t count;   ///< 1 to TrainBlockSize
   float gradientScale;  ///< 1 / (samples in the mini-batch)
-  /// d loss / d encoded feature: row f of encodedWidth starts at f * TrainBlockSize; overwritten.
-  float* encodedGradient;
+  /// Encoded features; overwritten by d loss / d encoded feature. Row f of encodedWidth starts at
+  /// f * TrainBlockSize.
+  float* encoded;
   /// d loss / d MLP weight, in the parameter vector's order; added to.
   float* weightGradient;
   double loss; ///< sum of (output - target)^2 over the block; out
+};
+
+/// Parameters of a level that are marked and updated together; an entry lies within a line.
+constexpr std::int64_t GradientLine = 8;
+
+/// d loss / d parameter of a level of the grid, and which lines of it may differ from zero.
+struct LevelGradient
+{
+  float* values;
+  std::uint8_t* touched; ///< one per line; 0 = all zero
 };
 
 /// A run of Adam updates (Kingma and Ba, "Adam", ICLR 2015).
 struct AdamRun
 {
   float* parameters;
-  const float* gradients;
+  float* gradients;
   float* firstMoments;
   float* secondMoments;
   float beta1, beta2, epsilon;
   float decay; ///< L2 regularisation: decay * parameter joins the gradient
 };
 
+/// Adam's bias correction of the learning rate after t = 0 .. last updates; then it stays.
+struct AdamCorrections
+{
+  const float* values;
+  std::uint16_t last;
+};
+
 /// What one gradient step needs, for one instruction set.
+///
+/// Encoded features and their gradients have a block of encodedWidth * TrainBlockSize floats per
+/// TrainBlockSize samples of the batch.
 struct TrainKernel
 {
   std::int64_t (*workspace)(const ModelView& model); ///< floats
+  /// One level's features of `count` samples.
+  void (*encode)(const ModelView& model, int level, const float* xyz, std::int64_t count,
+                 float* encoded);
   void (*backpropagate)(const ModelView& model, TrainBlock& block, float* workspace);
-  /// Adds one level's share of d loss / d grid parameter. `encodedGradient` is the whole batch's, a
-  /// block of encodedWidth * TrainBlockSize floats per TrainBlockSize samples. Serial, so that the
-  /// order of additions is fixed.
+  /// Adds one level's share of d loss / d grid parameter. Serial, so that the order of additions is
+  /// fixed.
   void (*scatter)(const ModelView& model, int level, const float* xyz, std::int64_t count,
-                  const float* encodedGradient, float* gridGradient);
+                  const float* encodedGradient, const LevelGradient& gradient);
   /// Updates `count` parameters with one learning rate (bias correction included).
   void (*adam)(const AdamRun& run, std::int64_t count, float learningRate);
-  /// Updates the table entries whose gradient is not zero; each has its own step count t and bias
-  /// correction corrections[min(t, last)].
-  void (*adamSparse)(const AdamRun& run, std::int64_t entries, int features, float learningRate,
-                     std::uint32_t* steps, const float* corrections, std::uint32_t last);
+  /// Updates those of `count` parameters of a level that lie in touched lines and whose gradient is
+  /// not zero, and makes gradients and marks zero. The first parameter begins a line; counts[k]
+  /// says how often parameter k was updated.
+  void (*adamSparse)(const AdamRun& run, std::int64_t count, std::uint8_t* touched,
+                     float learningRate, std::uint16_t* counts, const AdamCorrections& corrections);
 };
 
 /// The kernel built for `set`, which must be usable.

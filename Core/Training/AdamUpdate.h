@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Adam, LaneCount parameters at a time; see Inference/Lanes.h for what may be in here.
+#pragma once
+
+#include "Core/Inference/Lanes.h"
+#include "Core/Training/TrainKernel.h"
+
+namespace inr {
+namespace INR_ISA {
+
+using Counts = std::uint16_t __attribute__((vector_size(2 * LaneCount)));
+
+/// Updates LaneCount parameters from k on; those whose lane of `which` is 0 stay as they are.
+inline void AdamLanes(const AdamRun& run, std::int64_t k, Floats learningRate, Ints which)
+{
+  const Floats old = Load(run.parameters + k);
+  const Floats gradient = Load(run.gradients + k) + Spread(run.decay) * old;
+  const Floats oldFirst = Load(run.firstMoments + k);
+  const Floats oldSecond = Load(run.secondMoments + k);
+  const Floats first = Spread(run.beta1) * oldFirst + Spread(1.0f - run.beta1) * gradient;
+  const Floats second =
+      Spread(run.beta2) * oldSecond + Spread(1.0f - run.beta2) * gradient * gradient;
+  const Floats step = learningRate * first / (SquareRoot(second) + Spread(run.epsilon));
+  Store(run.firstMoments + k, which ? first : oldFirst);
+  Store(run.secondMoments + k, which ? second : oldSecond);
+  Store(run.parameters + k, which ? old - step : old);
+}
+
+/// Adds 1 to the counts whose lane of `which` is not 0, up to `last`; returns their corrections.
+inline Floats CountAndCorrect(std::uint16_t* counts, Ints which, const AdamCorrections& corrections)
+{
+  Counts before;
+  std::memcpy(&before, counts, sizeof(before));
+  Ints count = __builtin_convertvector(before, Ints) - which; // a true comparison is -1
+  const Ints last = (Ints)SpreadInt(corrections.last);
+  count = count > last ? last : count;
+  const Counts after = __builtin_convertvector(count, Counts);
+  std::memcpy(counts, &after, sizeof(after));
+  Floats values;
+  for (int lane = 0; lane < LaneCount; ++lane) {
+    values[lane] = corrections.values[count[lane]];
+  }
+  return values;
+}
+
+inline void AdamSparseLanes(const AdamRun& run, std::int64_t k, float learningRate,
+                            std::uint16_t* counts, const AdamCorrections& corrections)
+{
+  const Ints which = Load(run.gradients + k) != Floats{};
+  const Floats corrected = Spread(learningRate) * CountAndCorrect(counts + k, which, corrections);
+  AdamLanes(run, k, corrected, which);
+  Store(run.gradients + k, Floats{});
+}
+
+/// `count` (at most LaneCount) parameters that no whole vector holds.
+inline AdamRun CopyOf(const AdamRun& run, std::int64_t k, std::int64_t count,
+                      float (*lanes)[LaneCount])
+{
+  const float* const from[] = {run.parameters, run.gradients, run.firstMoments, run.secondMoments};
+  for (int array = 0; array < 4; ++array) {
+    std::memset(lanes[array], 0, sizeof(lanes[array]));
+    std::memcpy(lanes[array], from[array] + k, static_cast<std::size_t>(count) * sizeof(float));
+  }
+  return {lanes[0], lanes[1], lanes[2], lanes[3], run.beta1, run.beta2, run.epsilon, run.decay};
+}
+
+inline void CopyBack(const AdamRun& copy, const AdamRun& run, std::int64_t k, std::int64_t count)
+{
+  const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(float);
+  std::memcpy(run.parameters + k, copy.parameters, bytes);
+  std::memcpy(run.gradients + k, copy.gradients, bytes);
+  std::memcpy(run.firstMoments + k, copy.firstMoments, bytes);
+  std::memcpy(run.secondMoments + k, copy.secondMoments, bytes);
+}
+
+inline void AdamAll(const AdamRun& run, std::int64_t count, float learningRate)
+{
+  const Ints all = Floats{} == Floats{};
+  std::int64_t k = 0;
+  for (; k + LaneCount <= count; k += LaneCount) {
+    AdamLanes(run, k, Spread(learningRate), all);
+  }
+  if (k < count) {
+    float lanes[4][LaneCount];
+    const AdamRun copy = CopyOf(run, k, count - k, lanes);
+    AdamLanes(copy, 0, Spread(learningRate), all);
+    CopyBack(copy, run, k, count - k);
+  }
+}
+
+/// The last parameters, which fill no vector.
+inline void AdamSparseRest(const AdamRun& run, std::int64_t k, std::int64_t count,
+                           float learningRate, std::uint16_t* counts,
+                           const AdamCorrections& corrections)
+{
+  float lanes[4][LaneCount];
+  std::uint16_t countLanes[LaneCount] = {};
+  const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(std::uint16_t);
+  std::memcpy(countLanes, counts + k, bytes);
+  const AdamRun copy = CopyOf(run, k, count, lanes);
+  AdamSparseLanes(copy, 0, learningRate, countLanes, corrections);
+  CopyBack(copy, run, k, count);
+  std::memcpy(counts + k, countLanes, bytes);
+}
+
+/// Says whether a line in [begin, end) is touched, and that none is any more.
+inline bool TakeMarks(std::uint8_t* touched, std::int64_t begin, std::int64_t end)
+{
+  std::uint8_t any = 0;
+  for (std::int64_t line = begin; line < end; ++line) {
+    any |= touched[line];
+    touched[line] = 0;
+  }
+  return any != 0;
+}
+
+inline void AdamSparse(const AdamRun& run, std::int64_t count, std::uint8_t* touched,
+                       float learningRate, std::uint16_t* counts,
+                       const AdamCorrections& corrections)
+{
+  // As many parameters at a time as are whole lines and whole vectors.
+  constexpr std::int64_t turn = LaneCount > GradientLine ? LaneCount : GradientLine;
+  for (std::int64_t first = 0; first < count; first += turn) {
+    const std::int64_t end = first + turn < count ? first + turn : count;
+    if (!TakeMarks(touched, first / GradientLine, (end + GradientLine - 1) / GradientLine)) {
+      continue;
+    }
+    for (std::int64_t k = first; k < end; k += LaneCount) {
+      if (k + LaneCount <= end) {
+        AdamSparseLanes(run, k, learningRate, counts, corrections);
+      } else {
+        AdamSparseRest(run, k, end - k, learningRate, counts, corrections);
+      }
+    }
+  }
+}
+
+} // namespace INR_ISA
+} // namespace inr
