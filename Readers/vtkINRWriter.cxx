@@ -111,6 +111,7 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
   options.targetRatio = this->TargetRatio;
   options.maximumSteps = static_cast<std::uint64_t>(this->MaximumSteps);
   options.timeLimit = this->TimeLimit;
+  options.plannedSteps = static_cast<std::uint64_t>(this->PlannedSteps);
   options.seed = static_cast<std::uint64_t>(this->Seed);
   options.macroCellSize = this->MacroCellSize;
   options.storedAs =
@@ -165,6 +166,7 @@ void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "MaximumSteps: " << this->MaximumSteps << "\n"
      << indent << "TimeLimit: " << this->TimeLimit << "\n"
      << indent << "MacroCellSize: " << this->MacroCellSize << "\n"
+     << indent << "PlannedSteps: " << this->PlannedSteps << "\n"
      << indent << "Seed: " << this->Seed << "\n"
      << indent << "ModelConfig: " << (this->ModelConfig ? this->ModelConfig : "(chosen)") << "\n"
      << indent << "ReadableByInstantVNR: " << (this->ReadableByInstantVNR ? "on" : "off") << "\n";

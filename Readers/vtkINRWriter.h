@@ -6,7 +6,8 @@
  * The point array to save is chosen with SetInputArrayToProcess (default: the active scalars); it
  * has one component of any number type. Training ends when TargetPSNR is reached, after
  * MaximumSteps or after TimeLimit, whichever comes first. With the same seed, steps and kernel
- * family the result is the same on any number of threads.
+ * family the result is the same on any number of threads; where TimeLimit ended it, with the same
+ * PlannedSteps, too.
  *
  * NaNs and infinities are left out: they are no targets, count neither in the range nor in the
  * quality, and are reported with a warning; where they were, the file holds a smooth continuation.
@@ -74,6 +75,14 @@ public:
   ///@}
 
   ///@{
+  /// Steps that the learning rate is spread over; 0 (default) = MaximumSteps or, without it, what
+  /// the first steps show that TimeLimit allows. To repeat a training that TimeLimit ended: its
+  /// file says `planned_steps` and `steps` (MaximumSteps).
+  vtkSetClampMacro(PlannedSteps, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(PlannedSteps, vtkIdType);
+  ///@}
+
+  ///@{
   /// Start of the random numbers. Default 1.
   vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
   vtkGetMacro(Seed, int);
@@ -128,6 +137,7 @@ private:
   double TargetPSNR = 0;
   double TargetRatio = 0;
   vtkIdType MaximumSteps = 0;
+  vtkIdType PlannedSteps = 0;
   double TimeLimit = 300;
   int MacroCellSize = 0;
   int Seed = 1;

@@ -148,6 +148,9 @@ TrainingRecord ParseTraining(const JsonSection& section)
 {
   TrainingRecord record;
   record.steps = static_cast<std::uint64_t>(section.integer("steps"));
+  if (section.has("planned_steps")) {
+    record.plannedSteps = static_cast<std::uint64_t>(section.integer("planned_steps"));
+  }
   record.seed = static_cast<std::uint64_t>(section.integer("seed"));
   record.seconds = section.number("seconds");
   record.kernel = section.text("kernel");
@@ -233,6 +236,7 @@ json InrSectionToJson(const Model& model, std::uint32_t checksum)
   }
   if (model.training) {
     section["training"] = {{"steps", AsSigned(model.training->steps)},
+                           {"planned_steps", AsSigned(model.training->plannedSteps)},
                            {"seed", AsSigned(model.training->seed)},
                            {"seconds", model.training->seconds},
                            {"kernel", model.training->kernel},

@@ -71,6 +71,7 @@ struct Quality
 struct TrainingRecord
 {
   std::uint64_t steps = 0;
+  std::uint64_t plannedSteps = 0; ///< that the learning rate was spread over; 0 = not known
   std::uint64_t seed = 0;
   double seconds = 0;          ///< wall time, training only
   std::string kernel;          ///< kernel family ("avx512", ...): same family, same parameters

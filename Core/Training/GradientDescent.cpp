@@ -74,15 +74,15 @@ float InitialBound(const Description& description, const Layout& layout, std::si
 
 } // namespace
 
-float LearningRate::at(std::uint64_t step) const
+float LearningRate::at(std::uint64_t step, std::uint64_t plannedSteps) const
 {
-  if (step < this->decayStart) {
+  const std::uint64_t constant = plannedSteps / ConstantShare;
+  if (step <= constant) {
     return this->initial;
   }
-  const std::uint64_t intervals = (step - this->decayStart) / this->decayInterval;
-  const double rate = this->initial * std::pow(static_cast<double>(this->decayFactor),
-                                               static_cast<double>(intervals));
-  return std::max(this->floor, static_cast<float>(rate));
+  const double fallen = static_cast<double>(step - constant) /
+                        static_cast<double>(std::max(plannedSteps - constant, std::uint64_t{1}));
+  return std::max(this->last, static_cast<float>(this->initial * (1.0 - fallen)));
 }
 
 std::vector<float> InitialParameters(const Description& description, const Layout& layout,
@@ -123,7 +123,7 @@ std::optional<double> GradientDescent::step(const SampleSource& source, const St
   if (!loss) {
     return loss;
   }
-  const float rate = this->Rate.at(this->Steps);
+  const float rate = this->Rate.at(this->Steps, this->PlannedSteps);
   ++this->Steps;
   this->updateNetwork(rate);
   this->updateGrid(rate);

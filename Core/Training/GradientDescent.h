@@ -10,23 +10,22 @@
 #include "Core/Training/TrainKernel.h"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
 namespace inr {
 
-/// Learning rate over steps: constant, then falling by a factor per interval (tiny-cuda-nn's
-/// ExponentialDecay). A function of the step alone, so that a run stopped by the clock can be
-/// repeated by its number of steps.
+/// Learning rate over a training of planned length: constant at first, then falling in a straight
+/// line to a low one, at which it stays. A function of step and plan alone, so that a run stopped
+/// by the clock can be repeated.
 struct LearningRate
 {
-  float initial = 5e-3f;
-  std::uint64_t decayStart = 800;
-  std::uint64_t decayInterval = 80;
-  float decayFactor = 0.99f;
-  float floor = 5e-5f;
+  float initial = 1e-2f;
+  float last = 1e-4f;
+  static constexpr std::uint64_t ConstantShare = 10; ///< the first tenth of the planned steps
 
-  float at(std::uint64_t step) const;
+  float at(std::uint64_t step, std::uint64_t plannedSteps) const;
 };
 
 /// Positions per mini-batch.
@@ -38,8 +37,8 @@ std::vector<float> InitialParameters(const Description& description, const Layou
                                      std::uint64_t seed);
 
 /// Fits the parameters of one INR with Adam on mini-batches of StratifiedPositions. The parameters
-/// after n steps depend on description, seed, source and instruction set, not on the number of
-/// threads.
+/// after n steps depend on description, seed, plan, source and instruction set, not on the number
+/// of threads.
 class GradientDescent
 {
 public:
@@ -47,6 +46,9 @@ public:
                   const Arena& arena);
   GradientDescent(const GradientDescent&) = delete;
   GradientDescent& operator=(const GradientDescent&) = delete;
+
+  /// Spreads the learning rate over so many steps (default: no end in sight, a constant rate).
+  void plan(std::uint64_t steps) { this->PlannedSteps = steps; }
 
   /// One mini-batch; returns the mean squared error over it, before the update. Nothing when
   /// `check` stopped it: then no parameter has changed, and the next step draws the same batch. An
@@ -79,6 +81,7 @@ private:
   Layout Shape;
   std::uint64_t Seed;
   std::uint64_t Steps = 0;
+  std::uint64_t PlannedSteps = std::numeric_limits<std::uint64_t>::max();
   LearningRate Rate;
   std::vector<float> Parameters;
   ModelViewStorage Views;

@@ -5,11 +5,10 @@
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
-#include "Core/Training/GradientDescent.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Quality.h"
 #include "Core/Training/Quantise.h"
-#include "Core/Training/TrainingClock.h"
+#include "Core/Training/TrainingLoop.h"
 
 #include <Imath/half.h>
 
@@ -21,9 +20,6 @@
 namespace inr {
 
 namespace {
-
-/// Share of the progress bar that training gets when quality is measured afterwards.
-constexpr double TrainingShare = 0.9;
 
 void CheckArguments(const VolumeData& volume, const TrainingOptions& options)
 {
@@ -91,16 +87,6 @@ ModelPointer ConstantModel(Model model, const glm::i64vec3& dims)
   return std::make_shared<const Model>(std::move(model));
 }
 
-void RequireFinite(double loss, std::uint64_t steps)
-{
-  if (!std::isfinite(loss)) {
-    throw Error(ErrorCode::InvalidModel,
-                "the training diverged in step " + std::to_string(steps) +
-                    ": the network's output is not finite; choose another activation or fewer "
-                    "layers in ModelConfig");
-  }
-}
-
 /// Voxels that are decoded in about a second: the larger the network, the fewer.
 std::int64_t BandSize(const Description& description)
 {
@@ -108,107 +94,6 @@ std::int64_t BandSize(const Description& description)
   const std::uint64_t weights = std::max<std::uint64_t>(1, Layout(description).gridOffset);
   return std::clamp<std::int64_t>(static_cast<std::int64_t>(products / weights), 1024, 1 << 20);
 }
-
-/// Steps until a limit is reached, telling the observer.
-class TrainingLoop
-{
-public:
-  TrainingLoop(const TrainingOptions& options, const TrainingObserver& observer)
-      : Options(options), Observer(observer)
-  {}
-
-  void run(GradientDescent& descent, const SampleSource& source, const EvaluateKernel& kernel)
-  {
-    const PsnrEstimate estimate(source, this->Options.seed);
-    const StopCheck check([&] { return this->keepGoing(descent.steps()); });
-    while (!this->reachedLimit(descent.steps())) {
-      const std::optional<double> loss = descent.step(source, check);
-      if (!loss) { // the time is up, and the step was dropped
-        break;
-      }
-      RequireFinite(*loss, descent.steps());
-      // At fixed steps, so that a run which ends by quality ends at the same step every time.
-      if (this->Options.targetPsnr > 0 && descent.steps() % PsnrInterval == 0) {
-        this->Psnr = estimate.measure(descent.view(), kernel, check);
-        if (this->Psnr >= this->wantedPsnr()) {
-          break;
-        }
-      }
-      this->report(descent.steps());
-    }
-    if (descent.steps() == 0) {
-      throw Error(ErrorCode::InvalidArgument,
-                  "not one step of the training was finished within the TimeLimit of " +
-                      std::to_string(this->Options.timeLimit) +
-                      " s; raise it or choose a smaller model");
-    }
-  }
-
-  double seconds() const { return this->Clock.seconds(); }
-
-private:
-  static constexpr std::uint64_t PsnrInterval = 200;
-  static constexpr double ReportInterval = 0.2; // seconds, within a step
-
-  /// With what storing the parameters may cost afterwards.
-  double wantedPsnr() const
-  {
-    const bool loses = this->Options.storedAs == ParameterType::Quantised;
-    return this->Options.targetPsnr + (loses ? QuantiseLimits().loss : 0.0);
-  }
-
-  bool timeIsUp() const
-  {
-    return this->Options.timeLimit > 0 && this->Clock.seconds() >= this->Options.timeLimit;
-  }
-
-  bool reachedLimit(std::uint64_t steps) const
-  {
-    return (this->Options.maximumSteps > 0 && steps >= this->Options.maximumSteps) ||
-           this->timeIsUp();
-  }
-
-  /// Within a step, which may take minutes: false when the time is up, throws when the user stops.
-  bool keepGoing(std::uint64_t steps)
-  {
-    if (this->Clock.seconds() - this->LastReport >= ReportInterval) {
-      this->report(steps);
-    }
-    return !this->timeIsUp();
-  }
-
-  double fraction(std::uint64_t steps) const
-  {
-    double done = 0;
-    if (this->Options.maximumSteps > 0) {
-      done = static_cast<double>(steps) / static_cast<double>(this->Options.maximumSteps);
-    }
-    if (this->Options.timeLimit > 0) {
-      done = std::max(done, this->Clock.seconds() / this->Options.timeLimit);
-    }
-    if (this->Options.targetPsnr > 0) {
-      done = std::max(done, this->Psnr / this->Options.targetPsnr);
-    }
-    return std::clamp(done, 0.0, 1.0);
-  }
-
-  void report(std::uint64_t steps)
-  {
-    this->LastReport = this->Clock.seconds();
-    this->Fraction = std::max(this->Fraction, TrainingShare * this->fraction(steps));
-    if (this->Observer &&
-        !this->Observer({TrainingPhase::Training, this->Fraction, steps, this->Psnr})) {
-      throw Error(ErrorCode::Cancelled, "training stopped on request; nothing was kept");
-    }
-  }
-
-  const TrainingOptions& Options;
-  const TrainingObserver& Observer;
-  TrainingClock Clock;
-  double Psnr = 0;
-  double Fraction = 0;
-  double LastReport = 0;
-};
 
 } // namespace
 
@@ -236,7 +121,11 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   model.volume.type = volume.type;
   model.volume.low = statistics.low;
   model.volume.high = statistics.high;
-  model.training = TrainingRecord{0, options.seed, 0.0, InstructionSetName(set),
+  model.training = TrainingRecord{0,
+                                  0,
+                                  options.seed,
+                                  0.0,
+                                  InstructionSetName(set),
                                   static_cast<std::uint64_t>(statistics.nonFinite)};
   model.macroCells = MakeMacroCells(volume.dims, macroCellSize);
   RequireStorable(model);
@@ -249,6 +138,7 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   TrainingLoop loop(options, observer);
   loop.run(descent, source, EvaluateKernelFor(set));
   model.training->steps = descent.steps();
+  model.training->plannedSteps = loop.plannedSteps();
   model.training->seconds = loop.seconds();
   model.parameters = descent.parameters();
   if (options.storedAs == ParameterType::Quantised) {

@@ -18,6 +18,9 @@ struct TrainingOptions
   double targetRatio = 0;         ///< volume bytes / file bytes; 0 = by the volume's size
   std::uint64_t maximumSteps = 0; ///< 0 = no limit
   double timeLimit = 300;         ///< seconds of training; measuring comes on top; 0 = no limit
+  /// Steps that the learning rate is spread over; 0 = maximumSteps or, without it, what the time
+  /// limit is seen to allow. To repeat a training, as its record says.
+  std::uint64_t plannedSteps = 0;
   std::uint64_t seed = 1;
   int macroCellSize = 0;                  ///< voxels, a power of two; 0 = DefaultMacroCellSize
   std::optional<Description> description; ///< empty = ChooseDescription
@@ -56,11 +59,11 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 /// a NaN or infinite voxel the target is the nearest voxel's value, and where that one is not
 /// finite the position carries no gradient; such voxels are counted and left out of range and
 /// quality. A constant volume takes no step and is exact. The result's quality and macro-cells are
-/// those of the parameters as they are stored. For a given seed, step count and kernel family the
-/// result is the same whatever the number of threads. Throws Error(InvalidArgument) for a volume
-/// without finite voxels or when no limit is set; before it trains what RequireStorable finds; when
-/// the time limit ends the first step; Error(InvalidModel) when the network's output stops being
-/// finite.
+/// those of the parameters as they are stored. For a given seed, number of steps, plan and kernel
+/// family the result is the same whatever the number of threads. Throws Error(InvalidArgument) for
+/// a volume without finite voxels or when no limit is set; before it trains what RequireStorable
+/// finds; when the time limit ends the first step; Error(InvalidModel) when the network's output
+/// stops being finite.
 ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 

@@ -200,7 +200,7 @@ void Serve(bool chosen, int threads, const std::string& folder)
   Inference inference(description, chosen ? 256 : 4096, threads, folder);
   Training training(description, threads, folder);
   std::cout << R"({"kernel": ")" << inference.kernel() << R"(", "loss": )" << training.loss()
-            << R"(, "learning_rate": )" << inr::LearningRate().at(0) << "}" << std::endl;
+            << R"(, "learning_rate": )" << inr::LearningRate().initial << "}" << std::endl;
   const std::map<std::string, std::function<std::size_t()>> rounds = {
       {"scattered", [&] { return inference.scattered(); }},
       {"bricks", [&] { return inference.bricks(); }},

@@ -34,6 +34,7 @@ TEST_F(ModelFile, KeepsEveryField)
   EXPECT_EQ(read->quality->psnr, written->quality->psnr);
   EXPECT_EQ(read->quality->maxError, written->quality->maxError);
   EXPECT_EQ(read->training->steps, written->training->steps);
+  EXPECT_EQ(read->training->plannedSteps, written->training->plannedSteps);
   EXPECT_EQ(read->training->seed, written->training->seed);
   EXPECT_EQ(read->training->kernel, written->training->kernel);
   EXPECT_EQ(read->training->nonFinite, written->training->nonFinite);

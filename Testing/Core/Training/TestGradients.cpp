@@ -184,12 +184,18 @@ TEST(GradientDescent, AStoppedStepChangesNothing)
   EXPECT_EQ(stopped.parameters(), expected.parameters());
 }
 
-TEST(LearningRate, FallsToItsFloor)
+TEST(LearningRate, IsConstantThenFallsInALine)
 {
   const inr::LearningRate rate;
-  EXPECT_EQ(rate.at(0), rate.initial);
-  EXPECT_LT(rate.at(rate.decayStart + 100 * rate.decayInterval), 0.5f * rate.initial);
-  EXPECT_EQ(rate.at(1u << 30), rate.floor);
+  EXPECT_EQ(rate.at(0, 1000), rate.initial);
+  EXPECT_EQ(rate.at(100, 1000), rate.initial);
+  EXPECT_NEAR(rate.at(550, 1000), 0.5f * rate.initial, 1e-6f);
+  EXPECT_EQ(rate.at(1000, 1000), rate.last);
+  EXPECT_EQ(rate.at(1u << 30, 1000), rate.last);
+  for (const std::uint64_t planned : {0, 1, 9}) {
+    EXPECT_EQ(rate.at(0, planned), rate.initial);
+    EXPECT_EQ(rate.at(10, planned), rate.last);
+  }
 }
 
 } // namespace

@@ -147,8 +147,10 @@ TEST(Quality, MacroCellsHoldTheirVoxelsAndAnApron)
   for (std::int64_t cell = 0; cell < cells.dims.x * cells.dims.y * cells.dims.z; ++cell) {
     const glm::i64vec3 at(cell % cells.dims.x, cell / cells.dims.x % cells.dims.y,
                           cell / (cells.dims.x * cells.dims.y));
-    const glm::i64vec3 begin = glm::max(at * std::int64_t{8} - inr::MacroCellApron, glm::i64vec3(0));
-    const glm::i64vec3 end = glm::min(at * std::int64_t{8} + std::int64_t{8} + inr::MacroCellApron, c.Info.dims);
+    const glm::i64vec3 begin =
+        glm::max(at * std::int64_t{8} - inr::MacroCellApron, glm::i64vec3(0));
+    const glm::i64vec3 end =
+        glm::min(at * std::int64_t{8} + std::int64_t{8} + inr::MacroCellApron, c.Info.dims);
     inr::ValueRange expected;
     for (std::int64_t z = begin.z; z < end.z; ++z) {
       for (std::int64_t y = begin.y; y < end.y; ++y) {

@@ -74,7 +74,9 @@ TEST(Trainer, AStopByTheClockIsRepeatedByItsSteps)
   timed.timeLimit = 0.3;
   const inr::ModelPointer first = inr::TrainModel(field.data(), {}, timed);
   ASSERT_GT(first->training->steps, 0u);
-  const inr::ModelPointer again = inr::TrainModel(field.data(), {}, Steps(first->training->steps));
+  inr::TrainingOptions counted = Steps(first->training->steps);
+  counted.plannedSteps = first->training->plannedSteps;
+  const inr::ModelPointer again = inr::TrainModel(field.data(), {}, counted);
   EXPECT_EQ(first->parameters, again->parameters);
 }
 

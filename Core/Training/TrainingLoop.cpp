@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/TrainingLoop.h"
+
+#include "Core/Error.h"
+#include "Core/Training/Quantise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace inr {
+
+namespace {
+
+constexpr std::uint64_t PsnrInterval = 200;
+constexpr double ReportInterval = 0.2; // seconds, within a step
+
+/// The learning rate of a training that only its quality ends is spread over so many steps.
+constexpr std::uint64_t StepsToTarget = 10000;
+
+/// Share of the time limit after which it is known how many steps it allows: less than that in
+/// which the learning rate is constant.
+constexpr double TimingShare = 0.03;
+
+void RequireFinite(double loss, std::uint64_t steps)
+{
+  if (!std::isfinite(loss)) {
+    throw Error(ErrorCode::InvalidModel,
+                "the training diverged in step " + std::to_string(steps) +
+                    ": the network's output is not finite; choose another activation or fewer "
+                    "layers in ModelConfig");
+  }
+}
+
+} // namespace
+
+void TrainingLoop::run(GradientDescent& descent, const SampleSource& source,
+                       const EvaluateKernel& kernel)
+{
+  const PsnrEstimate estimate(source, this->Options.seed);
+  const StopCheck check([&] { return this->keepGoing(descent.steps()); });
+  const bool byTheClock = this->Options.timeLimit > 0 && this->Options.maximumSteps == 0;
+  if (this->Options.plannedSteps > 0) {
+    this->plan(descent, this->Options.plannedSteps);
+  } else if (!byTheClock) {
+    const std::uint64_t steps = this->Options.maximumSteps;
+    this->plan(descent, steps > 0 ? steps : StepsToTarget);
+  }
+  while (!this->reachedLimit(descent.steps())) {
+    const std::optional<double> loss = descent.step(source, check);
+    if (!loss) { // the time is up, and the step was dropped
+      break;
+    }
+    RequireFinite(*loss, descent.steps());
+    if (this->reachedTarget(descent, estimate, kernel, check)) {
+      break;
+    }
+    this->planByTheClock(descent);
+    this->report(descent.steps());
+  }
+  if (descent.steps() == 0) {
+    throw Error(ErrorCode::InvalidArgument,
+                "not one step of the training was finished within the TimeLimit of " +
+                    std::to_string(this->Options.timeLimit) +
+                    " s; raise it or choose a smaller model");
+  }
+  if (this->PlannedSteps == 0) { // the rate was constant to the end
+    this->plan(descent, LearningRate::ConstantShare * descent.steps());
+  }
+}
+
+void TrainingLoop::plan(GradientDescent& descent, std::uint64_t steps)
+{
+  this->PlannedSteps = steps;
+  descent.plan(steps);
+}
+
+/// Plans as many steps as the time limit allows, once that is known.
+void TrainingLoop::planByTheClock(GradientDescent& descent)
+{
+  const double share = this->Clock.seconds() / this->Options.timeLimit;
+  if (this->PlannedSteps > 0 || share < TimingShare) {
+    return;
+  }
+  auto steps = static_cast<std::uint64_t>(static_cast<double>(descent.steps()) / share);
+  if (this->Options.targetPsnr > 0) { // which ought to be reached as soon as may be
+    steps = std::min(steps, StepsToTarget);
+  }
+  // Not less than would have kept the rate constant up to here, so that it can be repeated.
+  this->plan(descent, std::max(steps, LearningRate::ConstantShare * descent.steps()));
+}
+
+bool TrainingLoop::reachedTarget(const GradientDescent& descent, const PsnrEstimate& estimate,
+                                 const EvaluateKernel& kernel, const StopCheck& check)
+{
+  // At fixed steps, so that a run which ends by quality ends at the same step every time.
+  if (this->Options.targetPsnr <= 0 || descent.steps() % PsnrInterval != 0) {
+    return false;
+  }
+  this->Psnr = estimate.measure(descent.view(), kernel, check);
+  // With what storing the parameters may cost afterwards.
+  const bool loses = this->Options.storedAs == ParameterType::Quantised;
+  return this->Psnr >= this->Options.targetPsnr + (loses ? QuantiseLimits().loss : 0.0);
+}
+
+bool TrainingLoop::timeIsUp() const
+{
+  return this->Options.timeLimit > 0 && this->Clock.seconds() >= this->Options.timeLimit;
+}
+
+bool TrainingLoop::reachedLimit(std::uint64_t steps) const
+{
+  return (this->Options.maximumSteps > 0 && steps >= this->Options.maximumSteps) ||
+         this->timeIsUp();
+}
+
+/// Within a step, which may take minutes: false when the time is up, throws when the user stops.
+bool TrainingLoop::keepGoing(std::uint64_t steps)
+{
+  if (this->Clock.seconds() - this->LastReport >= ReportInterval) {
+    this->report(steps);
+  }
+  return !this->timeIsUp();
+}
+
+double TrainingLoop::fraction(std::uint64_t steps) const
+{
+  double done = 0;
+  if (this->Options.maximumSteps > 0) {
+    done = static_cast<double>(steps) / static_cast<double>(this->Options.maximumSteps);
+  }
+  if (this->Options.timeLimit > 0) {
+    done = std::max(done, this->Clock.seconds() / this->Options.timeLimit);
+  }
+  if (this->Options.targetPsnr > 0) {
+    done = std::max(done, this->Psnr / this->Options.targetPsnr);
+  }
+  return std::clamp(done, 0.0, 1.0);
+}
+
+void TrainingLoop::report(std::uint64_t steps)
+{
+  this->LastReport = this->Clock.seconds();
+  this->Fraction = std::max(this->Fraction, TrainingShare * this->fraction(steps));
+  if (this->Observer &&
+      !this->Observer({TrainingPhase::Training, this->Fraction, steps, this->Psnr})) {
+    throw Error(ErrorCode::Cancelled, "training stopped on request; nothing was kept");
+  }
+}
+
+} // namespace inr

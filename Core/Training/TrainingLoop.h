@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Inference/EvaluateKernel.h"
+#include "Core/Training/GradientDescent.h"
+#include "Core/Training/PsnrEstimate.h"
+#include "Core/Training/Trainer.h"
+#include "Core/Training/TrainingClock.h"
+
+#include <cstdint>
+
+namespace inr {
+
+/// Share of the progress bar that training gets when quality is measured afterwards.
+constexpr double TrainingShare = 0.9;
+
+/// Steps until one of the options' limits is reached, telling the observer.
+class TrainingLoop
+{
+public:
+  TrainingLoop(const TrainingOptions& options, const TrainingObserver& observer)
+      : Options(options), Observer(observer)
+  {}
+
+  /// Throws what TrainModel says of training itself.
+  void run(GradientDescent& descent, const SampleSource& source, const EvaluateKernel& kernel);
+
+  /// Of the run: wall time, and the steps that its learning rate was spread over.
+  double seconds() const { return this->Clock.seconds(); }
+  std::uint64_t plannedSteps() const { return this->PlannedSteps; }
+
+private:
+  void plan(GradientDescent& descent, std::uint64_t steps);
+  void planByTheClock(GradientDescent& descent);
+  bool reachedTarget(const GradientDescent& descent, const PsnrEstimate& estimate,
+                     const EvaluateKernel& kernel, const StopCheck& check);
+  bool timeIsUp() const;
+  bool reachedLimit(std::uint64_t steps) const;
+  bool keepGoing(std::uint64_t steps);
+  double fraction(std::uint64_t steps) const;
+  void report(std::uint64_t steps);
+
+  const TrainingOptions& Options;
+  const TrainingObserver& Observer;
+  TrainingClock Clock;
+  std::uint64_t PlannedSteps = 0; ///< 0 until there is a plan
+  double Psnr = 0;
+  double Fraction = 0;
+  double LastReport = 0;
+};
+
+} // namespace inr
