@@ -9,8 +9,8 @@
         build-core/Testing/Benchmarks/bench_against_pytorch
 
 PyTorch's compiler takes the C++ compiler of the path and Python's headers (Debian: python3-dev).
-Both sides' values are compared first. Writes pytorch.json: rates by wall clock, which an idle
-machine is needed for, and by processor time of all threads, which other programs disturb less. What
+Both sides' values are compared first. Writes pytorch.json: rates by processor time, of all threads
+together, which other programs disturb little, and by wall clock, which takes an idle machine. What
 PyTorch runs, hash_grid.py says; its fastest way is what the ratios are to, and its plain one is
 given beside it.
 """
@@ -158,13 +158,13 @@ def compare(ours, what, ways, samples):
 
 
 def results_of(what, which, found):
-    """Result entries of one comparison, in M samples/s and ratios."""
+    """Result entries of one comparison: M samples/s (a core's, by processor time), and ratios."""
     kind = "training" if what == "training" else "inference"
     where = MODELS[which] if what == "training" else f"{what}, {MODELS[which]}"
     target = TARGETS[what].get(which)
     load = f"load average {os.getloadavg()[0]:.1f}"
-    for clock, note in ((0, "by wall clock"), (1, "by processor time")):
-        after = "" if clock == 0 else ", by processor time"
+    for clock, note in ((1, "by processor time"), (0, "by wall clock")):
+        after = ", by wall clock" if clock == 0 else ""
         for side, label in (("ours", "INRVolume"), *SIDES):
             yield results_file.result(f"{label} {kind}, {where}{after}",
                                       float(f"{found[side][clock] / 1e6:.4g}"), "M samples/s",
