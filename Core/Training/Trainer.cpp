@@ -3,6 +3,8 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/EvaluateKernel.h"
+#include "Core/Model/CompactBlobs.h"
+#include "Core/Model/Compression.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
 #include "Core/Training/PsnrEstimate.h"
@@ -76,7 +78,10 @@ ModelPointer ConstantModel(Model model, const glm::i64vec3& dims)
 {
   model.parameters.assign(Layout(model.description).parameterCount, 0.0f);
   if (model.storedAs == ParameterType::Quantised) {
-    model.steps.assign(ParameterGroups(model.description).size(), 1.0f);
+    // So many zeros that a reader refuses to unpack them have to be written out.
+    const bool packs = MayExpand(0, PlainParameterBytes(model.parameters.size()));
+    model.storedAs = packs ? ParameterType::Quantised : ParameterType::Half;
+    model.steps.assign(packs ? ParameterGroups(model.description).size() : 0, 1.0f);
   }
   model.macroCells.provenance = MacroCellProvenance::Decoded;
   std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(), ValueRange{0, 0});
