@@ -12,7 +12,6 @@
 namespace inr {
 
 namespace {
-constexpr std::int64_t SampleCount = 1 << 15;
 constexpr std::int64_t BlockSize = 64;
 constexpr std::uint64_t EstimateStream = 3; // apart from those of GradientDescent
 
@@ -25,15 +24,15 @@ glm::vec3 VoxelCentre(const glm::vec3& position, const glm::i64vec3& dims)
 
 } // namespace
 
-PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed)
-    : Positions(SampleCount), Targets(SampleCount)
+PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed, std::int64_t voxels)
+    : Positions(static_cast<std::size_t>(voxels)), Targets(static_cast<std::size_t>(voxels))
 {
   const std::uint64_t stream = RandomBits(seed, EstimateStream);
-  for (std::int64_t k = 0; k < SampleCount; ++k) {
+  for (std::int64_t k = 0; k < voxels; ++k) {
     const auto drawn = static_cast<std::uint64_t>(k);
     this->Positions[k] = VoxelCentre(RandomPosition(stream, drawn, source.dims()), source.dims());
   }
-  source.sample(this->Positions.data(), SampleCount, this->Targets.data());
+  source.sample(this->Positions.data(), voxels, this->Targets.data());
   this->Known = std::count_if(this->Targets.begin(), this->Targets.end(),
                               [](float target) { return std::isfinite(target); });
 }
@@ -49,9 +48,10 @@ std::vector<float> PsnrEstimate::values(const ModelView& model, const EvaluateKe
                                         const StopCheck& check) const
 {
   const PackedNetwork network(model);
-  std::vector<float> values(SampleCount);
+  const auto count = static_cast<std::int64_t>(this->Targets.size());
+  std::vector<float> values(this->Targets.size());
   std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(network.view())));
-  for (std::int64_t first = 0; first < SampleCount && check.goesOn(); first += BlockSize) {
+  for (std::int64_t first = 0; first < count && check.goesOn(); first += BlockSize) {
     kernel.evaluate(network.view(), &this->Positions[first].x, BlockSize, &values[first],
                     workspace.data());
   }
@@ -62,7 +62,7 @@ std::vector<float> PsnrEstimate::values(const ModelView& model, const EvaluateKe
 double PsnrEstimate::squaredError(const std::vector<float>& values) const
 {
   double squared = 0;
-  for (std::int64_t k = 0; k < SampleCount; ++k) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
     if (std::isfinite(this->Targets[k])) {
       const double difference = values[k] - this->Targets[k];
       squared += difference * difference;

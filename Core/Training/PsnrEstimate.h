@@ -15,7 +15,10 @@ namespace inr {
 class PsnrEstimate
 {
 public:
-  PsnrEstimate(const SampleSource& source, std::uint64_t seed);
+  static constexpr std::int64_t UsualVoxels = 1 << 15;
+
+  /// `voxels` is a multiple of 64.
+  PsnrEstimate(const SampleSource& source, std::uint64_t seed, std::int64_t voxels = UsualVoxels);
 
   /// In dB, peak 1; infinity for a perfect fit, 0 when `check` stopped it or no target is finite.
   double measure(const ModelView& model, const EvaluateKernel& kernel,
