@@ -52,13 +52,52 @@ double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio,
 /// Neighbouring levels' resolutions: more levels fit better for the same file than doubling does.
 constexpr float LevelGrowth = 1.5f;
 constexpr int BaseResolution = 8;
+constexpr int MostLevels = 16;
 
 /// Enough levels to reach the volume's longest side.
 int LevelsFor(const glm::i64vec3& dims)
 {
   const auto longest = static_cast<double>(std::max({dims.x, dims.y, dims.z}));
   const double steps = std::log(std::max(1.0, longest / BaseResolution)) / std::log(LevelGrowth);
-  return std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, 16);
+  return std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, MostLevels);
+}
+
+bool Fits(const Description& description, double budget)
+{
+  return static_cast<double>(Layout(description).parameterCount) <= budget;
+}
+
+/// The largest table that fits; the smallest one when nothing does.
+Description WithLargestTable(Description description, double budget)
+{
+  description.grid.log2HashmapSize = 6;
+  for (int log2Size = 7; log2Size <= 22; ++log2Size) {
+    Description candidate = description;
+    candidate.grid.log2HashmapSize = log2Size;
+    if (!Fits(candidate, budget)) {
+      break;
+    }
+    description = candidate;
+  }
+  return description;
+}
+
+/// As many levels between the coarsest and the finest as fit: tables come in powers of two, which
+/// would leave up to half of the budget unused.
+Description WithMoreLevels(Description description, double budget)
+{
+  const double intervals = description.grid.levels - 1; // of LevelGrowth
+  for (int levels = description.grid.levels + 1; levels <= MostLevels; ++levels) {
+    Description candidate = description;
+    candidate.grid.levels = levels;
+    candidate.grid.perLevelScale = static_cast<float>(
+        std::pow(static_cast<double>(LevelGrowth), intervals / static_cast<double>(levels - 1)));
+    if (!Fits(candidate, budget)) {
+      break;
+    }
+    description = candidate;
+  }
+  return description;
 }
 
 } // namespace
@@ -74,16 +113,7 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
   description.grid.levels = LevelsFor(dims);
   description.network.neurons = budget < 2e4 ? 16 : budget < 2e6 ? 32 : 64;
   description.network.hiddenLayers = 2;
-  // The largest table that fits; the smallest one when nothing does.
-  for (int log2Size = 6; log2Size <= 22; ++log2Size) {
-    Description candidate = description;
-    candidate.grid.log2HashmapSize = log2Size;
-    if (log2Size > 6 && static_cast<double>(Layout(candidate).parameterCount) > budget) {
-      break;
-    }
-    description = candidate;
-  }
-  return description;
+  return WithMoreLevels(WithLargestTable(description, budget), budget);
 }
 
 } // namespace inr

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -24,7 +25,20 @@ TEST(ModelSize, ReachesTheWantedRatioWithoutWastingIt)
   for (const double wanted : {8.0, 20.0, 50.0, 200.0}) {
     const double ratio = RatioOf({256, 256, 256}, inr::ScalarType::Float32, wanted);
     EXPECT_GE(ratio, wanted);
-    EXPECT_LE(ratio, 2.5 * wanted);
+    EXPECT_LE(ratio, 1.3 * wanted);
+  }
+}
+
+// However many levels there are, they reach from the same coarsest to the same finest.
+TEST(ModelSize, LevelsReachTheVoxels)
+{
+  for (const double wanted : {8.0, 14.0, 20.0, 33.0, 50.0, 200.0}) {
+    const inr::Description chosen =
+        inr::ChooseDescription({256, 256, 256}, inr::ScalarType::Float32, wanted);
+    const double finest =
+        chosen.grid.baseResolution * std::pow(chosen.grid.perLevelScale, chosen.grid.levels - 1);
+    EXPECT_GE(finest, 256) << wanted;
+    EXPECT_LE(finest, 1.5 * 256) << wanted;
   }
 }
 
