@@ -48,7 +48,7 @@ using TrainingObserver = std::function<bool(const TrainingProgress&)>;
 
 /// A model size for the volume: upstream-readable, about volume bytes / `ratio` when its parameters
 /// are stored as said; ratio 0 lets the volume's size decide. The smallest model takes a few KiB,
-/// whatever the volume and the ratio. A Quantised one is expected to take 5 bits a parameter; what
+/// whatever the volume and the ratio. A Quantised one is given 3.2 bits a parameter; what
 /// it takes is known after the training only, which then makes steps coarser if need be.
 Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio,
                               ParameterType storedAs = ParameterType::Half);
