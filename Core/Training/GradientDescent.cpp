@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/GradientDescent.h"
 
+#include "Core/Inference/HugePages.h"
 #include "Core/Inference/KernelTable.h"
 #include "Core/Random.h"
 
@@ -114,7 +115,13 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
       FirstMoments(this->Parameters.size()), SecondMoments(this->Parameters.size()),
       Updates(this->Parameters.size() - this->Shape.gridOffset), Corrections(BiasCorrections()),
       Positions(BatchSize), Targets(BatchSize)
-{}
+{
+  for (std::vector<float>* const values :
+       {&this->Parameters, &this->Gradient, &this->FirstMoments, &this->SecondMoments}) {
+    PreferHugePages(values->data(), values->size() * sizeof(float));
+  }
+  PreferHugePages(this->Updates.data(), this->Updates.size() * sizeof(std::uint16_t));
+}
 
 std::optional<double> GradientDescent::step(const SampleSource& source, const StopCheck& check)
 {
