@@ -16,10 +16,10 @@ double DefaultParameters(double voxels) { return 128.0 * std::sqrt(voxels); }
 /// smallest model: the file of a volume of a few thousand voxels can be larger than the volume.
 constexpr double SmallestRatio = 2.0;
 
-/// Trained models take 0.5 to 0.6 bytes a parameter when 0.1 dB may be lost. A larger model with
+/// Trained models take 0.5 to 0.7 bytes a parameter when 0.1 dB may be lost. A larger model with
 /// coarser steps is better than that, though: on rm_mixing (60:1) and les_wmag91 (40:1), 0.33 to
-/// 0.4 bytes gave about 1 dB more than 0.55 to 0.63.
-constexpr double QuantisedBytes = 0.4;
+/// 0.48 bytes gave about 1 dB more than 0.55 to 0.63. The better the fit, the more digits count.
+constexpr double QuantisedBytes = 0.5;
 
 double BytesPerParameter(ParameterType storedAs)
 {
@@ -37,7 +37,7 @@ constexpr double DefaultBytes = 2.0; // of a parameter: sizes are the same in ev
 constexpr double FramingBytes = 2048.0;
 
 double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio,
-                       ParameterType storedAs)
+                       ParameterType storedAs, int macroCellSize)
 {
   const double voxels =
       static_cast<double>(dims.x) * static_cast<double>(dims.y) * static_cast<double>(dims.z);
@@ -45,7 +45,8 @@ double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio,
   if (ratio <= 0.0) {
     return std::min(DefaultParameters(voxels), bytes / SmallestRatio / DefaultBytes);
   }
-  const MacroCells cells = MakeMacroCells(dims, DefaultMacroCellSize(dims));
+  const MacroCells cells =
+      MakeMacroCells(dims, macroCellSize > 0 ? macroCellSize : DefaultMacroCellSize(dims));
   const double bytesPerCell = storedAs == ParameterType::Quantised ? 2.0 : 8.0;
   const double cellBytes = bytesPerCell * static_cast<double>(cells.ranges.size());
   return (bytes / ratio - cellBytes - FramingBytes) / BytesPerParameter(storedAs);
@@ -105,9 +106,9 @@ Description WithMoreLevels(Description description, double budget)
 } // namespace
 
 Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio,
-                              ParameterType storedAs)
+                              ParameterType storedAs, int macroCellSize)
 {
-  const double budget = ParameterBudget(dims, type, ratio, storedAs);
+  const double budget = ParameterBudget(dims, type, ratio, storedAs, macroCellSize);
   Description description;
   description.grid.features = 4;
   description.grid.baseResolution = BaseResolution;

@@ -18,7 +18,8 @@ constexpr double NegligibleError = 1e-10;
 /// What a group seems to do to the output at least: less is lost in the arithmetic.
 constexpr double SmallestEffect = 1e-16;
 constexpr int StepsPerOctave = 8;
-constexpr double MostCoarsening = 8.0;
+/// Beyond that a file cannot become small enough at all: its macro-cells are too many.
+constexpr double MostCoarsening = 64.0;
 
 double SquaredDifference(const std::vector<float>& a, const std::vector<float>& b)
 {
@@ -99,6 +100,7 @@ public:
     const auto count = static_cast<double>(this->Original.size());
     for (std::int64_t size = ModelFileSize(this->Result); size > largest;
          size = ModelFileSize(this->Result)) {
+      this->Check.goesOn(); // throws where it is to stop
       // A step twice as coarse saves a bit of each parameter, or less.
       const double excessBits = 8.0 * static_cast<double>(size - largest) / count;
       this->apply(this->Scale * std::exp2(std::max(excessBits, 1.0 / StepsPerOctave)));

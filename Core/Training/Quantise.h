@@ -11,7 +11,7 @@ namespace inr {
 struct QuantiseLimits
 {
   double loss = 0.1; ///< dB of the estimated PSNR
-  /// Bytes that the file should take at most; 0 = any number. For it steps become up to 8 times as
+  /// Bytes that the file should take at most; 0 = any number. For it steps become up to 64 times as
   /// coarse as the loss allows; where that is not enough they stay as they were.
   std::int64_t fileSize = 0;
 };

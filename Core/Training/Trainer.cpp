@@ -118,8 +118,8 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
       options.macroCellSize > 0 ? options.macroCellSize : DefaultMacroCellSize(volume.dims);
 
   Model model;
-  model.description = options.description.value_or(
-      ChooseDescription(volume.dims, volume.type, options.targetRatio, options.storedAs));
+  model.description = options.description.value_or(ChooseDescription(
+      volume.dims, volume.type, options.targetRatio, options.storedAs, macroCellSize));
   model.storedAs = options.storedAs;
   model.volume = info;
   model.volume.dims = volume.dims;
@@ -149,7 +149,8 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   if (options.storedAs == ParameterType::Quantised) {
     // More voxels than while training: a tenth of a dB is to be told.
     const PsnrEstimate estimate(source, options.seed, 4 * PsnrEstimate::UsualVoxels);
-    Quantise(model, estimate, EvaluateKernelFor(set), LimitsForRatio(model, options.targetRatio),
+    const double ratio = options.description ? 0.0 : options.targetRatio;
+    Quantise(model, estimate, EvaluateKernelFor(set), LimitsForRatio(model, ratio),
              CheckOf(observer, descent.steps()));
   }
   RoundAsStored(model);

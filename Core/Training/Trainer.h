@@ -14,8 +14,11 @@ namespace inr {
 /// What to train and when to stop; the first limit reached ends it.
 struct TrainingOptions
 {
-  double targetPsnr = 0;          ///< dB; 0 = off
-  double targetRatio = 0;         ///< volume bytes / file bytes; 0 = by the volume's size
+  /// dB, as estimated on random voxels every 200 steps, with what storing the parameters is going
+  /// to cost: 0.1 dB of a Quantised model, 1 dB where a ratio is asked for; 0 = off.
+  double targetPsnr = 0;
+  /// Volume bytes / file bytes; 0 = by the volume's size, and where there is a description.
+  double targetRatio = 0;
   std::uint64_t maximumSteps = 0; ///< 0 = no limit
   double timeLimit = 300;         ///< seconds of training; measuring comes on top; 0 = no limit
   /// Steps that the learning rate is spread over; 0 = maximumSteps or, without it, what the time
@@ -24,8 +27,8 @@ struct TrainingOptions
   std::uint64_t seed = 1;
   int macroCellSize = 0;                  ///< voxels, a power of two; 0 = DefaultMacroCellSize
   std::optional<Description> description; ///< empty = ChooseDescription
-  /// Half instead of Quantised where that would cost more than 0.1 dB, and Float where a half
-  /// cannot hold a parameter.
+  /// Quantised costs 0.1 dB at most, but more where targetRatio takes it. Half instead where steps
+  /// cannot be that fine, and Float where a half cannot hold a parameter.
   ParameterType storedAs = ParameterType::Quantised;
   std::string kernel; ///< for tests; empty = the fastest
   int threads = 0;    ///< 0 = all
@@ -48,10 +51,10 @@ using TrainingObserver = std::function<bool(const TrainingProgress&)>;
 
 /// A model size for the volume: upstream-readable, about volume bytes / `ratio` when its parameters
 /// are stored as said; ratio 0 lets the volume's size decide. The smallest model takes a few KiB,
-/// whatever the volume and the ratio. A Quantised one is given 3.2 bits a parameter; what
+/// whatever the volume and the ratio. A Quantised one is given 4 bits a parameter; what
 /// it takes is known after the training only, which then makes steps coarser if need be.
 Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double ratio,
-                              ParameterType storedAs = ParameterType::Half);
+                              ParameterType storedAs = ParameterType::Half, int macroCellSize = 0);
 
 /// Fits an INR to `volume`; `info` gives geometry, name and type (its low and high are measured).
 ///

@@ -21,9 +21,9 @@ constexpr std::uint64_t StepsToTarget = 10000;
 /// which the learning rate is constant.
 constexpr double TimingShare = 0.03;
 
-void RequireFinite(double loss, std::uint64_t steps)
+void RequireFinite(bool finite, std::uint64_t steps)
 {
-  if (!std::isfinite(loss)) {
+  if (!finite) {
     throw Error(ErrorCode::InvalidModel,
                 "the training diverged in step " + std::to_string(steps) +
                     ": the network's output is not finite; choose another activation or fewer "
@@ -50,7 +50,7 @@ void TrainingLoop::run(GradientDescent& descent, const SampleSource& source,
     if (!loss) { // the time is up, and the step was dropped
       break;
     }
-    RequireFinite(*loss, descent.steps());
+    RequireFinite(std::isfinite(*loss), descent.steps());
     if (this->reachedTarget(descent, estimate, kernel, check)) {
       break;
     }
@@ -63,6 +63,11 @@ void TrainingLoop::run(GradientDescent& descent, const SampleSource& source,
                     std::to_string(this->Options.timeLimit) +
                     " s; raise it or choose a smaller model");
   }
+  // The last update is not seen in any loss.
+  const std::vector<float>& parameters = descent.parameters();
+  RequireFinite(std::all_of(parameters.begin(), parameters.end(),
+                            [](float parameter) { return std::isfinite(parameter); }),
+                descent.steps());
   if (this->PlannedSteps == 0) { // the rate was constant to the end
     this->plan(descent, LearningRate::ConstantShare * descent.steps());
   }
@@ -89,6 +94,16 @@ void TrainingLoop::planByTheClock(GradientDescent& descent)
   this->plan(descent, std::max(steps, LearningRate::ConstantShare * descent.steps()));
 }
 
+/// In dB, that storing the parameters may cost afterwards.
+double TrainingLoop::storingLoss() const
+{
+  constexpr double lossForRatio = 1.0; // mostly
+  if (this->Options.storedAs != ParameterType::Quantised) {
+    return 0.0;
+  }
+  return this->Options.targetRatio > 0 ? lossForRatio : QuantiseLimits().loss;
+}
+
 bool TrainingLoop::reachedTarget(const GradientDescent& descent, const PsnrEstimate& estimate,
                                  const EvaluateKernel& kernel, const StopCheck& check)
 {
@@ -97,9 +112,7 @@ bool TrainingLoop::reachedTarget(const GradientDescent& descent, const PsnrEstim
     return false;
   }
   this->Psnr = estimate.measure(descent.view(), kernel, check);
-  // With what storing the parameters may cost afterwards.
-  const bool loses = this->Options.storedAs == ParameterType::Quantised;
-  return this->Psnr >= this->Options.targetPsnr + (loses ? QuantiseLimits().loss : 0.0);
+  return this->Psnr >= this->Options.targetPsnr + this->storingLoss();
 }
 
 bool TrainingLoop::timeIsUp() const

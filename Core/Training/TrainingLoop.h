@@ -32,6 +32,7 @@ public:
 private:
   void plan(GradientDescent& descent, std::uint64_t steps);
   void planByTheClock(GradientDescent& descent);
+  double storingLoss() const;
   bool reachedTarget(const GradientDescent& descent, const PsnrEstimate& estimate,
                      const EvaluateKernel& kernel, const StopCheck& check);
   bool timeIsUp() const;

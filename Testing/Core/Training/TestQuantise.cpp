@@ -187,13 +187,24 @@ TEST_F(Quantising, CanBeStopped)
 }
 
 /// Bytes of the file of a model that was trained at a ratio, over the bytes asked for.
-template <class T> double Share(const Field<T>& field, double ratio)
+template <class T> double Share(const Field<T>& field, double ratio, std::uint64_t steps = 60)
 {
-  inr::TrainingOptions options = Steps(60);
+  inr::TrainingOptions options = Steps(steps);
   options.targetRatio = ratio;
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
   const double bytes = static_cast<double>(field.values.size() * sizeof(T));
   return static_cast<double>(inr::ModelFileSize(*model)) * ratio / bytes;
+}
+
+// A smooth field is fitted so well that many digits of each parameter count.
+TEST(TargetRatio, IsKeptByAGoodFit)
+{
+  const Field<float> field = Waves<float>({40, 40, 40}, inr::ScalarType::Float32, 0, 1);
+  for (const double ratio : {8.0, 25.0}) {
+    const double share = Share(field, ratio, 1000);
+    EXPECT_LE(share, 1.0) << ratio;
+    EXPECT_GT(share, 0.5) << ratio;
+  }
 }
 
 TEST(TargetRatio, IsKept)
