@@ -98,7 +98,7 @@ public:
   ///@}
 
   ///@{
-  /// Write a file that instantvnr and cINR read, too, and that is two to five times as large for
+  /// Write a file that instantvnr and cINR read, too, and that is two to six times as large for
   /// the same model. Off (default): a compact file, which loses about 0.1 dB at most, but more
   /// where TargetRatio takes it.
   ///
