@@ -189,6 +189,7 @@ TEST(LearningRate, IsConstantThenFallsInALine)
   const inr::LearningRate rate;
   EXPECT_EQ(rate.at(0, 1000), rate.initial);
   EXPECT_EQ(rate.at(100, 1000), rate.initial);
+  EXPECT_LT(rate.at(110, 1000), rate.initial);
   EXPECT_NEAR(rate.at(550, 1000), 0.5f * rate.initial, 1e-6f);
   EXPECT_EQ(rate.at(1000, 1000), rate.last);
   EXPECT_EQ(rate.at(1u << 30, 1000), rate.last);
