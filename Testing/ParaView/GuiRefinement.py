@@ -62,7 +62,8 @@ def pauses_under_a_dialog():
         yield
     print(pictures_since(opened), "pictures under a dialog that was looked at", looks, "times")
     check(modal_window() and looks > 10, "the dialog was not there, or blocked the window")
-    check(pictures_since(opened) == 0, "refined under a dialog")
+    # The window may be drawn once more for having been covered; refinement is many pictures a second.
+    check(pictures_since(opened) <= 1, "refined under a dialog")
     close(modal_window())
     while modal_window():
         yield
