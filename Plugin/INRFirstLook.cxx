@@ -16,15 +16,11 @@
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
 
 namespace {
 
 constexpr const char* TypeText = "INR Volume";
-constexpr const char* UnitDistance = "ScalarOpacityUnitDistance";
 
 vtkPVDataInformation* InputInformation(vtkSMProxy* representation)
 {
@@ -57,70 +53,85 @@ void ColourByData(vtkSMPVRepresentationProxy* representation, const char* array)
   representation->RescaleTransferFunctionToDataRange(hasRange, false);
 }
 
-/// Cells of the native grid of an INR; of other data, their own.
-double NativeCells(vtkPVDataInformation* data)
+vtkSMDoubleVectorProperty* GetDoubles(vtkSMProxy* proxy, const char* name)
 {
-  auto* native = data->GetFieldDataInformation()->GetArrayInformation("INRNativeDimensions");
-  if (!native || native->GetNumberOfComponents() != 3) {
-    return static_cast<double>(data->GetNumberOfCells());
-  }
-  double cells = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    cells *= std::max(native->GetComponentRange(axis)[0] - 1, 1.0);
-  }
-  return cells;
+  return vtkSMDoubleVectorProperty::SafeDownCast(proxy->GetProperty(name));
+}
+
+/// The value that the property's domain gives to new proxies.
+double DomainDefault(vtkSMDoubleVectorProperty* property)
+{
+  property->FindDomain<vtkSMBoundsDomain>()->SetDefaultValues(property, true);
+  const double value = property->GetUncheckedElement(0);
+  property->ClearUncheckedElements();
+  return value;
 }
 
 /// ParaView's default is about the diagonal of a cell, which makes a volume of 4096^3 look solid
-/// and would follow MaximumGridPoints here. This one is the diagonal of a cell of the native grid,
-/// or of a grid of 256^3 points where that is coarser.
-double DefaultUnitDistance(vtkPVDataInformation* data)
+/// and would follow MaximumGridPoints here. The panel's does not depend on the grid. What somebody
+/// has set, under either name, stays.
+void SetUnitDistance(vtkSMProxy* representation)
 {
-  const double* bounds = data->GetBounds();
-  const double diagonal =
-      std::hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]);
-  return diagonal / std::cbrt(std::clamp(NativeCells(data), 1.0, 255.0 * 255.0 * 255.0));
+  auto* stock = GetDoubles(representation, "ScalarOpacityUnitDistance");
+  auto* panel = GetDoubles(representation, "INRUnitDistance");
+  if (stock->GetElement(0) == DomainDefault(stock) &&
+      panel->GetElement(0) == stock->GetElement(0)) {
+    panel->SetElement(0, DomainDefault(panel));
+  }
+  stock->Copy(panel);
+  representation->UpdateVTKObjects();
 }
 
-/// Whether the property still has the value that its domain gives to new proxies.
-bool IsDomainDefault(vtkSMProperty* property)
+/// What the panel shows under a name of its own, because ParaView hides the stock property's widget
+/// for this type of representation. ParaView passes the stock one's value on to the panel's.
+struct PanelProperty
 {
-  auto* values = vtkSMDoubleVectorProperty::SafeDownCast(property);
-  auto* domain = values ? values->FindDomain<vtkSMBoundsDomain>() : nullptr;
-  if (!domain) {
-    return false;
+  const char* panel;
+  const char* stock;
+};
+constexpr PanelProperty PanelProperties[] = {{"INRUnitDistance", "ScalarOpacityUnitDistance"},
+                                             {"INRShade", "Shade"}};
+
+/// Passes what was changed in the panel on to the stock property: scripts and state files then find
+/// the same value under both names.
+void PassOn(vtkSMProxy* representation, const char* changed)
+{
+  for (const PanelProperty& property : PanelProperties) {
+    if (std::strcmp(changed, property.panel) == 0) {
+      representation->GetProperty(property.stock)
+          ->Copy(representation->GetProperty(property.panel));
+      representation->UpdateVTKObjects();
+    }
   }
-  domain->SetDefaultValues(values, true);
-  const bool same = values->GetElement(0) == values->GetUncheckedElement(0);
-  values->ClearUncheckedElements();
-  return same;
 }
 
-void SetUnitDistance(vtkSMProxy* representation, vtkPVDataInformation* data)
+bool IsInr(vtkSMProxy* representation)
 {
-  if (IsDomainDefault(representation->GetProperty(UnitDistance))) {
-    vtkSMPropertyHelper(representation, UnitDistance).Set(DefaultUnitDistance(data));
-    representation->UpdateVTKObjects();
-  }
+  return std::strcmp(vtkSMPropertyHelper(representation, "Representation").GetAsString(),
+                     TypeText) == 0;
 }
 
 void GiveFirstLook(vtkSMProxy* proxy)
 {
   auto* representation = vtkSMPVRepresentationProxy::SafeDownCast(proxy);
-  if (!representation || representation->GetSessionProxyManager()->GetInLoadXMLState() ||
-      std::strcmp(vtkSMPropertyHelper(proxy, "Representation").GetAsString(), TypeText) != 0) {
+  if (!representation || !IsInr(proxy) ||
+      representation->GetSessionProxyManager()->GetInLoadXMLState()) {
     return;
   }
   if (vtkPVDataInformation* data = InputInformation(representation)) {
     ColourByData(representation, FirstPointArray(data));
-    SetUnitDistance(representation, data);
+    SetUnitDistance(representation);
   }
 }
 
-void OnPropertyModified(vtkObject* caller, unsigned long, void*, void* name)
+void OnPropertyModified(vtkObject* caller, unsigned long, void*, void* data)
 {
-  if (name && std::strcmp(static_cast<const char*>(name), "Representation") == 0) {
-    GiveFirstLook(static_cast<vtkSMProxy*>(caller));
+  auto* representation = static_cast<vtkSMProxy*>(caller);
+  const char* name = static_cast<const char*>(data);
+  if (name && std::strcmp(name, "Representation") == 0) {
+    GiveFirstLook(representation);
+  } else if (name && IsInr(representation)) {
+    PassOn(representation, name);
   }
 }
 
@@ -129,7 +140,7 @@ void OnRegister(vtkObject*, unsigned long, void*, void* callData)
   const auto* info = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(callData);
   if (info->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !info->Proxy ||
       std::strcmp(info->GroupName, "representations") != 0 ||
-      !info->Proxy->GetProperty("Representation")) {
+      !info->Proxy->GetProperty("Representation") || !info->Proxy->GetProperty("INRUnitDistance")) {
     return;
   }
   vtkNew<vtkCallbackCommand> watch;

@@ -84,6 +84,7 @@ voxels = simple.INRDecode(Input=reader)
 stock = simple.Show(voxels, view)
 stock.SetRepresentationType("Volume")
 simple.ColorBy(stock, ("POINTS", display.ColorArrayName[1]))
+stock.ScalarOpacityUnitDistance = display.ScalarOpacityUnitDistance
 pictures = {}
 for shade in (0, 1):
     display.Shade = stock.Shade = shade

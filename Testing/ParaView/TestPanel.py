@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The first look and the panel: the opacity's length follows the bounds whatever the grid, what the
+panel shows under a name of its own is the stock property, and colouring reads no voxels."""
+import math
+
+from paraview import simple, smstate
+from pvtest import ARRAY, MODEL, Messages, check, load_plugin, look_at, output_file, picture
+from pvtest import show_view
+
+load_plugin()
+view = show_view()
+
+
+def same(display, distance):
+    """The stock property and the panel's have this value."""
+    values = display.ScalarOpacityUnitDistance, display.INRUnitDistance
+    check(all(math.isclose(v, distance, rel_tol=1e-9) for v in values), values, "not", distance)
+
+
+def cover(image):
+    """How dark the volume is: the mean over its picture of what it hides of the white."""
+    seen = (image < 0.98).any(axis=2)
+    return float(1 - image[seen].min(axis=1).mean()), float(seen.mean())
+
+
+# A twentieth of the longest side, for the file as it is and as one that claims far more voxels.
+DNS = [10240, 7680, 1536]
+for dimensions, grid in ([0, 0, 0], 0), (DNS, 0), ([0, 0, 0], 1000), (DNS, 1000):
+    reader = simple.INRReader(FileName=MODEL, Dimensions=dimensions)
+    if grid:
+        reader.MaximumGridPoints = grid
+    display = simple.Show(reader, view)
+    bounds = reader.GetDataInformation().GetBounds()
+    longest = max(high - low for low, high in zip(bounds[0::2], bounds[1::2]))
+    check(longest == max(dimensions[0] - 1, 90), "bounds", bounds)
+    same(display, longest / 20)
+    if not grid:
+        simple.Render(view)
+        look_at(view)
+        display.LevelOfDetailScale = 4
+        darkness, area = cover(picture(view, f"panel-first-look-{dimensions[0]}"))
+        print(f"{dimensions}: {area:.2f} of the picture, of which {darkness:.2f} is hidden")
+        check(area > 0.1, "the first look is nearly empty")
+        check(darkness < 0.8, "the first look is an opaque block", darkness)
+    simple.Delete(reader)
+
+# Either name sets the other.
+reader = simple.OpenDataFile(MODEL)
+display = simple.Show(reader, view)
+display.INRUnitDistance = 4
+same(display, 4)
+display.ScalarOpacityUnitDistance = 7
+same(display, 7)
+display.INRShade = 1
+check(display.Shade == 1, "shading is not passed on")
+display.Shade = 0
+check(display.INRShade == 0, "shading does not come back")
+
+# So it does not matter in which order a state file sets them.
+display.INRUnitDistance = 3
+display.INRShade = 1
+simple.SaveState(output_file("panel.pvsm"))
+script = smstate.get_state()
+simple.ResetSession()
+simple.LoadState(output_file("panel.pvsm"))
+view = simple.GetActiveView()
+(reader,) = simple.GetSources().values()
+display = simple.GetDisplayProperties(reader, view)
+same(display, 3)
+check((display.Shade, display.INRShade) == (1, 1), "shading is lost")
+simple.ResetSession()
+exec(script, {})
+(reader,) = simple.GetSources().values()
+view = simple.GetActiveView()
+display = simple.GetDisplayProperties(reader, view)
+same(display, 3)
+check((display.Shade, display.INRShade) == (1, 1), "shading is lost in a Python state")
+
+# A length set before the type of representation stays; ordinary data keep ParaView's default.
+for name in "ScalarOpacityUnitDistance", "INRUnitDistance":
+    reader = simple.INRReader(FileName=MODEL)
+    display = simple.Show(reader, view, "UniformGridRepresentation")
+    display.SetRepresentationType("Outline")
+    setattr(display, name, 2.5)
+    display.SetRepresentationType("INR Volume")
+    same(display, 2.5)
+    simple.Delete(reader)
+wavelet = simple.Wavelet()
+stock = simple.Show(wavelet, view)
+before = stock.ScalarOpacityUnitDistance
+stock.SetRepresentationType("Volume")
+check(stock.ScalarOpacityUnitDistance == before, "the plugin changes stock volume rendering")
+check(before < 3, "the plugin changes ParaView's default", before)
+simple.Delete(wavelet)
+
+
+def kilobytes(reader):
+    """Of decoded values that filters have asked the reader's array for."""
+    array = reader.GetClientSideObject().GetOutputDataObject(0).GetPointData().GetArray(0)
+    return array.GetActualMemorySize()
+
+
+# Colours, their range, presets and legend come from the header; the histogram of the colour map
+# editor takes its values from the grid that filters see.
+simple.ResetSession()
+view = show_view()
+reader = simple.INRReader(FileName=MODEL, MaximumGridPoints=8000)
+display = simple.Show(reader, view)
+with Messages() as messages:
+    table = simple.GetColorTransferFunction(ARRAY)
+    table.RescaleTransferFunction(0, 1)
+    display.RescaleTransferFunctionToDataRange()
+    low, high = reader.PointData[ARRAY].GetRange()
+    check((table.RGBPoints[0], table.RGBPoints[-4]) == (low, high), "range", table.RGBPoints)
+    check(table.ApplyPreset("Viridis (matplotlib)", True), "no preset")
+    check(table.RGBPoints[-4] == high, "the preset moves the range", table.RGBPoints)
+    display.SetScalarBarVisibility(view, True)
+    look_at(view)
+    simple.Render(view)
+    check(kilobytes(reader) <= 1, "colouring has read", kilobytes(reader), "KiB of values")
+    histogram = table.SMProxy.ComputeDataHistogramTable(64)
+check(messages.errors() == 0, "colouring reported", messages.text)
+values = histogram.GetColumnByName("bin_values")
+total = sum(values.GetTuple1(k) for k in range(64))
+check(histogram.GetNumberOfRows() == 64, "a histogram of", histogram.GetNumberOfRows())
+check(0 < total == reader.GetDataInformation().GetNumberOfPoints() <= 8000, "counts", total)
