@@ -10,7 +10,7 @@ namespace inr {
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
     : ray(scene.geometry.ray(x, y)), stream(PixelStream(scene.frame, x, y)),
       samples(scene.majorants, scene.settings, this->ray, scene.frame.levelOfDetailScale,
-              scene.cache.hierarchy().levels(), JitterOf(this->stream))
+              scene.cache.hierarchy().levels(), JitterOf(scene.settings, this->stream))
 {}
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
@@ -31,6 +31,7 @@ CachedRay CachedMarcher::begin(int x, int y)
 
 bool CachedMarcher::march(CachedRay& state)
 {
+  const bool projects = this->Scene.settings.projector.projects();
   this->Ended = false;
   this->Waiting = false;
   this->Ways[0] = this->Ways[1] = {};
@@ -40,9 +41,12 @@ bool CachedMarcher::march(CachedRay& state)
     } else {
       this->place(state);
       this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
-      this->composite(state);
+      projects ? this->project(state) : this->composite(state);
     }
-    this->Ended = this->Ended || state.color.transmittance <= OpaqueTransmittance;
+    this->Ended = this->Ended || this->isDone(state);
+  }
+  if (projects && this->Ended) {
+    this->finishProjection(state);
   }
   this->close(this->Runs[0], state.color.transmittance);
   this->close(this->Runs[1], state.color.transmittance);
@@ -67,6 +71,10 @@ void CachedMarcher::place(CachedRay& state)
       return;
     }
     const AlikeSamples alike = state.samples.alike();
+    if (settings.projector.canSkip(state.projection, state.samples.stretch().range)) {
+      state.samples.pass(alike, alike.count);
+      continue;
+    }
     const int count = this->add(state, alike);
     if (alike.last && count > 0) {
       this->LastLength =

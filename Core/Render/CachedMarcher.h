@@ -36,6 +36,7 @@ struct CachedRay
   SampleWalker samples;
   RayColor color{{0, 0, 0}, 1};
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
+  Projection projection{};  ///< instead, of values that are projected
 };
 
 /// What a ray does where the brick it wants is not there.
@@ -93,6 +94,9 @@ private:
   void advanceShaded(CachedRay& state);
   void compositeShaded(CachedRay& state, const glm::vec4* colors, const double* t, int count);
   void compositeColor(CachedRay& state, const glm::vec4& color, float length, double t);
+  void project(CachedRay& state);
+  void finishProjection(CachedRay& state) const;
+  bool isDone(const CachedRay& state) const;
   void clampToRanges();
   /// Puts the ray back to before a sample of the batch, which began at `before`.
   void goBackTo(int sample, const CachedRay& before, CachedRay& state);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Render/Blending.h"
 #include "Core/Render/Lights.h"
 #include "Core/Render/PathOptions.h"
 
@@ -52,13 +53,14 @@ struct Frame
   /// World-space half spaces; a point p is kept where dot(plane, (p, 1)) >= 0 for all of them.
   std::vector<glm::dvec4> clippingPlanes;
 
-  /// How the field's gradients are lit by `lights` in ray marching; none: colours are as the
-  /// transfer function has them.
+  /// How the field's gradients are lit by `lights` where ray marching composites; none: colours are
+  /// as the transfer function has them.
   std::optional<Material> shading;
   /// The scene's, for what is lit: none of them shines on a medium that only emits and absorbs.
   std::vector<Light> lights;
 
   RenderMode mode = RenderMode::RayMarching;
+  Blending blending; ///< for ray marching; paths know compositing only
   PathOptions paths; ///< for path tracing
   /// Of path tracing: the picture is the mean of so many paths through each pixel, above 0; with a
   /// time limit, of those that were traced in time.

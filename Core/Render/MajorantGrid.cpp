@@ -11,13 +11,12 @@ MajorantGrid::MajorantGrid(MacroCells cells)
     : Cells(std::move(cells)), Extinctions(this->Cells.ranges.size(), 0.0f), Empty(this->Cells.dims)
 {}
 
-void MajorantGrid::update(const ColorTable& colors, const Arena& arena)
+void MajorantGrid::update(const ExtinctionRule& rule, const Arena& arena)
 {
   constexpr std::int64_t cellsPerTask = 4096;
   const auto count = static_cast<std::int64_t>(this->Extinctions.size());
   arena.forEachBlock(count, cellsPerTask, [&](std::int64_t begin, std::int64_t end) {
-    colors.maximumExtinctions(this->Cells.ranges.data() + begin, end - begin,
-                              this->Extinctions.data() + begin);
+    rule(this->Cells.ranges.data() + begin, end - begin, this->Extinctions.data() + begin);
   });
   this->Empty.update(this->Extinctions, arena);
 }

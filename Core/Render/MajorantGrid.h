@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Model/MacroCells.h"
-#include "Core/Render/ColorTable.h"
+#include "Core/Render/CellVisibility.h"
 #include "Core/Render/EmptySpace.h"
 
 #include <cstdint>
@@ -12,15 +12,19 @@ namespace inr {
 
 class Arena;
 
-/// A grid of value ranges joined with a transfer function.
+/// A grid of value ranges joined with what makes values visible, a transfer function say.
 class MajorantGrid
 {
 public:
   /// `cells` must not be empty.
   explicit MajorantGrid(MacroCells cells);
 
-  /// Recomputes every cell's extinction.
-  void update(const ColorTable& colors, const Arena& arena);
+  /// Recomputes every cell's extinction: by a rule, or for compositing.
+  void update(const ExtinctionRule& rule, const Arena& arena);
+  void update(const ColorTable& colors, const Arena& arena)
+  {
+    this->update(VisibilityFor({}, colors), arena);
+  }
 
   const glm::i64vec3& dims() const { return this->Cells.dims; }
   const glm::dvec3& spacing() const { return this->Cells.spacing; }
@@ -30,8 +34,8 @@ public:
   {
     return this->Cells.ranges[static_cast<std::size_t>(cell)];
   }
-  /// -ln(1 - a) for the largest opacity a (per unit distance) of any value in the cell's range; 0 =
-  /// invisible.
+  /// Where opacity decides, -ln(1 - a) for the largest opacity a (per unit distance) of any value
+  /// in the cell's range; 0 = invisible.
   float extinction(std::int64_t cell) const
   {
     return this->Extinctions[static_cast<std::size_t>(cell)];

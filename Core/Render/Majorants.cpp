@@ -38,7 +38,14 @@ int CoarsestLevelWithin(const glm::dvec3& distance, const MacroCells& cells,
 
 Majorants::Majorants(const MacroCells& cells)
 {
-  this->Grids.push_back({MajorantGrid(WithoutHoles(cells)), EveryLevel});
+  const MacroCells whole = WithoutHoles(cells);
+  for (const ValueRange& range : whole.ranges) {
+    if (!range.empty()) {
+      this->Bounds.extend(range.low);
+      this->Bounds.extend(range.high);
+    }
+  }
+  this->Grids.push_back({MajorantGrid(whole), EveryLevel});
 }
 
 Majorants::Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, const Arena& arena)
@@ -61,8 +68,13 @@ Majorants::Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, co
 
 void Majorants::update(const ColorTable& colors, const Arena& arena)
 {
+  this->update(VisibilityFor({}, colors), arena);
+}
+
+void Majorants::update(const ExtinctionRule& rule, const Arena& arena)
+{
   for (Grid& grid : this->Grids) {
-    grid.cells.update(colors, arena);
+    grid.cells.update(rule, arena);
   }
 }
 

@@ -24,8 +24,12 @@ public:
   /// For all levels, in time proportional to the cells.
   Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, const Arena& arena);
 
-  /// Recomputes every cell's extinction.
+  /// Recomputes every cell's extinction: for compositing, or by a rule.
   void update(const ColorTable& colors, const Arena& arena);
+  void update(const ExtinctionRule& rule, const Arena& arena);
+
+  /// Of all values; empty when there are none.
+  const ValueRange& bounds() const { return this->Bounds; }
 
   int grids() const { return static_cast<int>(this->Grids.size()); }
   const MajorantGrid& grid(int number) const { return this->at(number).cells; }
@@ -41,6 +45,7 @@ private:
   const Grid& at(int number) const { return this->Grids[static_cast<std::size_t>(number)]; }
 
   std::vector<Grid> Grids;
+  ValueRange Bounds;
 };
 
 } // namespace inr

@@ -23,6 +23,7 @@ struct MarchState
   SampleWalker samples;
   glm::vec4 color{0};       ///< premultiplied, so far
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
+  Projection projection{};  ///< instead, of values that are projected
 };
 
 /// The random stream of a pixel's ray.
@@ -33,10 +34,11 @@ INR_HOST_DEVICE inline std::uint64_t PixelStream(const Frame& frame, int x, int 
   return RandomBits(RandomBits(frame.seed, frame.frameIndex), pixel);
 }
 
-/// MarchState::jitter; its counter is one that no sample has.
-INR_HOST_DEVICE inline double JitterOf(std::uint64_t stream)
+/// SampleWalker's jitter: random, as noise disturbs less than bands do (its counter is one that no
+/// sample has); but of an extreme both ends of a ray count.
+INR_HOST_DEVICE inline double JitterOf(const MarchSettings& settings, std::uint64_t stream)
 {
-  return RandomUnit(stream, ~std::uint64_t{0});
+  return settings.projector.isExtreme() ? 1.0 : RandomUnit(stream, ~std::uint64_t{0});
 }
 
 /// A sample to infer and what its answer is good for.
@@ -69,6 +71,10 @@ INR_HOST_DEVICE inline int PlaceSamples(const MarchSettings& settings, MarchStat
   int count = 0;
   while (count < most && walker.moveToVisible(settings)) {
     const AlikeSamples alike = walker.alike();
+    if (settings.projector.canSkip(state.projection, walker.stretch().range)) {
+      walker.pass(alike, alike.count);
+      continue;
+    }
     const auto steps = alike.last ? walker.rest() : static_cast<double>(alike.steps());
     const double place = static_cast<double>(walker.next()) + walker.offset(alike);
     const double t = glm::min(place * settings.step, ray.length);

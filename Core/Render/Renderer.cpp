@@ -48,6 +48,13 @@ struct Renderer::Implementation
     }
   }
 
+  Projector projector() const
+  {
+    return ProjectorFor(this->Seen, this->Volume, this->Cells.bounds());
+  }
+  void build();
+  /// Finds what matters to pictures blended like this, unless that is known.
+  void buildFor(const Blending& blending);
   FrameStatistics renderUncached(const Frame& frame, const RayGeometry& geometry,
                                  const MarchSettings& settings, const Shading* shading,
                                  const PassOutput& output,
@@ -67,6 +74,7 @@ struct Renderer::Implementation
   Majorants Cells;
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
+  Blending Seen;                        ///< how pictures are blended that the majorants are for
   std::optional<CachedRenderer> Cached; ///< where there is to be a cache
   std::optional<PathPicture> Paths;     ///< while paths are traced
   std::int64_t MajorantBuilds = 0;
@@ -113,8 +121,21 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
   if (self.Cached) {
     self.Cached->forgetColors();
   }
-  self.Cells.update(*self.Colors, self.Threads);
-  ++self.MajorantBuilds;
+  self.build();
+}
+
+void Renderer::Implementation::build()
+{
+  this->Cells.update(VisibilityFor(this->projector(), *this->Colors), this->Threads);
+  ++this->MajorantBuilds;
+}
+
+void Renderer::Implementation::buildFor(const Blending& blending)
+{
+  if (this->Seen != blending) {
+    this->Seen = blending;
+    this->build();
+  }
 }
 
 FrameStatistics Renderer::Implementation::renderUncached(
@@ -143,8 +164,9 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   MarchSettings settings;
   settings.dims = glm::dvec3(this->Volume.dims);
   settings.step = frame.sampleDistance;
-  settings.adaptive = frame.adaptiveSampling;
+  settings.adaptive = frame.adaptiveSampling && !frame.blending.projects();
   settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
+  settings.projector = this->projector();
   const std::optional<Shading> shading = ShadingOf(frame);
   const Shading* lit = shading ? &*shading : nullptr;
   if (!this->Cached) {
@@ -189,6 +211,7 @@ FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
     throw Error(ErrorCode::InvalidArgument, "set a transfer function before rendering");
   }
   RayGeometry(frame, self.Volume.dims); // throws for what is out of range
+  self.buildFor(frame.blending);
   rgba = Image(frame.width, frame.height, 4);
   if (depth != nullptr) {
     *depth = Image(frame.width, frame.height, 1);

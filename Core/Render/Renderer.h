@@ -63,7 +63,8 @@ public:
   /// high, or a logarithmic range that is not positive.
   void setTransferFunction(const TransferFunction& transferFunction);
 
-  /// How often the majorants have been rebuilt (for tests and statistics).
+  /// How often the majorants have been rebuilt (for tests and statistics): for a transfer function
+  /// or a frame whose Blending is not that of the one before.
   std::int64_t majorantBuilds() const;
 
   /// Bytes in use by the caches of all renderers of the process, their tables and queues: at most
@@ -77,9 +78,10 @@ public:
 
   /// Renders into `rgba`: premultiplied RGBA, resized to the frame. `depth`, when given, receives
   /// the window-space depth where accumulated opacity first reaches one half, 1 where it never
-  /// does; of path tracing, the mean depth of the first collisions where at least half of the paths
-  /// had one. A path-traced picture that a time limit cut short goes on when the same frame is
-  /// asked for again. `keepGoing` is asked between tiles, from any thread; returning false throws
+  /// does; of the largest or smallest value where its opacity does; 1 for averages and sums; of
+  /// path tracing, the mean depth of the first collisions where at least half of the paths had one.
+  /// A path-traced picture that a time limit cut short goes on when the same frame is asked for
+  /// again. `keepGoing` is asked between tiles, from any thread; returning false throws
   /// Error(Cancelled). Throws Error(InvalidArgument) for a frame outside its documented ranges,
   /// singular matrices or a missing transfer function.
   FrameStatistics render(const Frame& frame, Image& rgba, Image* depth = nullptr,

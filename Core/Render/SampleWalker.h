@@ -4,6 +4,7 @@
 #include "Core/HostDevice.h"
 #include "Core/Render/CellWalker.h"
 #include "Core/Render/LevelOfDetail.h"
+#include "Core/Render/Projection.h"
 
 #include <glm/common.hpp>
 
@@ -20,6 +21,7 @@ struct MarchSettings
   double step = 0.5;      ///< t between samples of level 0
   double unitsPerT = 1.0; ///< opacity unit distances per unit of t
   bool adaptive = true;   ///< Frame::adaptiveSampling
+  Projector projector;    ///< of values, where these are not composited
 };
 
 /// Optical depth that needs no finer sampling.
@@ -81,11 +83,12 @@ struct SampleStretch
 class SampleWalker
 {
 public:
-  /// `scale` and `levels` are LevelOfDetail's; `jitter` is in [0, 1).
+  /// `scale` and `levels` are LevelOfDetail's; `jitter` is in [0, 1]. With 1, where samples are at
+  /// the ends of what they stand for, there is one at t = 0, too.
   INR_HOST_DEVICE SampleWalker(const Majorants& majorants, const MarchSettings& settings,
                                const Ray& ray, double scale, int levels, double jitter)
       : Detail(ray, scale, levels), Cells(majorants, settings.dims, ray, scale, levels),
-        Jitter(jitter), End(ray.length / settings.step)
+        Jitter(jitter), End(ray.length / settings.step), Next(jitter < 1.0 ? 0 : -1)
   {}
 
   /// Moves on to the next sample that may be seen; false when there is none before the ray ends.
@@ -221,7 +224,8 @@ private:
     const double begin = static_cast<double>(this->Next) * settings.step;
     const double enough = glm::min((std::floor(begin / block) + 1.0) * block,
                                    glm::min(end, this->End * settings.step));
-    while (exit < enough) {
+    const bool joins = !settings.projector.isExtreme(); // what can be skipped is found cell by cell
+    while (joins && exit < enough) {
       this->Cells.moveTo(exit);
       const float extinction = this->Cells.extinction();
       if (extinction <= 0.0f || FaintSamples(settings, extinction * depth) != faint) {
@@ -240,7 +244,7 @@ private:
   SampleStretch Stretch;
   double Jitter;
   double End;
-  std::int64_t Next = 0; ///< lattice interval that comes next
+  std::int64_t Next; ///< lattice interval that comes next
 };
 
 } // namespace inr

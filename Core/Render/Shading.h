@@ -45,10 +45,11 @@ private:
   glm::dmat3 GradientToWorld;
 };
 
-/// None when `frame` is not shaded.
+/// None when `frame` is not shaded; projected values have no surface.
 inline std::optional<Shading> ShadingOf(const Frame& frame)
 {
-  return frame.shading ? std::optional<Shading>(frame) : std::nullopt;
+  const bool lit = frame.shading && !frame.blending.projects();
+  return lit ? std::optional<Shading>(frame) : std::nullopt;
 }
 
 } // namespace inr

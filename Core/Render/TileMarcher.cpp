@@ -31,7 +31,7 @@ void TileMarcher::generateRays(const Tile& tile)
     const int x = tile.x + k % tile.width;
     const int y = tile.y + k / tile.width;
     const Ray ray = this->Scene.geometry.ray(x, y);
-    const double jitter = JitterOf(PixelStream(frame, x, y));
+    const double jitter = JitterOf(this->Scene.settings, PixelStream(frame, x, y));
     const SampleWalker samples(this->Scene.majorants, this->Scene.settings, ray, 0, 1, jitter);
     this->Rays.push_back({ray, samples});
     if (ray.length > 0) {
@@ -122,25 +122,66 @@ void TileMarcher::shade()
 
 void TileMarcher::composite()
 {
+  const bool projects = this->Scene.settings.projector.projects();
   std::size_t alive = 0;
   std::size_t sample = 0;
   for (std::size_t live = 0; live < this->Live.size(); ++live) {
     MarchState& state = this->Rays[static_cast<std::size_t>(this->Live[live])];
     const auto end = static_cast<std::size_t>(this->SampleEnds[live]);
     const bool exhausted = end - sample < SamplesPerRound;
-    for (; sample < end && state.color.w < OpaqueEnough; ++sample) {
-      float value = this->Values[sample];
-      this->Statistics.clamped += ClampToRange(this->Samples[sample].range, value) ? 1 : 0;
-      const glm::vec4 color =
-          this->Scene.shading != nullptr ? this->Lit[sample] : this->Scene.colors.at(value);
-      Composite(color, this->Samples[sample], state);
-    }
+    const bool goesOn =
+        projects ? this->projectRay(sample, end, state) : this->compositeRay(sample, end, state);
     sample = end;
-    if (!exhausted && state.color.w < OpaqueEnough) {
+    if (!exhausted && goesOn) {
       this->Live[alive++] = this->Live[live];
     }
   }
   this->Live.resize(alive);
+}
+
+float TileMarcher::clampedValue(std::size_t sample)
+{
+  float value = this->Values[sample];
+  this->Statistics.clamped += ClampToRange(this->Samples[sample].range, value) ? 1 : 0;
+  return value;
+}
+
+bool TileMarcher::compositeRay(std::size_t first, std::size_t end, MarchState& state)
+{
+  for (std::size_t k = first; k < end && state.color.w < OpaqueEnough; ++k) {
+    const float value = this->clampedValue(k);
+    const glm::vec4 color =
+        this->Scene.shading != nullptr ? this->Lit[k] : this->Scene.colors.at(value);
+    Composite(color, this->Samples[k], state);
+  }
+  return state.color.w < OpaqueEnough;
+}
+
+bool TileMarcher::projectRay(std::size_t first, std::size_t end, MarchState& state)
+{
+  const Projector& projector = this->Scene.settings.projector;
+  for (std::size_t k = first; k < end; ++k) {
+    const MarchSample& sample = this->Samples[k];
+    projector.add(this->Scene.colors, this->clampedValue(k), static_cast<double>(sample.length),
+                  static_cast<double>(sample.t), state.projection);
+  }
+  return !projector.isFinal(state.projection);
+}
+
+glm::vec4 TileMarcher::colorOf(const MarchState& state) const
+{
+  const Projector& projector = this->Scene.settings.projector;
+  return projector.projects() && state.ray.length > 0
+             ? projector.color(this->Scene.colors, state.projection)
+             : state.color;
+}
+
+double TileMarcher::depthOf(const MarchState& state) const
+{
+  const bool projects = this->Scene.settings.projector.projects();
+  const bool shows = projects && this->colorOf(state).w >= 0.5f;
+  const double t = shows ? state.projection.at : state.halfOpaqueAt;
+  return t >= 0 ? this->Scene.geometry.windowDepth(state.ray.at(t)) : 1.0;
 }
 
 void TileMarcher::writePixels(const Tile& tile, Image& rgba, Image* depth) const
@@ -149,12 +190,10 @@ void TileMarcher::writePixels(const Tile& tile, Image& rgba, Image* depth) const
     const int x = tile.x + k % tile.width;
     const int y = tile.y + k / tile.width;
     const MarchState& state = this->Rays[static_cast<std::size_t>(k)];
-    std::copy_n(&state.color.x, 4, rgba.pixel(x, y));
+    const glm::vec4 color = this->colorOf(state);
+    std::copy_n(&color.x, 4, rgba.pixel(x, y));
     if (depth != nullptr) {
-      const bool reached = state.halfOpaqueAt >= 0;
-      const double z =
-          reached ? this->Scene.geometry.windowDepth(state.ray.at(state.halfOpaqueAt)) : 1.0;
-      *depth->pixel(x, y) = static_cast<float>(z);
+      *depth->pixel(x, y) = static_cast<float>(this->depthOf(state));
     }
   }
 }

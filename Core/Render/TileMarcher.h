@@ -44,6 +44,12 @@ private:
   void inferGradients();
   void shade();
   void composite();
+  /// A round of samples, [first, end), of one ray; false when it needs no more.
+  bool compositeRay(std::size_t first, std::size_t end, MarchState& state);
+  bool projectRay(std::size_t first, std::size_t end, MarchState& state);
+  float clampedValue(std::size_t sample);
+  glm::vec4 colorOf(const MarchState& state) const;
+  double depthOf(const MarchState& state) const;
   void writePixels(const Tile& tile, Image& rgba, Image* depth) const;
 
   const MarchScene& Scene;

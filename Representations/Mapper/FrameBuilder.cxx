@@ -12,6 +12,7 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
+#include <vtkVolumeMapper.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_access.hpp>
@@ -117,6 +118,41 @@ std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4&
     }
   }
   return result;
+}
+
+Blending BlendingOf(vtkVolumeMapper* mapper)
+{
+  Blending blending;
+  switch (mapper->GetBlendMode()) {
+  case vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND:
+    blending.mode = BlendMode::MaximumIntensity;
+    break;
+  case vtkVolumeMapper::MINIMUM_INTENSITY_BLEND:
+    blending.mode = BlendMode::MinimumIntensity;
+    break;
+  case vtkVolumeMapper::AVERAGE_INTENSITY_BLEND:
+    blending.mode = BlendMode::AverageIntensity;
+    blending.averageLow = mapper->GetAverageIPScalarRange()[0];
+    blending.averageHigh = mapper->GetAverageIPScalarRange()[1];
+    break;
+  case vtkVolumeMapper::ADDITIVE_BLEND:
+    blending.mode = BlendMode::Additive;
+    break;
+  default:
+    break;
+  }
+  return blending;
+}
+
+bool IsPiece(const PresentedGrid& grid)
+{
+  const int* extent = grid.image->GetExtent();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (extent[2 * axis] > 0 || extent[2 * axis + 1] < grid.presented[axis] - 1) {
+      return true;
+    }
+  }
+  return false;
 }
 
 bool MayHaveOpaqueDepth(vtkRenderer* renderer)

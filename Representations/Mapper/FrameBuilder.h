@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Render/Blending.h"
+
 #include <glm/gtc/type_precision.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
@@ -11,6 +13,7 @@ class vtkImageData;
 class vtkMatrix4x4;
 class vtkPlaneCollection;
 class vtkRenderer;
+class vtkVolumeMapper;
 
 namespace inr {
 
@@ -46,6 +49,12 @@ std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes);
 /// Half spaces that bound the image's piece, none when it holds the whole grid: ranks that hold
 /// neighbouring pieces then draw neighbouring parts.
 std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4& worldToIndex);
+
+/// How a mapper blends; its mode must be one that BlendMode has.
+Blending BlendingOf(vtkVolumeMapper* mapper);
+
+/// Whether the image holds less than the whole grid.
+bool IsPiece(const PresentedGrid& grid);
 
 /// Whether the depth buffer can hold anything: a visible prop with opaque geometry (volumes and
 /// overlays have none), or an earlier layer's depth that the renderer keeps.

@@ -70,6 +70,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.shading = MaterialOf(volume->GetProperty());
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
   frame.mode = settings.mode;
+  frame.blending = BlendingOf(mapper);
   frame.paths = settings.paths;
   frame.samplesPerPixel = settings.samplesPerPixel;
   frame.sampleDistance = settings.sampleDistance;
@@ -113,7 +114,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
     return input.problem;
   }
   vtkVolumeProperty* property = volume->GetProperty();
-  std::string problem = WhyRefused(mapper, property, input.grid.image);
+  std::string problem = WhyRefused(mapper, property, input.grid, settings.mode);
   if (!problem.empty()) {
     return problem;
   }

@@ -26,12 +26,36 @@ bool UsesGradientOpacity(vtkVolumeProperty* property)
   return false;
 }
 
+std::string WhyNotBlended(vtkVolumeMapper* mapper, const PresentedGrid& grid, RenderMode mode)
+{
+  const int blend = mapper->GetBlendMode();
+  if (blend == vtkVolumeMapper::COMPOSITE_BLEND) {
+    return {};
+  }
+  if (blend < 0 || blend >= vtkVolumeMapper::ISOSURFACE_BLEND) {
+    return "An INR has no blend mode " + std::to_string(blend) +
+           " (isosurface and slice are not there yet); set it to composite, maximum, minimum or "
+           "average intensity or additive.";
+  }
+  if (mode == RenderMode::PathTracing) {
+    return "Path tracing knows no blend mode but composite; set the blend mode to composite or the "
+           "render mode to ray marching.";
+  }
+  return IsPiece(grid) ? "A projection (maximum, minimum, average or additive blending) of an INR "
+                         "needs the whole volume in one process, and this one has a piece; set the "
+                         "blend mode to composite."
+                       : "";
+}
+
 } // namespace
 
-std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property, vtkImageData* image)
+std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
+                       const PresentedGrid& grid, RenderMode mode)
 {
-  if (mapper->GetBlendMode() != vtkVolumeMapper::COMPOSITE_BLEND) {
-    return "An INR can only be drawn with composite blending; set the blend mode to composite.";
+  vtkImageData* image = grid.image;
+  std::string problem = WhyNotBlended(mapper, grid, mode);
+  if (!problem.empty()) {
+    return problem;
   }
   if (mapper->GetCropping()) {
     return "An INR cannot be cropped by regions; turn Cropping off and use clipping planes.";

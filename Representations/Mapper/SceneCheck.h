@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Render/Frame.h"
+#include "FrameBuilder.h"
+
 #include <string>
 
-class vtkDataArray;
-class vtkImageData;
 class vtkVolumeMapper;
 class vtkVolumeProperty;
 
@@ -12,6 +13,7 @@ namespace inr {
 
 /// Why a scene that asks for this cannot be drawn, with what to do about it; empty when it can.
 /// What this mapper lacks is refused, never drawn as if it had not been asked for.
-std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property, vtkImageData* image);
+std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
+                       const PresentedGrid& grid, RenderMode mode);
 
 } // namespace inr

@@ -15,9 +15,13 @@
  * specular power by the renderer's lights. Interpolation type has no meaning here: an INR is
  * continuous.
  *
- * Refused with an error and not drawn: blend modes other than composite, cropping, gradient
- * opacity, 2D transfer functions, masks, scalars that are not an INR. A message comes once, not at
- * every frame.
+ * Blend modes: composite, and the projections maximum, minimum and average intensity (of the values
+ * in AverageIPScalarRange) and additive, unshaded, as VTK's GPU mapper has them. What cannot change
+ * a picture is not looked at: no macro-cell whose largest value is below one that a ray has met.
+ *
+ * Refused with an error and not drawn: other blend modes, projections of a piece of the grid or by
+ * path tracing, cropping, gradient opacity, 2D transfer functions, masks, scalars that are not an
+ * INR. A message comes once, not at every frame.
  *
  * What rays meet is decoded brick by brick, at the level of resolution that the picture's pixels
  * deserve, and kept in a cache from frame to frame. A still frame waits until every sample is

@@ -103,14 +103,38 @@ TEST_F(Refusals, LabelMasks)
 
 TEST_F(Refusals, OtherBlendModes)
 {
-  for (const int mode :
-       {vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND, vtkVolumeMapper::ISOSURFACE_BLEND}) {
+  for (const int mode : {int{vtkVolumeMapper::SLICE_BLEND}, -1, 7}) {
     this->messages.errors = 0;
     this->mapper->SetBlendMode(mode);
     this->expectRefused("blend");
     this->mapper->SetBlendModeToComposite();
     EXPECT_TRUE(this->draws());
   }
+}
+
+TEST_F(Refusals, PathsThatAreProjected)
+{
+  this->mapper->SetBlendModeToMaximumIntensity();
+  this->mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+  this->expectRefused("Path tracing knows no blend mode but composite");
+  this->mapper->SetRenderMode(vtkINRVolumeMapper::RAY_MARCHING);
+  EXPECT_TRUE(this->draws());
+}
+
+TEST_F(Refusals, ProjectionsOfAPiece)
+{
+  vtkNew<vtkImageData> piece;
+  this->mapper->Update();
+  piece->ShallowCopy(this->mapper->GetDataSetInput());
+  int extent[6];
+  piece->GetExtent(extent);
+  extent[1] /= 2;
+  piece->SetExtent(extent);
+  this->mapper->SetInputData(piece);
+  this->mapper->SetBlendModeToAdditive();
+  this->expectRefused("needs the whole volume in one process");
+  this->mapper->SetBlendModeToComposite();
+  EXPECT_TRUE(this->draws());
 }
 
 TEST_F(Refusals, Cropping)

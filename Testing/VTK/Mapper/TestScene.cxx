@@ -137,6 +137,33 @@ void Shaded(Scene& scene, const MapperFactory& mapper)
   volume->GetProperty()->SetSpecular(0.5);
 }
 
+SceneCase Projected(const std::string& name, int blendMode)
+{
+  return {name, [blendMode](Scene& scene, const MapperFactory& mapper) {
+            Perspective(scene, mapper);
+            vtkVolume* volume = FirstVolume(scene);
+            auto* projecting = vtkVolumeMapper::SafeDownCast(volume->GetMapper());
+            projecting->SetBlendMode(blendMode);
+            projecting->SetAverageIPScalarRange(0, 120);
+            volume->GetProperty()->SetScalarOpacityUnitDistance(12);
+            volume->GetProperty()->ShadeOn(); // means nothing to a projection
+          }};
+}
+
+/// Of what two planes leave; at its faces the whole volume is at its minimum.
+void MinimumInside(Scene& scene, const MapperFactory& mapper)
+{
+  Projected("", vtkVolumeMapper::MINIMUM_INTENSITY_BLEND).make(scene, mapper);
+  vtkVolume* volume = FirstVolume(scene);
+  const double* center = volume->GetCenter();
+  for (const double side : {-1.0, 1.0}) {
+    vtkNew<vtkPlane> plane;
+    plane->SetOrigin(center[0], center[1], center[2] + 4 * side);
+    plane->SetNormal(0, 0, -side);
+    volume->GetMapper()->AddClippingPlane(plane);
+  }
+}
+
 /// Without ambient and specular parts: with more than a headlight VTK's mapper has an error in
 /// each.
 void Lights(Scene& scene, const MapperFactory& mapper)
@@ -179,7 +206,11 @@ std::vector<SceneCase> SceneCases()
           {"Stereo", Stereo, false, false},
           {"Oblique", Perspective, true},
           {"Shaded", Shaded, false, VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)},
-          {"Lights", Lights}};
+          {"Lights", Lights},
+          Projected("Maximum", vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND),
+          {"Minimum", MinimumInside},
+          Projected("Average", vtkVolumeMapper::AVERAGE_INTENSITY_BLEND),
+          Projected("Additive", vtkVolumeMapper::ADDITIVE_BLEND)};
 }
 
 Scene::Scene()

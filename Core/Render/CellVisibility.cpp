@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/CellVisibility.h"
+
+#include <algorithm>
+
+namespace inr {
+
+namespace {
+
+bool Overlap(const ValueRange& a, const ValueRange& b)
+{
+  return !a.empty() && !b.empty() && a.low <= b.high && b.low <= a.high;
+}
+
+/// Of data values.
+ValueRange Normalised(double low, double high, const VolumeInfo& volume)
+{
+  const double width = volume.high - volume.low;
+  if (!(width > 0)) {
+    const bool holds = low <= volume.low && volume.low <= high;
+    return holds ? ValueRange{0.0f, 1.0f} : ValueRange{};
+  }
+  return {static_cast<float>((low - volume.low) / width),
+          static_cast<float>((high - volume.low) / width)};
+}
+
+} // namespace
+
+ExtinctionRule VisibilityFor(const Projector& projector, const ColorTable& colors)
+{
+  if (projector.mode == BlendMode::Composite || projector.mode == BlendMode::Additive) {
+    return [&colors](const ValueRange* ranges, std::int64_t count, float* extinctions) {
+      colors.maximumExtinctions(ranges, count, extinctions);
+    };
+  }
+  const ValueRange seen = projector.isExtreme() ? ValueRange{0.0f, 1.0f} : projector.averaged;
+  return [seen](const ValueRange* ranges, std::int64_t count, float* extinctions) {
+    std::transform(ranges, ranges + count, extinctions,
+                   [&seen](const ValueRange& range) { return Overlap(range, seen) ? 1.0f : 0.0f; });
+  };
+}
+
+Projector ProjectorFor(const Blending& blending, const VolumeInfo& volume, const ValueRange& bounds)
+{
+  return {blending.mode, Normalised(blending.averageLow, blending.averageHigh, volume), bounds};
+}
+
+} // namespace inr
