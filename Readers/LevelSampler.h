@@ -19,8 +19,7 @@ inline glm::i64vec3 LevelDims(glm::i64vec3 dims, int level)
   return dims;
 }
 
-/// The samples of a row-major run of voxels: one per voxel on level 0, else two per axis, which
-/// `Average` joins.
+/// The voxels of a level: a sample each on level 0, else the mean of two per axis.
 struct LevelSampler
 {
   LevelSampler(const inr::VolumeInfo& volume, int level)
@@ -31,30 +30,60 @@ struct LevelSampler
     }
   }
 
-  inr::Lattice Row(const glm::i64vec3& first, std::int64_t count) const
+  /// Normalised values of the voxels [first, first + size), x fastest. A value does not depend on
+  /// the box around it.
+  std::vector<float> Box(const inr::Evaluator& evaluator, const glm::i64vec3& first,
+                         const glm::i64vec3& size) const
   {
-    inr::Lattice lattice;
-    lattice.step = 1.0 / (glm::dvec3(this->Dims) * glm::dvec3(this->PerAxis));
-    lattice.first = (glm::dvec3(first * this->PerAxis) + 0.5) * lattice.step;
-    lattice.points = glm::i64vec3(count, 1, 1) * this->PerAxis;
-    return lattice;
+    std::vector<float> axes[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double samples = static_cast<double>(this->Dims[axis] * this->PerAxis[axis]);
+      for (std::int64_t k = 0; k < size[axis] * this->PerAxis[axis]; ++k) {
+        const auto sample = static_cast<double>(first[axis] * this->PerAxis[axis] + k);
+        axes[axis].push_back(static_cast<float>((sample + 0.5) / samples));
+      }
+    }
+    std::vector<float> samples(axes[0].size() * axes[1].size() * axes[2].size());
+    evaluator.evaluateGrid(axes, samples.data());
+    for (float& sample : samples) {
+      sample = inr::NormalisedOutput(sample);
+    }
+    return this->PerAxis == glm::i64vec3(1) ? samples : this->Means(samples, size);
   }
 
-  float Average(const std::vector<float>& samples, const inr::Lattice& row, std::int64_t x) const
+  glm::i64vec3 Dims;
+  glm::i64vec3 PerAxis;
+
+private:
+  std::vector<float> Means(const std::vector<float>& samples, const glm::i64vec3& size) const
   {
+    std::vector<float> means;
+    means.reserve(static_cast<std::size_t>(size.x * size.y * size.z));
+    for (std::int64_t z = 0; z < size.z; ++z) {
+      for (std::int64_t y = 0; y < size.y; ++y) {
+        for (std::int64_t x = 0; x < size.x; ++x) {
+          means.push_back(this->Mean(samples, size, {x, y, z}));
+        }
+      }
+    }
+    return means;
+  }
+
+  float Mean(const std::vector<float>& samples, const glm::i64vec3& size,
+             const glm::i64vec3& voxel) const
+  {
+    const glm::i64vec3 points = size * this->PerAxis;
+    const glm::i64vec3 begin = voxel * this->PerAxis;
+    const glm::i64vec3 end = begin + this->PerAxis;
     double sum = 0;
-    for (std::int64_t k = 0; k < row.points.z; ++k) {
-      for (std::int64_t j = 0; j < row.points.y; ++j) {
-        for (std::int64_t i = 0; i < this->PerAxis.x; ++i) {
-          const std::int64_t at = x * this->PerAxis.x + i + row.points.x * (j + row.points.y * k);
-          sum += inr::NormalisedOutput(samples[static_cast<std::size_t>(at)]);
+    for (std::int64_t z = begin.z; z < end.z; ++z) {
+      for (std::int64_t y = begin.y; y < end.y; ++y) {
+        for (std::int64_t x = begin.x; x < end.x; ++x) {
+          sum += samples[static_cast<std::size_t>(x + points.x * (y + points.y * z))];
         }
       }
     }
     return static_cast<float>(
         sum / static_cast<double>(this->PerAxis.x * this->PerAxis.y * this->PerAxis.z));
   }
-
-  glm::i64vec3 Dims;
-  glm::i64vec3 PerAxis;
 };

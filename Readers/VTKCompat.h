@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vtkAlgorithm.h>
 #include <vtkVersionMacros.h>
 
 // Every difference between the VTK versions that we build against: 9.1 (plain, Debian 12) and
@@ -11,7 +12,13 @@
 #define INR_VTK_GHOST_RANGES
 #endif
 
-/// An executive's abort reaches an algorithm through vtkAlgorithm::CheckAbort.
+/// Whether somebody wants the algorithm to stop. An executive's abort reaches it through CheckAbort
+/// where there is such.
+inline bool IsAborted(vtkAlgorithm& algorithm)
+{
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0)
-#define INR_VTK_CHECK_ABORT
+  return algorithm.CheckAbort() || algorithm.GetAbortExecute() != 0;
+#else
+  return algorithm.GetAbortExecute() != 0;
 #endif
+}

@@ -4,9 +4,11 @@
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
 #include "LevelSampler.h"
+#include "MemoryCheck.h"
+#include "NativeGrid.h"
 #include "Scalars.h"
+#include "StopSignals.h"
 #include "VTKCompat.h"
-#include "vtkINRDataArray.h"
 
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
@@ -16,7 +18,6 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
-#include <vtksys/SystemInformation.hxx>
 
 #include <algorithm>
 #include <exception>
@@ -29,30 +30,10 @@ vtkStandardNewMacro(vtkINRDecode);
 
 namespace {
 
+/// Rows of voxels that one thread decodes at a time.
+constexpr std::int64_t RowsPerTask = 8;
+
 constexpr int EmptyExtent[6] = {0, -1, 0, -1, 0, -1};
-
-vtkINRDataArray* FindModel(vtkDataObject* data)
-{
-  auto* image = vtkImageData::SafeDownCast(data);
-  vtkDataArray* scalars = image ? image->GetPointData()->GetScalars() : nullptr;
-  return scalars ? vtkINRDataArray::SafeDownCast(scalars) : nullptr;
-}
-
-/// Distance of the native voxels as the input has it now: a filter may have changed the image's.
-glm::dvec3 NativeSpacing(vtkImageData* image, vtkINRDataArray* source)
-{
-  glm::dvec3 spacing;
-  image->GetSpacing(&spacing.x);
-  int presented[3];
-  source->GetPresentedDimensions(presented);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (presented[axis] > 1) {
-      const auto cells = static_cast<double>(source->GetModel()->volume.dims[axis] - 1);
-      spacing[axis] *= (presented[axis] - 1) / cells;
-    }
-  }
-  return spacing;
-}
 
 /// The wanted voxels of a level's grid; an axis whose last voxel is below its first is whole.
 /// Throws inr::Error when none of them is in the grid.
@@ -78,23 +59,14 @@ int TypeNumber(int wanted, inr::ScalarType source)
   return wanted < 0 ? VtkTypeOf(source) : wanted;
 }
 
-/// Refuses what the machine cannot hold: the kernel would grant it and then end the process.
+/// Refuses what the machine cannot hold.
 void CheckMemory(const int extent[6], int type)
 {
   double bytes = vtkDataArray::GetDataTypeSize(type);
   for (int axis = 0; axis < 3; ++axis) {
     bytes *= extent[2 * axis + 1] - extent[2 * axis] + 1;
   }
-  vtksys::SystemInformation system;
-  const double memory = 1024.0 * static_cast<double>(system.GetHostMemoryTotal());
-  if (bytes > memory) {
-    constexpr double mib = 1024.0 * 1024.0;
-    throw inr::Error(inr::ErrorCode::TooLarge,
-                     "the voxels take " + std::to_string(static_cast<long long>(bytes / mib)) +
-                         " MiB and this machine has " +
-                         std::to_string(static_cast<long long>(memory / mib)) +
-                         "; choose a higher Level or a smaller VolumeOfInterest");
-  }
+  RequireMemory(bytes, "the voxels", "choose a higher Level or a smaller VolumeOfInterest");
 }
 
 } // namespace
@@ -120,33 +92,21 @@ int vtkINRDecode::RequestInformation(vtkInformation*, vtkInformationVector**,
 
 bool vtkINRDecode::DescribeOutput(vtkInformation* outInfo)
 {
-  auto* image = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
-  vtkINRDataArray* source = FindModel(image);
-  if (!source) {
-    // Nothing in, nothing out: a reader that failed has said why.
-    if (!image || image->GetNumberOfPoints() > 0) {
-      vtkErrorMacro("The input is not an implicit neural representation; connect INRDecode to the "
-                    "output of INRReader.");
-    }
+  const auto grid = FindInputGrid(this, this->GetInputDataObject(0, 0));
+  if (!grid) {
     return false;
   }
-  const inr::VolumeInfo& volume = source->GetModel()->volume;
+  const inr::VolumeInfo& volume = grid->model->volume;
   const glm::i64vec3 dims = LevelDims(volume.dims, this->Level);
-  const glm::dvec3 native = NativeSpacing(image, source);
   const glm::dvec3 growth = glm::dvec3(volume.dims) / glm::dvec3(dims);
-  const glm::dvec3 spacing = native * growth;
-
-  const glm::dvec3 shift = 0.5 * native * (growth - 1.0);
-  glm::dvec3 origin;
-  image->GetDirectionMatrix()->MultiplyPoint(&shift.x, &origin.x);
-  for (int axis = 0; axis < 3; ++axis) {
-    origin[axis] += image->GetOrigin()[axis];
-  }
+  const glm::dvec3 spacing = grid->spacing * growth;
+  const glm::dvec3 origin = grid->origin + grid->direction * (0.5 * grid->spacing * (growth - 1.0));
   int extent[6];
   LevelExtent(dims, this->VolumeOfInterest, extent);
   outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   outInfo->Set(vtkDataObject::SPACING(), &spacing.x, 3);
   outInfo->Set(vtkDataObject::ORIGIN(), &origin.x, 3);
+  auto* image = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
   outInfo->Set(vtkDataObject::DIRECTION(), image->GetDirectionMatrix()->GetData(), 9);
   vtkDataObject::SetPointDataActiveScalarInfo(outInfo, TypeNumber(this->ScalarType, volume.type),
                                               1);
@@ -156,8 +116,7 @@ bool vtkINRDecode::DescribeOutput(vtkInformation* outInfo)
 int vtkINRDecode::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
                                       vtkInformationVector*)
 {
-  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
-  inInfo->Set(Pipeline::UPDATE_EXTENT(), inInfo->Get(Pipeline::WHOLE_EXTENT()), 6);
+  RequestWholeInput(inputVector[0]->GetInformationObject(0));
   return 1;
 }
 
@@ -167,9 +126,11 @@ int vtkINRDecode::RequestData(vtkInformation*, vtkInformationVector**,
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
   vtkImageData* output = vtkImageData::GetData(outInfo);
   output->Initialize();
-  if (!FindModel(this->GetInputDataObject(0, 0))) {
+  const auto grid = FindNativeGrid(this->GetInputDataObject(0, 0));
+  if (!grid) {
     return 1; // RequestInformation has said so
   }
+  const StopSignals signals;
   try {
     int extent[6];
     outInfo->Get(Pipeline::UPDATE_EXTENT(), extent);
@@ -180,7 +141,7 @@ int vtkINRDecode::RequestData(vtkInformation*, vtkInformationVector**,
     output->SetSpacing(outInfo->Get(vtkDataObject::SPACING()));
     output->SetOrigin(outInfo->Get(vtkDataObject::ORIGIN()));
     output->SetDirectionMatrix(outInfo->Get(vtkDataObject::DIRECTION()));
-    this->Decode(output);
+    this->Decode(*grid, output, signals);
   } catch (const std::exception& error) { // inr::Error, or no memory
     output->Initialize();
     vtkErrorMacro("Cannot decode: " << error.what());
@@ -188,10 +149,9 @@ int vtkINRDecode::RequestData(vtkInformation*, vtkInformationVector**,
   return 1;
 }
 
-void vtkINRDecode::Decode(vtkImageData* output)
+void vtkINRDecode::Decode(const NativeGrid& grid, vtkImageData* output, const StopSignals& signals)
 {
-  auto* input = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
-  const int type = TypeNumber(this->ScalarType, FindModel(input)->GetModel()->volume.type);
+  const int type = TypeNumber(this->ScalarType, grid.model->volume.type);
   if (!ScalarTypeOf(type)) {
     throw inr::Error(inr::ErrorCode::InvalidArgument,
                      "ScalarType " + std::to_string(type) + " is not a type of numbers");
@@ -200,12 +160,13 @@ void vtkINRDecode::Decode(vtkImageData* output)
   output->GetExtent(extent);
   CheckMemory(extent, type);
   auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
-  values->SetName(input->GetPointData()->GetScalars()->GetName());
+  values->SetName(grid.arrayName.c_str());
   values->SetNumberOfTuples(output->GetNumberOfPoints());
+  const auto stop = [&] { return signals.Received() || IsAborted(*this); };
   bool finished = false;
   switch (type) {
-    vtkTemplateMacro(finished =
-                         this->Fill(static_cast<VTK_TT*>(values->GetVoidPointer(0)), extent));
+    vtkTemplateMacro(
+        finished = this->Fill(grid, extent, static_cast<VTK_TT*>(values->GetVoidPointer(0)), stop));
   }
   if (finished) {
     output->GetPointData()->SetScalars(values);
@@ -214,43 +175,37 @@ void vtkINRDecode::Decode(vtkImageData* output)
   }
 }
 
-bool vtkINRDecode::ShouldStop()
+template <class T, class Stop>
+bool vtkINRDecode::Fill(const NativeGrid& grid, const int extent[6], T* values, const Stop& stop)
 {
-#ifdef INR_VTK_CHECK_ABORT
-  return this->CheckAbort() || this->GetAbortExecute() != 0;
-#else
-  return this->GetAbortExecute() != 0;
-#endif
-}
-
-template <class T> bool vtkINRDecode::Fill(T* values, const int extent[6])
-{
-  const inr::ModelPointer& model = FindModel(this->GetInputDataObject(0, 0))->GetModel();
-  const auto evaluator = inr::MakeEvaluator(model);
+  const auto evaluator = inr::MakeEvaluator(grid.model);
   const inr::Arena arena;
-  const LevelSampler sampler(model->volume, this->Level);
+  const inr::VolumeInfo& volume = grid.model->volume;
+  const LevelSampler sampler(volume, this->Level);
   const std::int64_t width = extent[1] - extent[0] + 1;
   const std::int64_t height = extent[3] - extent[2] + 1;
   const std::int64_t depth = extent[5] - extent[4] + 1;
-  for (std::int64_t z = 0; z < depth && !this->ShouldStop(); ++z) {
-    arena.forEachBlock(height, 1, [&](std::int64_t y, std::int64_t) {
-      const inr::Lattice row = sampler.Row({extent[0], extent[2] + y, extent[4] + z}, width);
-      std::vector<float> samples(
-          static_cast<std::size_t>(row.points.x * row.points.y * row.points.z));
-      inr::EvaluateLattice(*evaluator, arena, row, samples.data());
-      T* out = values + width * (y + height * z);
-      for (std::int64_t x = 0; x < width; ++x) {
-        out[x] = ToScalar<T>(inr::ValueOf(model->volume, sampler.Average(samples, row, x)));
-      }
+  for (std::int64_t z = 0; z < depth; ++z) {
+    arena.forEachBlock(height, RowsPerTask, [&](std::int64_t y, std::int64_t end) {
+      const std::vector<float> box =
+          sampler.Box(*evaluator, {extent[0], extent[2] + y, extent[4] + z}, {width, end - y, 1});
+      std::transform(box.begin(), box.end(), values + width * (y + height * z),
+                     [&](float value) { return ToScalar<T>(inr::ValueOf(volume, value)); });
     });
     this->UpdateProgress(static_cast<double>(z + 1) / static_cast<double>(depth));
+    if (stop()) {
+      return false;
+    }
   }
-  return !this->ShouldStop();
+  return true;
 }
 
 void vtkINRDecode::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "Level: " << this->Level << "\n"
+  const int* voi = this->VolumeOfInterest;
+  os << indent << "VolumeOfInterest: " << voi[0] << " " << voi[1] << " " << voi[2] << " " << voi[3]
+     << " " << voi[4] << " " << voi[5] << "\n"
+     << indent << "Level: " << this->Level << "\n"
      << indent << "ScalarType: " << this->ScalarType << "\n";
 }

@@ -7,6 +7,8 @@
  * has half as many as level l, rounded up, n in all. Voxel v of a level sits at
  * origin + spacing * ((v + 0.5) * N/n - 0.5) along an axis; on levels above 0 it is the mean of two
  * samples per axis across the voxel.
+ *
+ * AbortExecute, SIGINT and SIGTERM stop it; then the output is empty.
  */
 #ifndef vtkINRDecode_h
 #define vtkINRDecode_h
@@ -14,6 +16,9 @@
 #include "vtkINRReadersModule.h" // for export macro
 
 #include <vtkImageAlgorithm.h>
+
+class StopSignals;
+struct NativeGrid;
 
 class VTKINRREADERS_EXPORT vtkINRDecode : public vtkImageAlgorithm
 {
@@ -55,10 +60,10 @@ private:
   void operator=(const vtkINRDecode&) = delete;
 
   bool DescribeOutput(vtkInformation* outInfo);
-  void Decode(vtkImageData* output);
-  bool ShouldStop();
+  void Decode(const NativeGrid& grid, vtkImageData* output, const StopSignals& signals);
   /// False when it was stopped.
-  template <class T> bool Fill(T* values, const int extent[6]);
+  template <class T, class Stop>
+  bool Fill(const NativeGrid& grid, const int extent[6], T* values, const Stop& stop);
 
   int VolumeOfInterest[6] = {0, -1, 0, -1, 0, -1};
   int Level = 0;

@@ -95,15 +95,6 @@ TrainingInput vtkINRWriter::FindInput()
   return MakeTrainingInput(image, numbers);
 }
 
-bool vtkINRWriter::ShouldStop()
-{
-#ifdef INR_VTK_CHECK_ABORT
-  return this->CheckAbort() || this->GetAbortExecute() != 0;
-#else
-  return this->GetAbortExecute() != 0;
-#endif
-}
-
 void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
 {
   inr::TrainingOptions options;
@@ -124,7 +115,7 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
     const bool training = progress.phase == inr::TrainingPhase::Training;
     this->SetProgressText(training ? "Training INR" : "Measuring INR quality");
     this->UpdateProgress(progress.fraction);
-    return !signals.Received() && !this->ShouldStop();
+    return !signals.Received() && !IsAborted(*this);
   };
   const inr::ModelPointer model = inr::TrainModel(input.data, input.info, options, observe);
   this->KeepResult(*model, inr::WriteModel(*model, this->FileName));

@@ -132,7 +132,6 @@ private:
 
   TrainingInput FindInput();
   void Train(const TrainingInput& input, const StopSignals& signals);
-  bool ShouldStop();
   void ForgetResult();
   void KeepResult(const inr::Model& model, vtkIdType fileSize);
 
