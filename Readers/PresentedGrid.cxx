@@ -26,8 +26,13 @@ double CountPoints(const glm::i64vec3& dims)
   return static_cast<double>(dims.x) * static_cast<double>(dims.y) * static_cast<double>(dims.z);
 }
 
+} // namespace
+
 glm::i64vec3 FinestDims(const glm::i64vec3& native, double maximumPoints)
 {
+  if (CountPoints(native) <= maximumPoints) {
+    return native;
+  }
   double coarse = 0;
   double fine = 1;
   for (int step = 0; step < 64; ++step) { // halves the interval down to the last bit
@@ -36,8 +41,6 @@ glm::i64vec3 FinestDims(const glm::i64vec3& native, double maximumPoints)
   }
   return ScaledDims(native, coarse);
 }
-
-} // namespace
 
 PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoints)
 {
@@ -49,7 +52,7 @@ PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoi
   const double native = CountPoints(volume.dims);
   const double wanted = maximumPoints > 0 ? static_cast<double>(maximumPoints) : native;
   const double limit = std::min(wanted, static_cast<double>(LargestPresentedGrid));
-  const glm::i64vec3 dims = native > limit ? FinestDims(volume.dims, limit) : volume.dims;
+  const glm::i64vec3 dims = FinestDims(volume.dims, limit);
 
   PresentedGrid grid;
   grid.limited = std::min(wanted, native) > limit;

@@ -26,3 +26,7 @@ constexpr std::int64_t LargestPresentedGrid = std::int64_t{1} << 28;
 /// has two); 0 asks for the native grid. Never more than LargestPresentedGrid. Throws
 /// inr::Error(InvalidArgument) for a negative number.
 PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoints);
+
+/// Points per axis when as many are left out evenly as it takes to have at most `maximumPoints`,
+/// but at least two on every axis that has two.
+glm::i64vec3 FinestDims(const glm::i64vec3& native, double maximumPoints);
