@@ -38,5 +38,5 @@ print(properties, "properties are documented")
 check(properties >= 20, "only", properties, "properties found")
 
 # Each command and getter named in the XML exists, or ParaView would say so here.
-for make in (simple.INRReader, simple.INRDecode, simple.INRSlice):
+for make in (simple.INRReader, simple.INRDecode, simple.INRSlice, simple.INRContour):
     make()
