@@ -3,7 +3,13 @@
 
     from inrvolume import vtkINRReader, vtkINRVolumeMapper
 """
-from inrvolume.vtkINRReaders import vtkINRDecode, vtkINRReader, vtkINRWriter
+from inrvolume.vtkINRReaders import (
+    vtkINRContour,
+    vtkINRDecode,
+    vtkINRReader,
+    vtkINRSlice,
+    vtkINRWriter,
+)
 
 try:
     from inrvolume.vtkINRMapper import vtkINRVolumeMapper
