@@ -7,10 +7,23 @@
 
 namespace inr {
 
+namespace {
+
+SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t stream)
+{
+  return {scene.majorants,
+          scene.settings,
+          ray,
+          scene.frame.levelOfDetailScale,
+          scene.cache.hierarchy().levels(),
+          JitterOf(scene.settings, stream)};
+}
+
+} // namespace
+
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
-    : ray(scene.geometry.ray(x, y)), stream(PixelStream(scene.frame, x, y)),
-      samples(scene.majorants, scene.settings, this->ray, scene.frame.levelOfDetailScale,
-              scene.cache.hierarchy().levels(), JitterOf(scene.settings, this->stream))
+    : ray(scene.geometry.ray(x, y, 0)), stream(PixelStream(scene.frame, x, y)),
+      samples(SamplesOf(scene, this->ray, this->stream)), x(x), y(y)
 {}
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
@@ -25,11 +38,50 @@ CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
 CachedRay CachedMarcher::begin(int x, int y)
 {
   CachedRay ray(this->Scene, x, y);
-  this->Statistics.rays += ray.ray.length > 0 ? 1 : 0;
+  bool meets = ray.ray.length > 0;
+  if (this->Scene.frame.layers && !meets) {
+    meets = this->Scene.geometry.ray(x, y).length > 0;
+    ray.part = meets ? 0 : this->Scene.frame.layers->count();
+  }
+  this->Statistics.rays += meets ? 1 : 0;
   return ray;
 }
 
 bool CachedMarcher::march(CachedRay& state)
+{
+  if (!this->Scene.frame.layers) {
+    return this->marchPart(state);
+  }
+  while (this->marchPart(state)) {
+    const glm::vec3 color(state.color.rgb[0], state.color.rgb[1], state.color.rgb[2]);
+    state.light.gather(color, state.color.transmittance);
+    if (!this->enterNextPart(state)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool CachedMarcher::enterNextPart(CachedRay& state) const
+{
+  const TranslucentLayers& layers = *this->Scene.frame.layers;
+  const auto pixel = static_cast<std::size_t>(state.y) * this->Scene.frame.width + state.x;
+  if (layers.depth(state.part, pixel) >= 1.0f || state.color.transmittance <= OpaqueTransmittance) {
+    return false;
+  }
+  state.light.pass(layers.color(state.part, pixel));
+  if (state.light.passes() <= 0.0f) {
+    return false;
+  }
+  if (state.halfOpaqueAt >= 0 && state.halfOpaqueDepth < 0) {
+    state.halfOpaqueDepth = this->Scene.geometry.windowDepth(state.ray.at(state.halfOpaqueAt));
+  }
+  state.ray = this->Scene.geometry.ray(state.x, state.y, ++state.part);
+  state.samples = SamplesOf(this->Scene, state.ray, state.stream);
+  return true;
+}
+
+bool CachedMarcher::marchPart(CachedRay& state)
 {
   const bool projects = this->Scene.settings.projector.projects();
   this->Ended = false;

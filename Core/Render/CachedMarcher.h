@@ -37,6 +37,12 @@ struct CachedRay
   RayColor color{{0, 0, 0}, 1};
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
   Projection projection{};  ///< instead, of values that are projected
+
+  int x;
+  int y;
+  int part = 0; ///< of the way: how many translucent layers lie behind
+  LayeredLight light;
+  double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
 };
 
 /// What a ray does where the brick it wants is not there.
@@ -73,6 +79,10 @@ private:
     SampleStretch stretch;
   };
 
+  /// The same for the part of the way that the ray is on.
+  bool marchPart(CachedRay& ray);
+  /// Sends a ray on behind the translucent layer at its end; false when there is nothing to see.
+  bool enterNextPart(CachedRay& ray) const;
   /// Fills the batch, unless the ray ends or has to wait.
   void place(CachedRay& state);
   /// Adds such samples as far as they share bricks and the batch has room; how many.

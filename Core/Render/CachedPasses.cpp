@@ -9,16 +9,22 @@ namespace inr {
 
 namespace {
 
+double HalfOpaqueDepth(const CachedScene& scene, const CachedRay& ray)
+{
+  if (ray.halfOpaqueDepth >= 0) {
+    return ray.halfOpaqueDepth;
+  }
+  return ray.halfOpaqueAt >= 0 ? scene.geometry.windowDepth(ray.ray.at(ray.halfOpaqueAt)) : 1.0;
+}
+
 void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
                 const PassOutput& output)
 {
   float* pixel = output.rgba.pixel(x, y);
-  std::copy_n(ray.color.rgb, 3, pixel);
+  std::copy_n(scene.frame.layers ? &ray.light.seen().x : ray.color.rgb, 3, pixel);
   pixel[3] = 1.0f - ray.color.transmittance;
   if (output.depth != nullptr) {
-    const bool reached = ray.halfOpaqueAt >= 0;
-    const double z = reached ? scene.geometry.windowDepth(ray.ray.at(ray.halfOpaqueAt)) : 1.0;
-    *output.depth->pixel(x, y) = static_cast<float>(z);
+    *output.depth->pixel(x, y) = static_cast<float>(HalfOpaqueDepth(scene, ray));
   }
 }
 

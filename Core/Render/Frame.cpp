@@ -16,6 +16,12 @@ bool HaveSameDepth(const Frame& a, const Frame& b)
   return std::equal(a.opaqueDepth, a.opaqueDepth + pixels, b.opaqueDepth);
 }
 
+bool IsSame(const std::shared_ptr<const TranslucentLayers>& a,
+            const std::shared_ptr<const TranslucentLayers>& b)
+{
+  return a == b || (a && b && a->layers == b->layers);
+}
+
 } // namespace
 
 std::vector<float> CopyOfDepth(const Frame& frame)
@@ -32,10 +38,10 @@ bool IsSamePicture(const Frame& a, const Frame& b)
   return a.width == b.width && a.height == b.height && a.clipToWorld == b.clipToWorld &&
          a.worldToIndex == b.worldToIndex && a.clippingPlanes == b.clippingPlanes &&
          a.lights == b.lights && a.shading == b.shading && a.mode == b.mode && a.paths == b.paths &&
-         a.blending == b.blending &&
-         a.unitDistance == b.unitDistance && a.sampleDistance == b.sampleDistance &&
-         a.adaptiveSampling == b.adaptiveSampling && a.levelOfDetailScale == b.levelOfDetailScale &&
-         a.seed == b.seed && a.frameIndex == b.frameIndex && HaveSameDepth(a, b);
+         a.blending == b.blending && a.unitDistance == b.unitDistance &&
+         a.sampleDistance == b.sampleDistance && a.adaptiveSampling == b.adaptiveSampling &&
+         a.levelOfDetailScale == b.levelOfDetailScale && a.seed == b.seed &&
+         a.frameIndex == b.frameIndex && HaveSameDepth(a, b) && IsSame(a.layers, b.layers);
 }
 
 } // namespace inr

@@ -4,11 +4,13 @@
 #include "Core/Render/Blending.h"
 #include "Core/Render/Lights.h"
 #include "Core/Render/PathOptions.h"
+#include "Core/Render/TranslucentLayers.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -50,6 +52,9 @@ struct Frame
   /// Window-space depth in [0, 1] of what is already drawn, width * height values, 1 = nothing.
   /// Null when nothing opaque was drawn. Must outlive the call.
   const float* opaqueDepth = nullptr;
+  /// Translucent surfaces that the picture is to be laid over, see there; null when there are none.
+  /// Light that paths lead inside the volume does not meet them. Not for projections.
+  std::shared_ptr<const TranslucentLayers> layers;
   /// World-space half spaces; a point p is kept where dot(plane, (p, 1)) >= 0 for all of them.
   std::vector<glm::dvec4> clippingPlanes;
 
@@ -90,7 +95,7 @@ struct Frame
 };
 
 /// Whether two frames make the same picture: all but the time and the samples per pixel that they
-/// may take, and the opaque depth by its values.
+/// may take, and opaque depth and layers by their values.
 bool IsSamePicture(const Frame& a, const Frame& b);
 
 /// The values of a frame's opaque depth; empty when it has none.

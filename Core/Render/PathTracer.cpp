@@ -94,7 +94,7 @@ public:
   {
     for (int k = 0; k < this->Place.width * this->Place.height; ++k) {
       const PathState& path = this->Paths[static_cast<std::size_t>(k)];
-      const glm::vec4 color(path.radiance, path.collided ? 1.0f : 0.0f);
+      const glm::vec4 color = this->colorOf(path, k);
       std::copy_n(&color.x, 4, rgba.pixel(this->x(k), this->y(k)));
       if (depth != nullptr) {
         *depth->pixel(this->x(k), this->y(k)) = path.collided ? this->depthOf(path) : 0.0f;
@@ -105,6 +105,19 @@ public:
   const FrameStatistics& statistics() const { return this->Statistics; }
 
 private:
+  /// As the camera sees it: through the translucent surfaces in front of the first collision.
+  glm::vec4 colorOf(const PathState& path, int k) const
+  {
+    const Frame& frame = this->Scene.frame;
+    if (!path.collided || !frame.layers) {
+      return {path.radiance, path.collided ? 1.0f : 0.0f};
+    }
+    const auto pixel = static_cast<std::size_t>(this->y(k)) * frame.width + this->x(k);
+    const double depth = this->Scene.geometry.windowDepth(path.firstCollision);
+    const Veil veil = frame.layers->inFrontOf(depth, pixel);
+    return {veil.color + veil.passes * path.radiance, 1.0f};
+  }
+
   int x(int k) const { return this->Place.x + k % this->Place.width; }
   int y(int k) const { return this->Place.y + k / this->Place.width; }
 

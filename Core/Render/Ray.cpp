@@ -117,9 +117,31 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture
         std::min(this->WorldPerUnit, glm::length(glm::dvec3(this->IndexToWorld[axis])));
   }
   Require(this->WorldPerUnit > 0, "the volume is flat in world space");
+  Require(!frame.layers || !frame.blending.projects(),
+          "a projection has no depth at which to meet translucent layers; leave them out");
+  Require(
+      !frame.layers || frame.layers->fits(std::int64_t{frame.width} * frame.height),
+      "translucent layers need a depth and a colour for each pixel, each behind the one before");
 }
 
-Ray RayGeometry::ray(int x, int y) const
+struct RayGeometry::Line
+{
+  glm::dvec4 center; ///< at clip-space z = 0, in world space
+  glm::dvec3 near;
+  glm::dvec3 toFar;
+  double range; ///< from near to far
+  glm::dvec3 forward;
+  glm::dvec4 towardsFar; ///< of clip space
+
+  /// World distance from the near plane to a window-space depth.
+  double distanceTo(double depth) const
+  {
+    const glm::dvec3 place = Point(this->center + this->towardsFar * (2.0 * depth - 1.0));
+    return glm::dot(place - this->near, this->forward);
+  }
+};
+
+RayGeometry::Line RayGeometry::line(int x, int y) const
 {
   const double clipX = 2.0 * (x + 0.5) / this->Picture.width - 1.0;
   const double clipY = 2.0 * (y + 0.5) / this->Picture.height - 1.0;
@@ -128,11 +150,36 @@ Ray RayGeometry::ray(int x, int y) const
   const glm::dvec3 near = Point(center - toWorld[2]);
   const glm::dvec3 toFar = Point(center + toWorld[2]) - near;
   const double range = glm::length(toFar);
-  const glm::dvec3 forward = toFar / range;
+  return {center, near, toFar, range, toFar / range, toWorld[2]};
+}
 
+Ray RayGeometry::ray(int x, int y) const
+{
+  const Line line = this->line(x, y);
+  return this->clipped(line, x, y, 0.0, line.range);
+}
+
+Ray RayGeometry::ray(int x, int y, int part) const
+{
+  const Line line = this->line(x, y);
+  double begin = 0.0;
+  double end = line.range;
+  if (this->Picture.layers) {
+    const TranslucentLayers& layers = *this->Picture.layers;
+    const auto pixel = static_cast<std::size_t>(y) * this->Picture.width + x;
+    begin = part > 0 ? line.distanceTo(layers.depth(part - 1, pixel)) : begin;
+    end = layers.depth(part, pixel) < 1.0f ? line.distanceTo(layers.depth(part, pixel)) : end;
+  }
+  return this->clipped(line, x, y, begin, end);
+}
+
+Ray RayGeometry::clipped(const Line& line, int x, int y, double begin, double end) const
+{
+  const glm::dvec3& near = line.near;
+  const glm::dvec3& forward = line.forward;
   const glm::dvec3 origin(this->Picture.worldToIndex * glm::dvec4(near, 1.0));
   const glm::dvec3 direction(this->Picture.worldToIndex * glm::dvec4(forward, 0.0));
-  Interval world{0.0, range};
+  Interval world{begin, end};
   for (int axis = 0; axis < 3; ++axis) {
     world.keep(origin[axis] - this->Low[axis], direction[axis]);
     world.keep(this->High[axis] - origin[axis], -direction[axis]);
@@ -144,8 +191,7 @@ Ray RayGeometry::ray(int x, int y) const
     const auto pixel = static_cast<std::size_t>(y) * this->Picture.width + x;
     const double depth = this->Picture.opaqueDepth[pixel];
     if (depth < 1.0) {
-      const glm::dvec3 opaque = Point(center + toWorld[2] * (2.0 * depth - 1.0));
-      world.end = std::min(world.end, glm::dot(opaque - near, forward));
+      world.end = std::min(world.end, line.distanceTo(depth));
     }
   }
   Ray ray;
@@ -155,10 +201,11 @@ Ray RayGeometry::ray(int x, int y) const
     ray.inverse = 1.0 / ray.direction;
     ray.length = (world.end - world.begin) / this->WorldPerUnit;
     // A pixel's edge grows linearly from the near to the far plane.
-    const glm::dvec4 next = center + toWorld[0] * (2.0 / this->Picture.width);
-    const double atNear = glm::length(Point(next - toWorld[2]) - near);
-    const double atFar = glm::length(Point(next + toWorld[2]) - near - toFar);
-    ray.footprintGrowth = (atFar - atNear) / range;
+    const glm::dvec4 next =
+        line.center + this->Picture.clipToWorld[0] * (2.0 / this->Picture.width);
+    const double atNear = glm::length(Point(next - line.towardsFar) - near);
+    const double atFar = glm::length(Point(next + line.towardsFar) - near - line.toFar);
+    ray.footprintGrowth = (atFar - atNear) / line.range;
     ray.footprint = (atNear + ray.footprintGrowth * world.begin) / this->WorldPerUnit;
   }
   return ray;

@@ -33,6 +33,9 @@ public:
   /// The ray through the centre of pixel (x, y), clipped to near and far plane, the visible domain
   /// (point bounds), the clipping planes and the opaque depth.
   Ray ray(int x, int y) const;
+  /// The part of it between two translucent layers: from layer `part` - 1, or its beginning, to
+  /// layer `part`, or its end.
+  Ray ray(int x, int y, int part) const;
 
   /// Window-space depth in [0, 1] of a point on a ray.
   double windowDepth(const glm::dvec3& index) const;
@@ -41,6 +44,11 @@ public:
   double worldPerUnit() const { return this->WorldPerUnit; }
 
 private:
+  /// The line through the centre of a pixel.
+  struct Line;
+  Line line(int x, int y) const;
+  Ray clipped(const Line& line, int x, int y, double begin, double end) const;
+
   const Frame& Picture;
   glm::dmat4 IndexToWorld;
   glm::dmat4 WorldToClip;

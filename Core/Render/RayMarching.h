@@ -21,9 +21,12 @@ struct MarchState
 {
   Ray ray;
   SampleWalker samples;
-  glm::vec4 color{0};       ///< premultiplied, so far
-  double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
-  Projection projection{};  ///< instead, of values that are projected
+  glm::vec4 color{0};          ///< premultiplied, so far
+  double halfOpaqueAt = -1;    ///< t where opacity reached one half; -1 = not yet
+  Projection projection{};     ///< instead, of values that are projected
+  double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
+  int part = 0;                ///< of the way: how many translucent layers lie behind
+  LayeredLight light{};
 };
 
 /// The random stream of a pixel's ray.

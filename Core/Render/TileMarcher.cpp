@@ -25,16 +25,17 @@ FrameStatistics TileMarcher::march(const Tile& tile, Image& rgba, Image* depth)
 void TileMarcher::generateRays(const Tile& tile)
 {
   const Frame& frame = this->Scene.frame;
+  this->Place = tile;
   this->Rays.clear();
   this->Live.clear();
   for (int k = 0; k < tile.width * tile.height; ++k) {
     const int x = tile.x + k % tile.width;
     const int y = tile.y + k / tile.width;
-    const Ray ray = this->Scene.geometry.ray(x, y);
+    const Ray ray = this->Scene.geometry.ray(x, y, 0);
     const double jitter = JitterOf(this->Scene.settings, PixelStream(frame, x, y));
     const SampleWalker samples(this->Scene.majorants, this->Scene.settings, ray, 0, 1, jitter);
     this->Rays.push_back({ray, samples});
-    if (ray.length > 0) {
+    if (ray.length > 0 || (frame.layers && this->Scene.geometry.ray(x, y).length > 0)) {
       this->Live.push_back(k);
     }
   }
@@ -132,7 +133,7 @@ void TileMarcher::composite()
     const bool goesOn =
         projects ? this->projectRay(sample, end, state) : this->compositeRay(sample, end, state);
     sample = end;
-    if (!exhausted && goesOn) {
+    if (exhausted ? this->enterNextPart(this->Live[live], goesOn) : goesOn) {
       this->Live[alive++] = this->Live[live];
     }
   }
@@ -171,6 +172,11 @@ bool TileMarcher::projectRay(std::size_t first, std::size_t end, MarchState& sta
 glm::vec4 TileMarcher::colorOf(const MarchState& state) const
 {
   const Projector& projector = this->Scene.settings.projector;
+  if (this->Scene.frame.layers) {
+    LayeredLight light = state.light;
+    light.gather(glm::vec3(state.color), 1.0f - state.color.w);
+    return {light.seen(), state.color.w};
+  }
   return projector.projects() && state.ray.length > 0
              ? projector.color(this->Scene.colors, state.projection)
              : state.color;
@@ -178,10 +184,37 @@ glm::vec4 TileMarcher::colorOf(const MarchState& state) const
 
 double TileMarcher::depthOf(const MarchState& state) const
 {
+  if (state.halfOpaqueDepth >= 0) {
+    return state.halfOpaqueDepth;
+  }
   const bool projects = this->Scene.settings.projector.projects();
   const bool shows = projects && this->colorOf(state).w >= 0.5f;
   const double t = shows ? state.projection.at : state.halfOpaqueAt;
   return t >= 0 ? this->Scene.geometry.windowDepth(state.ray.at(t)) : 1.0;
+}
+
+bool TileMarcher::enterNextPart(int k, bool goesOn)
+{
+  const Frame& frame = this->Scene.frame;
+  if (!goesOn || !frame.layers) {
+    return false;
+  }
+  MarchState& state = this->Rays[static_cast<std::size_t>(k)];
+  const int x = this->Place.x + k % this->Place.width;
+  const int y = this->Place.y + k / this->Place.width;
+  const auto pixel = static_cast<std::size_t>(y) * frame.width + x;
+  if (frame.layers->depth(state.part, pixel) >= 1.0f) {
+    return false;
+  }
+  state.light.gather(glm::vec3(state.color), 1.0f - state.color.w);
+  state.light.pass(frame.layers->color(state.part, pixel));
+  if (state.halfOpaqueAt >= 0 && state.halfOpaqueDepth < 0) {
+    state.halfOpaqueDepth = this->Scene.geometry.windowDepth(state.ray.at(state.halfOpaqueAt));
+  }
+  state.ray = this->Scene.geometry.ray(x, y, ++state.part);
+  state.samples = SampleWalker(this->Scene.majorants, this->Scene.settings, state.ray, 0, 1,
+                               JitterOf(this->Scene.settings, PixelStream(frame, x, y)));
+  return state.light.passes() > 0.0f;
 }
 
 void TileMarcher::writePixels(const Tile& tile, Image& rgba, Image* depth) const

@@ -47,12 +47,15 @@ private:
   /// A round of samples, [first, end), of one ray; false when it needs no more.
   bool compositeRay(std::size_t first, std::size_t end, MarchState& state);
   bool projectRay(std::size_t first, std::size_t end, MarchState& state);
+  /// Sends a ray that wants more on behind the next translucent layer; false when there is no more.
+  bool enterNextPart(int k, bool goesOn);
   float clampedValue(std::size_t sample);
   glm::vec4 colorOf(const MarchState& state) const;
   double depthOf(const MarchState& state) const;
   void writePixels(const Tile& tile, Image& rgba, Image* depth) const;
 
   const MarchScene& Scene;
+  Tile Place{};
   FrameStatistics Statistics;
   std::vector<MarchState> Rays;
   std::vector<int> Live;

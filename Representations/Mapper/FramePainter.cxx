@@ -181,6 +181,20 @@ void FramePainter::refineLater(vtkRenderWindow* window, RenderMode mode)
   this->Refine.request(window, std::clamp(share * this->Last.seconds, 0.02, 0.5));
 }
 
+FramePainter::Surroundings FramePainter::surroundings(vtkRenderer* renderer,
+                                                      const Viewport& viewport, bool meetsLayers)
+{
+  Surroundings around;
+  if (MayHaveOpaqueDepth(renderer)) {
+    around.depth = ReadOpaqueDepth(renderer, viewport);
+    this->Last.depthRead = !around.depth.empty();
+  }
+  if (meetsLayers) {
+    around.layers = this->Peeler.peel(renderer, viewport, TranslucentProps(renderer), around.depth);
+  }
+  return around;
+}
+
 bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
 {
   const Viewport viewport = GetViewport(renderer);
@@ -188,16 +202,12 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   if (pixels <= 0) {
     return true;
   }
-  std::vector<float> depth;
-  if (MayHaveOpaqueDepth(renderer)) {
-    depth = ReadOpaqueDepth(renderer, viewport);
-    this->Last.depthRead = !depth.empty();
-  }
+  const Surroundings around = this->surroundings(renderer, viewport, !scene.blending.projects());
   vtkRenderWindow* window = renderer->GetRenderWindow();
   const double rate = window->GetDesiredUpdateRate();
   int reduction = this->resolution(scene.mode).factor(rate, pixels);
   Clock::time_point deadline = this->deadline(rate, reduction);
-  while (!this->render(scene, viewport, depth, reduction, Unless(window, deadline))) {
+  while (!this->render(scene, viewport, around, reduction, Unless(window, deadline))) {
     if (Clock::now() < deadline) {
       return true; // aborted
     }
@@ -224,17 +234,20 @@ FramePainter::Clock::time_point FramePainter::deadline(double rate, int reductio
 
 /// Renders with 1/reduction of the viewport's width and height; false, and there is no picture,
 /// when it was stopped.
-bool FramePainter::render(const Frame& scene, const Viewport& viewport,
-                          const std::vector<float>& depth, int reduction,
-                          const std::function<bool()>& keepGoing)
+bool FramePainter::render(const Frame& scene, const Viewport& viewport, const Surroundings& around,
+                          int reduction, const std::function<bool()>& keepGoing)
 {
   Frame frame = scene;
   frame.width = (viewport.width + reduction - 1) / reduction;
   frame.height = (viewport.height + reduction - 1) / reduction;
+  const std::vector<float>& depth = around.depth;
   const bool reducesDepth = reduction > 1 && !depth.empty();
   const std::vector<float> reduced =
       reducesDepth ? ReduceDepth(depth, viewport, frame.width, frame.height) : std::vector<float>();
   frame.opaqueDepth = depth.empty() ? nullptr : (reducesDepth ? reduced : depth).data();
+  frame.layers = reduction > 1 && around.layers
+                     ? ReduceLayers(*around.layers, viewport, frame.width, frame.height)
+                     : around.layers;
   PaintedFrame& last = this->Last;
   const bool depthRead = last.depthRead;
   try {

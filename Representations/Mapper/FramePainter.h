@@ -9,6 +9,7 @@
 #include "ImageReduction.h"
 #include "RefinementTimer.h"
 #include "TransferFunctionBuilder.h"
+#include "TranslucentPeeler.h"
 
 #include <chrono>
 #include <cstdint>
@@ -80,6 +81,7 @@ public:
   {
     this->Refine.cancel();
     this->Blender.release(window);
+    this->Peeler.release(window);
   }
 
 private:
@@ -92,7 +94,15 @@ private:
     return mode == RenderMode::PathTracing ? this->Paths : this->Rays;
   }
   Clock::time_point deadline(double rate, int reduction) const;
-  bool render(const Frame& scene, const Viewport& viewport, const std::vector<float>& depth,
+  /// The scene's other things, as the window's pixels have them.
+  struct Surroundings
+  {
+    std::vector<float> depth; ///< of what is opaque; empty when nothing is
+    std::shared_ptr<const TranslucentLayers> layers;
+  };
+  /// Layers only where `meetsLayers`.
+  Surroundings surroundings(vtkRenderer* renderer, const Viewport& viewport, bool meetsLayers);
+  bool render(const Frame& scene, const Viewport& viewport, const Surroundings& around,
               int reduction, const std::function<bool()>& keepGoing);
   double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;
   /// Sees to it that an unfinished still picture goes on.
@@ -106,6 +116,7 @@ private:
   /// Nobody knows what paths cost before some are traced: a thousand samples, or ten.
   ImageReduction Paths{true, ImageReduction::UnmeasuredPaths};
   ImageBlender Blender;
+  TranslucentPeeler Peeler;
   RefinementTimer Refine;
   PaintedFrame Last;
 };

@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Image/Exr.h"
+#include "DeferredDrawing.h"
 #include "FramePainter.h"
 
 #include <vtkHardwareSelector.h>
@@ -26,10 +27,14 @@ struct vtkINRVolumeMapper::Internals
           bool mayRefine = true;
           mapper->InvokeEvent(RefineEvent, &mayRefine);
           return mayRefine;
+        }),
+        AfterPeeling([mapper](vtkRenderer* renderer, vtkVolume* volume) {
+          mapper->Render(renderer, volume);
         })
   {}
 
   inr::FramePainter Painter;
+  inr::DeferredDrawing AfterPeeling;
   std::string LastError;
 };
 
@@ -140,6 +145,10 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   if (renderer->GetSelector()) {
     return; // a selection buffer holds identities, not colours
+  }
+  if (inr::DeferredDrawing::isDue(volume)) {
+    this->Self->AfterPeeling.request(renderer, volume);
+    return;
   }
   std::string problem;
   try {

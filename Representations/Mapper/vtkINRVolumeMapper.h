@@ -19,6 +19,14 @@
  * in AverageIPScalarRange) and additive, unshaded, as VTK's GPU mapper has them. What cannot change
  * a picture is not looked at: no macro-cell whose largest value is below one that a ray has met.
  *
+ * Ordinary translucent surfaces are in their places in front of, inside and behind the volume,
+ * whether the renderer peels them or not: up to 64 of them along a pixel's ray are drawn once more
+ * to learn where they are, which is done only when a visible prop has translucent geometry. Paths
+ * inside the volume do not meet them: they throw no shadow on it, and projections, which have no
+ * depth, lie over all of them. Several volumes are blended one
+ * after another, in the order in which the renderer draws them: right where one is behind another,
+ * but where they overlap the later one lies over the earlier one.
+ *
  * Refused with an error and not drawn: other blend modes, projections of a piece of the grid or by
  * path tracing, cropping, gradient opacity, 2D transfer functions, masks, scalars that are not an
  * INR. A message comes once, not at every frame.
@@ -301,8 +309,9 @@ public:
 
   /**
    * Writes the last frame as OpenEXR, exact: premultiplied float R, G, B, A and window-space depth
-   * Z of the volume alone, where its opacity first reaches one half. False, with an error, when
-   * there is no frame or the file cannot be written.
+   * Z of the volume alone, where its opacity first reaches one half. With translucent surfaces in
+   * the view it is what lies over a picture of these. False, with an error, when there is no frame
+   * or the file cannot be written.
    */
   bool WriteEXR(const char* fileName);
 

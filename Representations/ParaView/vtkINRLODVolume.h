@@ -6,7 +6,7 @@
  * ParaView draws translucent geometry by depth peeling, and draws volumes once per peel into
  * buffers that blend by maximum, where a finished picture cannot go. While something is being
  * peeled, this prop therefore steps aside and draws its picture afterwards, in the overlay stage of
- * the same frame. The price: it then covers translucent surfaces that are in front of it.
+ * the same frame. The mapper sees to it that translucent surfaces come out in their places.
  */
 #ifndef vtkINRLODVolume_h
 #define vtkINRLODVolume_h

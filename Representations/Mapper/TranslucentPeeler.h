@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Render/TranslucentLayers.h"
+#include "FrameBuilder.h"
+
+#include <memory>
+#include <vector>
+
+class vtkProp;
+class vtkRenderer;
+class vtkWindow;
+
+namespace inr {
+
+/// The visible props of a renderer that have translucent geometry.
+std::vector<vtkProp*> TranslucentProps(vtkRenderer* renderer);
+
+/// Draws translucent props layer by layer, from front to back, into buffers of its own and reads
+/// them back. What the window holds stays as it is.
+class TranslucentPeeler
+{
+public:
+  TranslucentPeeler();
+  ~TranslucentPeeler();
+  TranslucentPeeler(const TranslucentPeeler&) = delete;
+  TranslucentPeeler& operator=(const TranslucentPeeler&) = delete;
+
+  /// As many layers as it takes to have all of `props`, at most `LargestCount`; those further
+  /// behind then count as if they were behind everything. Null when there is nothing in front of
+  /// `opaqueDepth` (of the viewport, or empty when there is none) or no OpenGL to draw with.
+  std::shared_ptr<const TranslucentLayers> peel(vtkRenderer* renderer, const Viewport& viewport,
+                                                const std::vector<vtkProp*>& props,
+                                                const std::vector<float>& opaqueDepth);
+  static constexpr int LargestCount = 64;
+
+  /// Frees what is in graphics memory; required before `window` goes away.
+  void release(vtkWindow* window);
+
+private:
+  struct Resources;
+  std::unique_ptr<Resources> Self;
+};
+
+/// The layers at the centres of the pixels of a smaller picture over the same viewport.
+std::shared_ptr<const TranslucentLayers>
+ReduceLayers(const TranslucentLayers& layers, const Viewport& viewport, int width, int height);
+
+} // namespace inr
