@@ -288,6 +288,9 @@ void CachedMarcher::enlist(BrickRun& run)
 void CachedMarcher::close(BrickRun& run, float transmittance)
 {
   this->Statistics.samples += run.count();
+  if (run.count() > 0) {
+    this->Statistics.levels.add({run.servedLevel(), run.servedLevel()});
+  }
   if (run.count() > 0 && !run.exact()) {
     this->Statistics.missed += run.count();
     this->Requests.add(run.wish(), static_cast<float>(run.count()) * transmittance);

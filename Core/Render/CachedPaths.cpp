@@ -67,6 +67,7 @@ bool CachedSampler::find(const FieldPoint& point, Cell& cell)
   const std::int32_t slot = this->Cache.find(key);
   if (slot != PageTable::Unmapped) {
     cell = this->cellIn(slot, local);
+    this->Served.add({point.level, point.level});
     return true;
   }
   if (this->Missing != OnPathMiss::Approach) {
@@ -85,6 +86,7 @@ void CachedSampler::findCoarser(const FieldPoint& point, Cell& cell)
     const std::int32_t slot = this->Cache.find(key);
     if (slot != PageTable::Unmapped) {
       cell = this->cellIn(slot, local);
+      this->Served.add({level, level});
       break;
     }
     finer = key;
@@ -213,6 +215,7 @@ TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
     const Tile tile = tiling.tile(round.tiles[k]);
     traced.tiles[k] = round.tracer.trace(tile, stoppable, round.output.rgba, round.output.depth);
     traced.tiles[k].missed = sampler.missed();
+    traced.tiles[k].levels = sampler.levels();
     lists[k] = sampler.requests();
   };
   const std::size_t atOnce = limit != nullptr ? tilesBetweenLooks : round.tiles.size();

@@ -34,6 +34,8 @@ public:
 
   /// Points so far that the cache did not have at the level they asked for.
   std::int64_t missed() const { return this->Missed; }
+  /// Levels that points came from so far.
+  const LevelSpan& levels() const { return this->Served; }
   /// The bricks wished for so far, each as often as it was, by their keys.
   RequestList requests() const;
 
@@ -75,6 +77,7 @@ private:
   std::int64_t StrideZ;
   glm::ivec3 LastCell;
   std::int64_t Missed = 0;
+  LevelSpan Served;
   std::vector<BrickKey> Wishes;
 
   std::vector<Cell> Cells; ///< of a batch

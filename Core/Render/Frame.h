@@ -9,6 +9,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -101,6 +102,20 @@ bool IsSamePicture(const Frame& a, const Frame& b);
 /// The values of a frame's opaque depth; empty when it has none.
 std::vector<float> CopyOfDepth(const Frame& frame);
 
+/// Levels of resolution from the finest to the coarsest that was met; 0 is the full resolution.
+struct LevelSpan
+{
+  int finest = 64;
+  int coarsest = -1;
+
+  bool empty() const { return this->coarsest < this->finest; }
+  void add(const LevelSpan& other)
+  {
+    this->finest = std::min(this->finest, other.finest);
+    this->coarsest = std::max(this->coarsest, other.coarsest);
+  }
+};
+
 /// What making a picture took; of path tracing, one path through each pixel, the latest, but for
 /// the wall time.
 struct FrameStatistics
@@ -113,6 +128,7 @@ struct FrameStatistics
   /// make do with that, the best that a full cache has.
   bool complete = true;
   std::int64_t paths = 0;  ///< of path tracing: through each pixel, in the picture shown
+  LevelSpan levels;        ///< of the cache, that samples came from
   double seconds = 0;      ///< wall time
   double marchSeconds = 0; ///< of these, without what was loaded into the cache in between
 
@@ -123,6 +139,7 @@ struct FrameStatistics
     this->samples += part.samples;
     this->missed += part.missed;
     this->clamped += part.clamped;
+    this->levels.add(part.levels);
   }
 };
 

@@ -11,6 +11,7 @@
 #include <vtkMatrix3x3.h>
 #include <vtkObjectFactory.h>
 #include <vtkRenderer.h>
+#include <vtkTimeStamp.h>
 #include <vtkVolume.h>
 
 #include <algorithm>
@@ -36,6 +37,7 @@ struct vtkINRVolumeMapper::Internals
   inr::FramePainter Painter;
   inr::DeferredDrawing AfterPeeling;
   std::string LastError;
+  vtkTimeStamp Drawn; ///< the last frame
 };
 
 vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>(this)) {}
@@ -86,10 +88,35 @@ double vtkINRVolumeMapper::GetCacheUsed() const
   return static_cast<double>(this->Self->Painter.cacheBytes()) / (1 << 20);
 }
 
+int vtkINRVolumeMapper::GetFinestLevel() const
+{
+  const inr::LevelSpan& levels = this->Self->Painter.last().statistics.levels;
+  return levels.empty() ? -1 : levels.finest;
+}
+
+int vtkINRVolumeMapper::GetCoarsestLevel() const
+{
+  return this->Self->Painter.last().statistics.levels.coarsest;
+}
+
+vtkIdType vtkINRVolumeMapper::GetNumberOfPaths() const
+{
+  return this->Self->Painter.last().statistics.paths;
+}
+
 const char* vtkINRVolumeMapper::GetBackendInUse() const
 {
   return this->Self->Painter.last().backend.c_str();
 }
+
+void vtkINRVolumeMapper::GetFrameSize(int size[2]) const
+{
+  const inr::Image& picture = this->Self->Painter.last().rgba;
+  size[0] = picture.width;
+  size[1] = picture.height;
+}
+
+vtkMTimeType vtkINRVolumeMapper::GetFrameMTime() const { return this->Self->Drawn.GetMTime(); }
 
 bool vtkINRVolumeMapper::GetOpaqueDepthRead() const { return this->Self->Painter.last().depthRead; }
 
@@ -157,6 +184,9 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     problem = exception.what();
   }
   this->TimeToDraw = this->Self->Painter.last().seconds;
+  if (!this->Self->Painter.last().rgba.pixels.empty()) {
+    this->Self->Drawn.Modified();
+  }
   this->ReportOnce(problem);
 }
 
@@ -221,6 +251,9 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Converged: " << this->GetConverged() << "\n"
      << indent << "CacheHitRate: " << this->GetCacheHitRate() << "\n"
      << indent << "CacheUsed: " << this->GetCacheUsed() << "\n"
+     << indent << "FinestLevel: " << this->GetFinestLevel() << "\n"
+     << indent << "CoarsestLevel: " << this->GetCoarsestLevel() << "\n"
+     << indent << "NumberOfPaths: " << this->GetNumberOfPaths() << "\n"
      << indent << "ImageReduction: " << this->GetImageReduction() << "\n"
      << indent << "BackendInUse: " << this->GetBackendInUse() << "\n"
      << indent << "OpaqueDepthRead: " << this->GetOpaqueDepthRead() << "\n";

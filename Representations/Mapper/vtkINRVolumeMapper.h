@@ -299,8 +299,34 @@ public:
   double GetCacheUsed() const;
   ///@}
 
+  ///@{
+  /**
+   * Levels of resolution that the last frame's samples came from, the finest and the coarsest: 0 is
+   * the full resolution, each further one halves the voxels per axis. -1 when no sample came from
+   * the cache.
+   */
+  int GetFinestLevel() const;
+  int GetCoarsestLevel() const;
+  ///@}
+
+  /**
+   * Paths through each pixel in the last frame; 0 when rays were marched.
+   */
+  vtkIdType GetNumberOfPaths() const;
+
   /** What computed the last frame, such as "CPU avx512"; empty before the first. */
   const char* GetBackendInUse() const;
+
+  /**
+   * Width and height of the last frame's picture in pixels; 0 before the first.
+   */
+  void GetFrameSize(int size[2]) const;
+
+  /**
+   * When the last frame was drawn; 0 before the first. Of several mappers, the one with the largest
+   * was the last to draw.
+   */
+  vtkMTimeType GetFrameMTime() const;
 
   /**
    * Whether the last frame read the depth of opaque geometry.

@@ -156,6 +156,38 @@ TEST(Frames, AreWrittenExactly)
   EXPECT_LT(nearest, 1);
 }
 
+TEST(Frames, SayWhatLevelsTheyShow)
+{
+  OneVolume one;
+  EXPECT_EQ(one.mapper->GetFinestLevel(), -1);
+  EXPECT_EQ(one.mapper->GetFrameMTime(), 0U);
+  one.mapper->SetBrickSize(8);
+  for (const int mode : {vtkINRVolumeMapper::RAY_MARCHING, vtkINRVolumeMapper::PATH_TRACING}) {
+    one.mapper->SetRenderMode(mode);
+    one.mapper->SetSamplesPerPixel(2);
+    one.mapper->SetLevelOfDetailScale(0);
+    one.scene.capture();
+    const vtkMTimeType drawn = one.mapper->GetFrameMTime();
+    EXPECT_EQ(one.mapper->GetFinestLevel(), 0);
+    EXPECT_EQ(one.mapper->GetCoarsestLevel(), 0);
+    EXPECT_EQ(one.mapper->GetNumberOfPaths(), mode == vtkINRVolumeMapper::PATH_TRACING ? 2 : 0);
+    one.mapper->SetLevelOfDetailScale(6);
+    one.scene.capture();
+    EXPECT_GT(one.mapper->GetFinestLevel(), 0);
+    EXPECT_GE(one.mapper->GetCoarsestLevel(), one.mapper->GetFinestLevel());
+    EXPECT_GT(one.mapper->GetFrameMTime(), drawn);
+  }
+  int size[2];
+  one.mapper->GetFrameSize(size);
+  EXPECT_EQ(size[0], one.scene.window->GetSize()[0]);
+  EXPECT_EQ(size[1], one.scene.window->GetSize()[1]);
+  one.mapper->SetRenderMode(vtkINRVolumeMapper::RAY_MARCHING);
+  one.mapper->SetCacheMode(vtkINRVolumeMapper::NETWORK_ONLY);
+  one.scene.capture();
+  EXPECT_EQ(one.mapper->GetFinestLevel(), -1);
+  EXPECT_EQ(one.mapper->GetCoarsestLevel(), -1);
+}
+
 TEST(Frames, CannotBeWrittenBeforeTheFirstOrToNowhere)
 {
   OneVolume one;
