@@ -5,6 +5,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
+#include "vtkINRStatusActor.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
@@ -12,6 +13,7 @@
 #include "vtkPVRenderView.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
+#include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
 
 vtkStandardNewMacro(vtkINRVolumeRepresentation);
@@ -25,6 +27,8 @@ vtkINRVolumeRepresentation::vtkINRVolumeRepresentation()
   this->Actor->SetLODMapper(this->OutlineMapper);
   this->VolumeMapper->AddObserver(vtkINRVolumeMapper::RefineEvent, this,
                                   &vtkINRVolumeRepresentation::OnRefine);
+  this->Status->SetVolumeMapper(this->GetMapper());
+  this->Status->VisibilityOff();
 }
 
 vtkINRVolumeRepresentation::~vtkINRVolumeRepresentation() = default;
@@ -97,6 +101,41 @@ void vtkINRVolumeRepresentation::OnRefine(vtkObject*, unsigned long, void* mayRe
   if (this->Client->isBusy()) {
     *static_cast<bool*>(mayRefine) = false;
   }
+}
+
+bool vtkINRVolumeRepresentation::AddToView(vtkView* view)
+{
+  auto* renderView = vtkPVRenderView::SafeDownCast(view);
+  if (!this->Superclass::AddToView(view)) {
+    return false;
+  }
+  renderView->GetRenderer()->AddActor(this->Status);
+  return true;
+}
+
+bool vtkINRVolumeRepresentation::RemoveFromView(vtkView* view)
+{
+  if (auto* renderView = vtkPVRenderView::SafeDownCast(view)) {
+    renderView->GetRenderer()->RemoveActor(this->Status);
+  }
+  return this->Superclass::RemoveFromView(view);
+}
+
+void vtkINRVolumeRepresentation::SetShowStatus(bool on)
+{
+  this->ShowStatus = on;
+  this->UpdateStatus();
+}
+
+void vtkINRVolumeRepresentation::SetVisibility(bool on)
+{
+  this->Superclass::SetVisibility(on);
+  this->UpdateStatus();
+}
+
+void vtkINRVolumeRepresentation::UpdateStatus()
+{
+  this->Status->SetVisibility(this->ShowStatus && this->GetVisibility());
 }
 
 vtkINRVolumeMapper* vtkINRVolumeRepresentation::GetMapper()
@@ -211,5 +250,6 @@ const char* vtkINRVolumeRepresentation::GetBackendInUse()
 void vtkINRVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ShowStatus: " << this->ShowStatus << "\n";
   os << indent << "FrameTime: " << this->GetFrameTime() << "\n";
 }

@@ -14,10 +14,12 @@
 
 #include "vtkINRRepresentationsModule.h" // for the export macro
 #include "vtkImageVolumeRepresentation.h"
+#include "vtkNew.h" // for Status
 
 #include <memory> // for Client
 #include <string> // for LastProblem
 
+class vtkINRStatusActor;
 class vtkINRVolumeMapper;
 
 namespace inr {
@@ -33,6 +35,11 @@ public:
 
   int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* in,
                          vtkInformation* out) override;
+
+  /// Whether a text in the view's corner says how far the picture is; see vtkINRStatusActor.
+  /// Default off.
+  void SetShowStatus(bool on);
+  void SetVisibility(bool on) override;
 
   ///@{
   /// Forwarded to vtkINRVolumeMapper, where they are documented.
@@ -67,11 +74,15 @@ protected:
   vtkINRVolumeRepresentation();
   ~vtkINRVolumeRepresentation() override;
 
+  bool AddToView(vtkView* view) override;
+  bool RemoveFromView(vtkView* view) override;
+
 private:
   vtkINRVolumeRepresentation(const vtkINRVolumeRepresentation&) = delete;
   void operator=(const vtkINRVolumeRepresentation&) = delete;
 
   vtkINRVolumeMapper* GetMapper();
+  void UpdateStatus();
   void DeliverOutline(vtkInformation* in, vtkInformation* out);
   std::string WhyBlank();
   void ReportColouring();
@@ -79,6 +90,8 @@ private:
 
   std::unique_ptr<inr::ClientWatch> Client;
   std::string LastProblem;
+  vtkNew<vtkINRStatusActor> Status;
+  bool ShowStatus = false;
 };
 
 #endif

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The text in the view's corner: off by default, about the picture it stands in, and several volumes'
+texts below each other."""
+import re
+
+import numpy as np
+from paraview import simple
+from pvtest import ARRAY, MODEL, check, load_plugin, look_at, picture, show_view
+
+load_plugin()
+view = show_view((400, 300))
+reader = simple.OpenDataFile(MODEL)
+display = simple.Show(reader, view)
+look_at(view)
+LINES = re.compile(
+    r"(\w+): levels? (\d+)(?: to (\d+))?, (\d+) % there(?:, (\d+) of (\d+) paths)?( \.\.\.)?\n"
+    r"cache (\d+) MiB, CPU \w+, \d+ ms$"
+)
+
+
+def actors():
+    props = view.GetRenderer().GetViewProps()
+    found = [props.GetItemAsObject(k) for k in range(props.GetNumberOfItems())]
+    return [prop for prop in found if prop.IsA("vtkINRStatusActor") and prop.GetVisibility()]
+
+
+def status():
+    """The parts of the only text shown: array, finest and coarsest level, percent, paths, of how
+    many, whether there is more to come, MiB."""
+    (actor,) = actors()
+    parts = LINES.match(actor.GetInput())
+    check(parts, "not a status:", actor.GetInput())
+    print(actor.GetInput().replace("\n", "; "))
+    return parts.groups()
+
+
+def rows_of_text(with_text, without):
+    """Blocks of rows, counted from the top, that differ in the left half of the picture."""
+    differs = np.any(with_text[::-1, :200] != without[::-1, :200], axis=(1, 2))
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], differs.astype(int), [0]))))
+    return edges.reshape(-1, 2)
+
+
+bare = picture(view, "status-off")
+check(not actors(), "there is a status that nobody asked for")
+display.ShowStatus = 1
+shown = picture(view, "status-on")
+array, finest, coarsest, percent, paths, _, more, used = status()
+check((array, percent, paths, more) == (ARRAY, "100", None, None), "a complete picture's")
+check(0 < int(used) < 1000, "cache of", used)
+(block,) = rows_of_text(shown, bare)
+check(block[0] < 10 and 20 < block[1] - block[0] < 60, "the text is in rows", block)
+
+# What an interactive picture lacks; coarser levels from further away.
+display.BrickSize = 10
+display.LevelOfDetailScale = 0
+display.MaximumRequests = 1
+display.Deterministic = 1
+view.SMProxy.InteractiveRender()
+_, finest, coarsest, percent, _, _, more, _ = status()
+check(int(percent) < 100 and more, "an unfinished picture's")
+check(int(finest) > 0, "level 0 was never loaded")
+picture(view, "status-still")
+_, finest, coarsest, percent, _, _, more, _ = status()
+check((finest, coarsest, percent, more) == ("0", None, "100", None), "all of level 0")
+display.LevelOfDetailScale = 8
+picture(view, "status-still")
+check(int(status()[1]) > 0, "level 0 where coarser ones do")
+
+# Paths; and what no cache has a part in.
+display.RenderMode = "Path Tracing"
+display.SamplesPerPixel = 2
+picture(view, "status-still")
+check(status()[4:6] == ("2", "2"), "paths")
+display.RenderMode = "Ray Marching"
+display.CacheMode = "Network only"
+display.SampleDistance = 4
+picture(view, "status-still")
+(actor,) = actors()
+check("straight from the network" in actor.GetInput(), "without a cache:", actor.GetInput())
+
+# Two volumes, three texts high when one more comes, and none for a hidden one.
+display.CacheMode = "Cache and network"
+second = simple.INRReader(FileName=MODEL)
+other = simple.Show(second, view)
+other.Position = [100, 0, 0]
+display.ShowStatus = 0
+alone = picture(view, "status-two-off")
+display.ShowStatus = other.ShowStatus = 1
+first, last = rows_of_text(picture(view, "status-two-on"), alone)
+check(first[1] < last[0], "the texts overlap in rows", first, last)
+check(first[1] - first[0] == last[1] - last[0], "texts of different height", first, last)
+simple.Hide(reader, view)
+hidden = picture(view, "status-hidden")
+(actor,) = actors()
+other.ShowStatus = 0
+check(len(rows_of_text(hidden, picture(view, "status-none"))) == 1, "a hidden volume's text stays")
+check(not actors(), "a text stays")
