@@ -17,12 +17,16 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkStringArray.h>
 #include <vtkTypeInt64Array.h>
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iomanip>
 #include <limits>
+#include <locale>
+#include <sstream>
 #include <string>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -99,6 +103,23 @@ void AddKnown(vtkFieldData* fields, const char* name, double value)
   if (!std::isnan(value)) {
     AddTuple<vtkDoubleArray>(fields, name, &value, 1);
   }
+}
+
+/// With so many significant digits as tell files apart.
+std::string Rounded(double value)
+{
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::setprecision(4) << value;
+  return text.str();
+}
+
+void AddText(vtkFieldData* fields, const char* name, const std::string& text)
+{
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  array->InsertNextValue(text);
+  fields->AddArray(array);
 }
 
 } // namespace
@@ -252,6 +273,23 @@ void vtkINRReader::AddFieldData(vtkDataObject* output)
   AddKnown(fields, "INRPSNR", this->PSNR);
   AddKnown(fields, "INRSSIM", this->SSIM);
   AddKnown(fields, "INRMaximumError", this->MaximumError);
+  AddText(fields, "INRSummary", this->Summary());
+}
+
+std::string vtkINRReader::Summary() const
+{
+  std::string text;
+  for (const vtkIdType voxels : this->NativeDimensions) {
+    text += (text.empty() ? "" : " x ") + std::to_string(voxels);
+  }
+  text += " voxels, " + Rounded(this->Ratio) + ":1";
+  const auto add = [&text](const char* what, double value, const char* unit) {
+    text += std::isnan(value) ? "" : std::string(", ") + what + " " + Rounded(value) + unit;
+  };
+  add("PSNR", this->PSNR, " dB");
+  add("SSIM", this->SSIM, "");
+  add("largest error", this->MaximumError, "");
+  return text;
 }
 
 void vtkINRReader::PrintSelf(ostream& os, vtkIndent indent)

@@ -11,7 +11,7 @@
  *
  * The output's field data tells about the volume behind the grid: INRNativeDimensions,
  * INRNativeSpacing, INRScaledDimensions, INRScaledSpacing, INRRatio and, where the file has them,
- * INRPSNR (dB), INRSSIM, INRMaximumError.
+ * INRPSNR (dB), INRSSIM, INRMaximumError; and INRSummary says the most of it in words.
  *
  * A file that cannot be read gives one error and an empty output; mend the file, call Modified(),
  * and the reader goes on.
@@ -24,6 +24,7 @@
 #include <vtkImageAlgorithm.h>
 
 #include <memory> // for Internals
+#include <string> // for Summary
 
 namespace inr {
 struct VolumeInfo;
@@ -124,6 +125,7 @@ private:
   void Describe(const inr::VolumeInfo& scaled);
   void WarnIfLimited();
   void AddFieldData(vtkDataObject* output);
+  std::string Summary() const;
 
   char* FileName = nullptr;
   char* ArrayName = nullptr;
