@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 #include "Core/Image/Exr.h"
 #include "DeferredDrawing.h"
+#include "DrawingOrder.h"
 #include "FramePainter.h"
 
 #include <vtkHardwareSelector.h>
@@ -36,6 +37,8 @@ struct vtkINRVolumeMapper::Internals
 
   inr::FramePainter Painter;
   inr::DeferredDrawing AfterPeeling;
+  inr::DrawingOrder Order;
+  bool IsAhead = false; ///< drawn because of another volume, which is in front
   std::string LastError;
   vtkTimeStamp Drawn; ///< the last frame
 };
@@ -177,6 +180,10 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     this->Self->AfterPeeling.request(renderer, volume);
     return;
   }
+  if (!this->Self->Order.begin(renderer, volume, this->Self->IsAhead)) {
+    return;
+  }
+  this->DrawVolumesBehind(renderer, volume);
   std::string problem;
   try {
     problem = this->Self->Painter.paint(this, renderer, volume, this->Settings());
@@ -188,6 +195,16 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     this->Self->Drawn.Modified();
   }
   this->ReportOnce(problem);
+}
+
+void vtkINRVolumeMapper::DrawVolumesBehind(vtkRenderer* renderer, vtkVolume* volume)
+{
+  for (vtkVolume* other : inr::VolumesBehind(renderer, volume)) {
+    Internals& mapper = *static_cast<vtkINRVolumeMapper*>(other->GetMapper())->Self;
+    mapper.IsAhead = true;
+    other->RenderVolumetricGeometry(renderer);
+    mapper.IsAhead = false;
+  }
 }
 
 void vtkINRVolumeMapper::ReportOnce(const std::string& problem)

@@ -23,9 +23,10 @@
  * whether the renderer peels them or not: up to 64 of them along a pixel's ray are drawn once more
  * to learn where they are, which is done only when a visible prop has translucent geometry. Paths
  * inside the volume do not meet them: they throw no shadow on it, and projections, which have no
- * depth, lie over all of them. Several volumes are blended one
- * after another, in the order in which the renderer draws them: right where one is behind another,
- * but where they overlap the later one lies over the earlier one.
+ * depth, lie over all of them. Several volumes in a renderer are blended
+ * one after another, from the furthest to the nearest, whatever their order there: right where one
+ * is behind another. Where they overlap they are not mixed; the one whose middle is nearer to the
+ * camera lies over the other.
  *
  * Refused with an error and not drawn: other blend modes, projections of a piece of the grid or by
  * path tracing, cropping, gradient opacity, 2D transfer functions, masks, scalars that are not an
@@ -357,6 +358,7 @@ private:
   void operator=(const vtkINRVolumeMapper&) = delete;
 
   void ReportOnce(const std::string& problem);
+  void DrawVolumesBehind(vtkRenderer* renderer, vtkVolume* volume);
 
   inr::PaintSettings Settings() const;
 

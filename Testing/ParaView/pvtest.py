@@ -49,12 +49,16 @@ class Messages:
 def show_view(size=(300, 300)):
     """A render view without decoration, white like paper."""
     view = simple.CreateView("RenderView")
+    without_decoration(view, size)
+    simple.SetActiveView(view)
+    return view
+
+
+def without_decoration(view, size=(300, 300)):
     view.ViewSize = list(size)
     view.OrientationAxesVisibility = 0
     view.UseColorPaletteForBackground = 0
     view.Background = [1, 1, 1]
-    simple.SetActiveView(view)
-    return view
 
 
 def look_at(view):
