@@ -90,7 +90,9 @@ struct PanelProperty
   const char* stock;
 };
 constexpr PanelProperty PanelProperties[] = {{"INRUnitDistance", "ScalarOpacityUnitDistance"},
-                                             {"INRShade", "Shade"}};
+                                             {"INRShade", "Shade"},
+                                             {"INRBlendMode", "BlendMode"},
+                                             {"INRIsosurfaceValues", "IsosurfaceValues"}};
 
 /// Passes what was changed in the panel on to the stock property: scripts and state files then find
 /// the same value under both names.

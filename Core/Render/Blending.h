@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace inr {
 
 /// How the values along a ray become a colour; as vtkVolumeMapper's blend modes. All but
-/// Composite are projections.
+/// Composite and Isosurface are projections.
 enum class BlendMode : std::uint8_t {
   Composite,        ///< each sample's colour over those behind it
   MaximumIntensity, ///< colour and opacity, not corrected for any length, of the largest value
@@ -16,7 +17,10 @@ enum class BlendMode : std::uint8_t {
   /// Blending::averageLow to averageHigh only; a value counts as 0 at the low end of the volume's
   /// range and as 1 at its high end. Nothing where there are none.
   AverageIntensity,
-  Additive ///< grey, opaque: such values times opacity, integrated over opacity unit distances
+  Additive, ///< grey, opaque: such values times opacity, integrated over opacity unit distances
+  /// Wherever the field takes one of Blending::isosurfaces, the colour, lit, and the opacity of
+  /// that, not corrected for any length, over those behind it.
+  Isosurface
 };
 
 /// See BlendMode.
@@ -26,11 +30,16 @@ struct Blending
   double averageLow = -std::numeric_limits<double>::infinity(); ///< data values
   double averageHigh = std::numeric_limits<double>::infinity();
 
-  bool projects() const { return this->mode != BlendMode::Composite; }
+  std::vector<double> isosurfaces; ///< data values, finite, in any order
+
+  bool projects() const
+  {
+    return this->mode != BlendMode::Composite && this->mode != BlendMode::Isosurface;
+  }
   bool operator==(const Blending& other) const
   {
     return this->mode == other.mode && this->averageLow == other.averageLow &&
-           this->averageHigh == other.averageHigh;
+           this->averageHigh == other.averageHigh && this->isosurfaces == other.isosurfaces;
   }
   bool operator!=(const Blending& other) const { return !(*this == other); }
 };

@@ -29,7 +29,9 @@ CachedRay::CachedRay(const CachedScene& scene, int x, int y)
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
     : Scene(scene), Missing(onMiss)
 {
-  if (scene.shading != nullptr) {
+  if (scene.settings.projector.findsSurfaces()) {
+    this->Probe.emplace(scene, onMiss);
+  } else if (scene.shading != nullptr) {
     this->Shader.emplace(*scene.shading, scene.colors,
                          BrickGradients(scene.cache, scene.format, scene.kernel));
   }
@@ -78,6 +80,7 @@ bool CachedMarcher::enterNextPart(CachedRay& state) const
   }
   state.ray = this->Scene.geometry.ray(state.x, state.y, ++state.part);
   state.samples = SamplesOf(this->Scene, state.ray, state.stream);
+  state.known = {};
   return true;
 }
 
@@ -87,8 +90,13 @@ bool CachedMarcher::marchPart(CachedRay& state)
   this->Ended = false;
   this->Waiting = false;
   this->Ways[0] = this->Ways[1] = {};
+  if (this->Probe) {
+    this->Probe->leave();
+  }
   while (!this->Ended && !this->Waiting) {
-    if (this->Shader) {
+    if (this->Probe) {
+      this->advanceSurfaces(state);
+    } else if (this->Shader) {
       this->advanceShaded(state);
     } else {
       this->place(state);
@@ -153,7 +161,7 @@ int CachedMarcher::add(const CachedRay& state, const AlikeSamples& alike)
     count = CountBelow(room / static_cast<double>(alike.steps()), count);
   }
   this->addRun(state, alike, count, *fine, *coarse);
-  countUse(state, this->Batch.runs[this->RunCount - 1], *fine, *coarse);
+  this->countUse(state, alike, count, *fine, *coarse);
   return count;
 }
 
@@ -180,8 +188,8 @@ void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, in
   run.fraction = static_cast<float>(fraction);
   run.growth = static_cast<float>(growth);
   run.seed = DitherSeed(state.stream);
-  run.counter = static_cast<std::uint32_t>(samples.next());
-  run.stride = static_cast<std::uint32_t>(alike.steps());
+  run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
+  run.stride = this->Probe ? 0 : static_cast<std::uint32_t>(alike.steps());
   run.count = count;
   run.length = LengthOf(alike.joined, alike.power);
   run.low = range.low;
@@ -190,17 +198,17 @@ void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, in
   this->Count += count;
 }
 
-void CachedMarcher::countUse(const CachedRay& state, const SampleRun& samples, BrickRun& fine,
-                             BrickRun& coarse)
+void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike, int count,
+                             BrickRun& fine, BrickRun& coarse) const
 {
   if (fine.exact() && coarse.exact()) { // nobody asks which it was
-    fine.count(samples.count);
+    fine.count(count);
     return;
   }
   const LevelOfDetail& detail = state.samples.detail();
-  for (int k = 0; k < samples.count; ++k) {
-    const std::int64_t interval = state.samples.next() + k * std::int64_t{samples.stride};
-    const bool isFine = detail.dithered(state.stream, interval) == fine.level();
+  for (int k = 0; k < count; ++k) {
+    const std::int64_t interval = state.samples.next() + k * alike.steps();
+    const bool isFine = detail.dithered(state.stream, this->ditherOf(interval)) == fine.level();
     (isFine ? fine : coarse).count(1);
   }
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Cache/Requests.h"
-#include "Core/Render/BrickRun.h"
+#include "Core/Render/CachedScene.h"
 #include "Core/Render/RayMarching.h"
+#include "Core/Render/RayProbe.h"
 #include "Core/Render/SampleShader.h"
 
 #include <cstdint>
@@ -11,19 +11,12 @@
 
 namespace inr {
 
-/// What a frame's rays share when they read from the cache. All read-only.
-struct CachedScene
+/// A value of the field as a level has it.
+struct KnownValue
 {
-  const Frame& frame;
-  const RayGeometry& geometry;
-  const Majorants& majorants;
-  const ColorLookup& colors;
-  const StepLookup& steps;
-  const BrickCache& cache;
-  const BrickKernel& kernel;
-  BrickFormat format; ///< of the cache's bricks
-  MarchSettings settings;
-  const Shading* shading; ///< null: colours as the transfer function gives them
+  std::int64_t at = -1; ///< place on the ray, of a lattice interval's end
+  int level = -1;
+  float value = 0;
 };
 
 /// Where a ray stands.
@@ -37,19 +30,13 @@ struct CachedRay
   RayColor color{{0, 0, 0}, 1};
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
   Projection projection{};  ///< instead, of values that are projected
+  KnownValue known;         ///< of rays that find surfaces, the latest
 
   int x;
   int y;
   int part = 0; ///< of the way: how many translucent layers lie behind
   LayeredLight light;
   double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
-};
-
-/// What a ray does where the brick it wants is not there.
-enum class OnMiss {
-  UseCoarser, ///< read the nearest coarser level that is, and wish for the wanted one
-  Approach,   ///< the same, but wish for the level after the coarser one
-  Stop        ///< wait
 };
 
 /// Marches rays through the brick cache, one at a time, and notes which bricks they missed. One for
@@ -79,6 +66,16 @@ private:
     SampleStretch stretch;
   };
 
+  /// A part of a ray at whose ends the field is on different sides of surfaces.
+  struct SurfaceInterval
+  {
+    int level;
+    double begin; ///< places
+    double end;
+    float first; ///< values there
+    float last;
+  };
+
   /// The same for the part of the way that the ray is on.
   bool marchPart(CachedRay& ray);
   /// Sends a ray on behind the translucent layer at its end; false when there is nothing to see.
@@ -90,8 +87,11 @@ private:
   void addRun(const CachedRay& state, const AlikeSamples& alike, int count, const BrickRun& fine,
               const BrickRun& coarse);
   BrickRun* runFor(const CachedRay& state, int level, double place);
-  static void countUse(const CachedRay& state, const SampleRun& samples, BrickRun& fine,
-                       BrickRun& coarse);
+  void countUse(const CachedRay& state, const AlikeSamples& alike, int count, BrickRun& fine,
+                BrickRun& coarse) const;
+  /// The number that chooses between two levels for a sample. A surface would be torn where one
+  /// sample is of this and the next of that level, so of its rays all have the same.
+  std::int64_t ditherOf(std::int64_t interval) const { return this->Probe ? 0 : interval; }
   bool open(BrickRun& run, const Ray& ray, int level, double place);
   /// What is there instead of a brick that is not: the slot.
   std::int32_t openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted, double t);
@@ -107,6 +107,13 @@ private:
   void project(CachedRay& state);
   void finishProjection(CachedRay& state) const;
   bool isDone(const CachedRay& state) const;
+  void advanceSurfaces(CachedRay& state);
+  /// A sample of the batch and the surfaces in front of it; false when a brick is not there.
+  bool crossSurfaces(CachedRay& state, int sample);
+  bool drawSurfaces(CachedRay& state, const SurfaceInterval& interval);
+  bool drawSurface(CachedRay& state, int surface, int level, double place);
+  bool findSurface(const CachedRay& state, const SurfaceInterval& interval, float value,
+                   double& place);
   void clampToRanges();
   /// Puts the ray back to before a sample of the batch, which began at `before`.
   void goBackTo(int sample, const CachedRay& before, CachedRay& state);
@@ -129,6 +136,7 @@ private:
   bool Waiting = false;
   bool Ended = false;
   std::optional<SampleShader> Shader;
+  std::optional<RayProbe> Probe; ///< where surfaces are found
 };
 
 } // namespace inr

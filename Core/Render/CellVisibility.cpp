@@ -24,6 +24,14 @@ ValueRange Normalised(double low, double high, const VolumeInfo& volume)
           static_cast<float>((high - volume.low) / width)};
 }
 
+template <typename Matters> ExtinctionRule RuleOf(Matters matters)
+{
+  return [matters](const ValueRange* ranges, std::int64_t count, float* extinctions) {
+    std::transform(ranges, ranges + count, extinctions,
+                   [&](const ValueRange& range) { return matters(range) ? 1.0f : 0.0f; });
+  };
+}
+
 } // namespace
 
 ExtinctionRule VisibilityFor(const Projector& projector, const ColorTable& colors)
@@ -33,16 +41,22 @@ ExtinctionRule VisibilityFor(const Projector& projector, const ColorTable& color
       colors.maximumExtinctions(ranges, count, extinctions);
     };
   }
+  if (projector.findsSurfaces()) {
+    return RuleOf([surfaces = projector.surfaces](const ValueRange& range) {
+      return !range.empty() && surfaces.meets(range);
+    });
+  }
   const ValueRange seen = projector.isExtreme() ? ValueRange{0.0f, 1.0f} : projector.averaged;
-  return [seen](const ValueRange* ranges, std::int64_t count, float* extinctions) {
-    std::transform(ranges, ranges + count, extinctions,
-                   [&seen](const ValueRange& range) { return Overlap(range, seen) ? 1.0f : 0.0f; });
-  };
+  return RuleOf([seen](const ValueRange& range) { return Overlap(range, seen); });
 }
 
-Projector ProjectorFor(const Blending& blending, const VolumeInfo& volume, const ValueRange& bounds)
+Projector ProjectorFor(const Blending& blending, const VolumeInfo& volume, const ValueRange& bounds,
+                       const std::vector<float>& surfaces)
 {
-  return {blending.mode, Normalised(blending.averageLow, blending.averageHigh, volume), bounds};
+  return {blending.mode,
+          {surfaces.data(), static_cast<int>(surfaces.size())},
+          Normalised(blending.averageLow, blending.averageHigh, volume),
+          bounds};
 }
 
 } // namespace inr

@@ -17,11 +17,11 @@ using ExtinctionRule =
 
 /// What matters to a frame's picture. The largest extinction where opacity decides; else 1 for
 /// what matters: all values where an extreme is looked for, those in `projector.averaged` where the
-/// mean is. `colors` must outlive the rule.
+/// mean is, those of isosurfaces. `colors` and `projector.surfaces` must outlive the rule.
 ExtinctionRule VisibilityFor(const Projector& projector, const ColorTable& colors);
 
-/// `bounds`: of all values that rays can meet.
-Projector ProjectorFor(const Blending& blending, const VolumeInfo& volume,
-                       const ValueRange& bounds);
+/// `bounds`: of all values that rays can meet. `surfaces`, as of VisibleSurfaces, must outlive it.
+Projector ProjectorFor(const Blending& blending, const VolumeInfo& volume, const ValueRange& bounds,
+                       const std::vector<float>& surfaces);
 
 } // namespace inr

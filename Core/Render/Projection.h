@@ -5,6 +5,7 @@
 #include "Core/Model/MacroCells.h"
 #include "Core/Render/Blending.h"
 #include "Core/Render/ColorTable.h"
+#include "Core/Render/Isosurfaces.h"
 
 #include <glm/common.hpp>
 #include <glm/vec4.hpp>
@@ -22,14 +23,19 @@ struct Projection
   bool any = false;  ///< whether there is one
 };
 
-/// How a frame's rays project values; see BlendMode. Plain data.
+/// How a frame's rays look at values; see BlendMode. Plain data.
 struct Projector
 {
   BlendMode mode = BlendMode::Composite;
+  SurfaceLookup surfaces;          ///< to find
   ValueRange averaged{0.0f, 1.0f}; ///< normalised values that count for the average
   ValueRange bounds{0.0f, 1.0f};   ///< of all values that a ray can meet
 
-  INR_HOST_DEVICE bool projects() const { return this->mode != BlendMode::Composite; }
+  INR_HOST_DEVICE bool projects() const
+  {
+    return this->mode != BlendMode::Composite && !this->findsSurfaces();
+  }
+  INR_HOST_DEVICE bool findsSurfaces() const { return this->mode == BlendMode::Isosurface; }
   INR_HOST_DEVICE bool isExtreme() const
   {
     return this->mode == BlendMode::MaximumIntensity || this->mode == BlendMode::MinimumIntensity;

@@ -98,10 +98,13 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture
   Require(!frame.shading || IsValid(*frame.shading),
           "ambient, diffuse, specular and specular power must be finite and not negative");
   Require(frame.timeLimit >= 0, "the time limit must not be negative");
-  Require(frame.mode == RenderMode::RayMarching || !frame.blending.projects(),
+  Require(frame.mode == RenderMode::RayMarching || frame.blending.mode == BlendMode::Composite,
           "paths are composited; choose ray marching for another blend mode");
   Require(!std::isnan(frame.blending.averageLow) && !std::isnan(frame.blending.averageHigh),
           "the range of averaged values must consist of numbers");
+  Require(std::all_of(frame.blending.isosurfaces.begin(), frame.blending.isosurfaces.end(),
+                      [](double value) { return std::isfinite(value); }),
+          "the values of isosurfaces must be finite");
   Require(std::isfinite(frame.unitDistance) && frame.unitDistance > 0,
           "the opacity unit distance must be above 0");
   this->WorldToClip = Inverse(frame.clipToWorld, "the camera's matrix has no inverse");

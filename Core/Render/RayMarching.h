@@ -27,6 +27,8 @@ struct MarchState
   double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
   int part = 0;                ///< of the way: how many translucent layers lie behind
   LayeredLight light{};
+  double knownAt = -1; ///< t where the value is known, of rays that find surfaces
+  float known = 0;
 };
 
 /// The random stream of a pixel's ray.
@@ -38,10 +40,11 @@ INR_HOST_DEVICE inline std::uint64_t PixelStream(const Frame& frame, int x, int 
 }
 
 /// SampleWalker's jitter: random, as noise disturbs less than bands do (its counter is one that no
-/// sample has); but of an extreme both ends of a ray count.
+/// sample has); but of extremes and surfaces both ends of a ray count.
 INR_HOST_DEVICE inline double JitterOf(const MarchSettings& settings, std::uint64_t stream)
 {
-  return settings.projector.isExtreme() ? 1.0 : RandomUnit(stream, ~std::uint64_t{0});
+  const bool ends = settings.projector.isExtreme() || settings.projector.findsSurfaces();
+  return ends ? 1.0 : RandomUnit(stream, ~std::uint64_t{0});
 }
 
 /// A sample to infer and what its answer is good for.
@@ -51,11 +54,16 @@ struct MarchSample
   ValueRange range;   ///< of its macro-cells
   float length;       ///< it stands for, in opacity unit distances
   float t;
+  double begin; ///< t of what it stands for
+  double end;
 };
 
 /// Opacity at which the rest of a ray no longer shows.
 constexpr float OpaqueEnough = 0.999f;
 constexpr float OpaqueTransmittance = 1.0f - OpaqueEnough;
+
+/// By which the part of a ray is halved where a surface was passed.
+constexpr int Bisections = 10;
 
 /// Where a field is asked for at a point of a ray: inside a slab of a single voxel, always at it.
 INR_HOST_DEVICE inline glm::vec3 FieldPosition(const MarchSettings& settings,
@@ -81,9 +89,12 @@ INR_HOST_DEVICE inline int PlaceSamples(const MarchSettings& settings, MarchStat
     const auto steps = alike.last ? walker.rest() : static_cast<double>(alike.steps());
     const double place = static_cast<double>(walker.next()) + walker.offset(alike);
     const double t = glm::min(place * settings.step, ray.length);
-    samples[count++] = {FieldPosition(settings, ray.at(t)), walker.stretch().range,
+    samples[count++] = {FieldPosition(settings, ray.at(t)),
+                        walker.stretch().range,
                         static_cast<float>(steps * settings.step * settings.unitsPerT),
-                        static_cast<float>(t)};
+                        static_cast<float>(t),
+                        static_cast<double>(walker.next()) * settings.step,
+                        static_cast<double>(walker.next() + alike.steps()) * settings.step};
     walker.pass(alike, 1);
   }
   return count;

@@ -50,7 +50,7 @@ struct Renderer::Implementation
 
   Projector projector() const
   {
-    return ProjectorFor(this->Seen, this->Volume, this->Cells.bounds());
+    return ProjectorFor(this->Seen, this->Volume, this->Cells.bounds(), this->Surfaces);
   }
   void build();
   /// Finds what matters to pictures blended like this, unless that is known.
@@ -75,6 +75,7 @@ struct Renderer::Implementation
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
   Blending Seen;                        ///< how pictures are blended that the majorants are for
+  std::vector<float> Surfaces;          ///< of these pictures
   std::optional<CachedRenderer> Cached; ///< where there is to be a cache
   std::optional<PathPicture> Paths;     ///< while paths are traced
   std::int64_t MajorantBuilds = 0;
@@ -118,14 +119,15 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
   self.Colors.emplace(std::move(colors));
   self.Function = transferFunction;
   self.Paths.reset();
-  if (self.Cached) {
-    self.Cached->forgetColors();
-  }
   self.build();
 }
 
 void Renderer::Implementation::build()
 {
+  if (this->Cached) {
+    this->Cached->forgetColors();
+  }
+  this->Surfaces = VisibleSurfaces(this->Seen.isosurfaces, this->Volume, this->Colors->lookup());
   this->Cells.update(VisibilityFor(this->projector(), *this->Colors), this->Threads);
   ++this->MajorantBuilds;
 }
@@ -164,7 +166,7 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   MarchSettings settings;
   settings.dims = glm::dvec3(this->Volume.dims);
   settings.step = frame.sampleDistance;
-  settings.adaptive = frame.adaptiveSampling && !frame.blending.projects();
+  settings.adaptive = frame.adaptiveSampling && frame.blending.mode == BlendMode::Composite;
   settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
   settings.projector = this->projector();
   const std::optional<Shading> shading = ShadingOf(frame);

@@ -73,6 +73,7 @@ struct SampleStretch
   int level = 0;        ///< the steps between samples are 2^level
   int faint = 0;        ///< 2^faint of them may be taken at once
   ValueRange range;     ///< of the cells
+  double reach = -1;    ///< where cells end that matter; see Projector::findsSurfaces
 };
 
 /// Where the samples of a ray are: every 2^l steps where it deserves level l of the cache and the
@@ -101,7 +102,7 @@ public:
       }
       this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
       this->Cells.moveTo(this->firstPlace() * settings.step);
-      if (this->Cells.extinction() > 0.0f) {
+      if (this->Cells.extinction() > 0.0f || this->isLeaving(settings)) {
         this->beginStretch(settings);
         return true;
       }
@@ -210,8 +211,17 @@ private:
     }
   }
 
+  /// Whether the steps of the next sample, which is behind cells that matter, begin in one of them:
+  /// surfaces are found between places that are known.
+  INR_HOST_DEVICE bool isLeaving(const MarchSettings& settings) const
+  {
+    return settings.projector.findsSurfaces() &&
+           static_cast<double>(this->Next) < this->Stretch.reach;
+  }
+
   INR_HOST_DEVICE void beginStretch(const MarchSettings& settings)
   {
+    const bool matters = this->Cells.extinction() > 0.0f;
     const int level = this->Detail.coarsest();
     const double length = settings.step * PowerOfTwo(level);
     const double depth = length * settings.unitsPerT;
@@ -224,7 +234,8 @@ private:
     const double begin = static_cast<double>(this->Next) * settings.step;
     const double enough = glm::min((std::floor(begin / block) + 1.0) * block,
                                    glm::min(end, this->End * settings.step));
-    const bool joins = !settings.projector.isExtreme(); // what can be skipped is found cell by cell
+    // What an extreme can skip is found cell by cell.
+    const bool joins = matters && !settings.projector.isExtreme();
     while (joins && exit < enough) {
       this->Cells.moveTo(exit);
       const float extinction = this->Cells.extinction();
@@ -236,7 +247,9 @@ private:
       exit = this->Cells.exit();
     }
     const double stepsPerT = 1.0 / settings.step;
-    this->Stretch = {exit * stepsPerT, end * stepsPerT, level, faint, range};
+    const double reach = matters ? exit * stepsPerT : this->Stretch.reach;
+    const double last = matters ? reach : std::nextafter(this->firstPlace(), this->End + 1);
+    this->Stretch = {last, end * stepsPerT, level, faint, range, reach};
   }
 
   LevelOfDetail Detail;

@@ -12,6 +12,9 @@ FrameStatistics TileMarcher::march(const Tile& tile, Image& rgba, Image* depth)
   while (!this->Live.empty()) {
     this->placeSamples();
     this->inferValues();
+    if (this->Scene.settings.projector.findsSurfaces()) {
+      this->findSurfaces();
+    }
     if (this->Scene.shading != nullptr) {
       this->inferGradients();
       this->shade();
@@ -46,12 +49,14 @@ void TileMarcher::placeSamples()
 {
   this->Samples.clear();
   this->SampleEnds.clear();
+  this->Exhausted.clear();
   MarchSample placed[SamplesPerRound];
   for (const int k : this->Live) {
     const int count = PlaceSamples(this->Scene.settings, this->Rays[static_cast<std::size_t>(k)],
                                    SamplesPerRound, placed);
     this->Samples.insert(this->Samples.end(), placed, placed + count);
     this->SampleEnds.push_back(static_cast<int>(this->Samples.size()));
+    this->Exhausted.push_back(count < SamplesPerRound ? 1 : 0);
   }
 }
 
@@ -129,11 +134,10 @@ void TileMarcher::composite()
   for (std::size_t live = 0; live < this->Live.size(); ++live) {
     MarchState& state = this->Rays[static_cast<std::size_t>(this->Live[live])];
     const auto end = static_cast<std::size_t>(this->SampleEnds[live]);
-    const bool exhausted = end - sample < SamplesPerRound;
     const bool goesOn =
         projects ? this->projectRay(sample, end, state) : this->compositeRay(sample, end, state);
     sample = end;
-    if (exhausted ? this->enterNextPart(this->Live[live], goesOn) : goesOn) {
+    if (this->Exhausted[live] != 0 ? this->enterNextPart(this->Live[live], goesOn) : goesOn) {
       this->Live[alive++] = this->Live[live];
     }
   }
@@ -214,6 +218,7 @@ bool TileMarcher::enterNextPart(int k, bool goesOn)
   state.ray = this->Scene.geometry.ray(x, y, ++state.part);
   state.samples = SampleWalker(this->Scene.majorants, this->Scene.settings, state.ray, 0, 1,
                                JitterOf(this->Scene.settings, PixelStream(frame, x, y)));
+  state.knownAt = -1;
   return state.light.passes() > 0.0f;
 }
 

@@ -38,11 +38,28 @@ private:
   /// surface.
   static constexpr int SamplesPerRound = 8;
 
+  /// A surface between two places of a ray.
+  struct Crossing
+  {
+    int live; ///< which ray
+    float value;
+    bool rises;
+    double low; ///< t
+    double high;
+  };
+
   void generateRays(const Tile& tile);
   void placeSamples();
   void inferValues();
   void inferGradients();
   void shade();
+  /// Makes samples of the surfaces in a round's samples: the ones that are shaded and composited.
+  void findSurfaces();
+  void inferBegins();
+  void listCrossings();
+  void listCrossing(int ray, const MarchSample& sample, float first, float last);
+  void bisectCrossings();
+  void placeOnSurfaces();
   void composite();
   /// A round of samples, [first, end), of one ray; false when it needs no more.
   bool compositeRay(std::size_t first, std::size_t end, MarchState& state);
@@ -66,6 +83,9 @@ private:
   std::vector<std::size_t> Visible; ///< samples that need a gradient
   std::vector<float> Neighbors;     ///< below and above each of them along x, y and z
   std::vector<glm::vec4> Lit;       ///< straight RGB and opacity of each sample
+  std::vector<char> Exhausted;      ///< of each live ray: there are no more samples
+  std::vector<float> Begins;        ///< where surfaces are found, values before each sample
+  std::vector<Crossing> Crossings;
 };
 
 } // namespace inr

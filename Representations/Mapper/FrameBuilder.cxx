@@ -3,6 +3,7 @@
 
 #include <vtkActor2D.h>
 #include <vtkCamera.h>
+#include <vtkContourValues.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
 #include <vtkMatrix4x4.h>
@@ -13,6 +14,7 @@
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
 #include <vtkVolumeMapper.h>
+#include <vtkVolumeProperty.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_access.hpp>
@@ -120,7 +122,7 @@ std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4&
   return result;
 }
 
-Blending BlendingOf(vtkVolumeMapper* mapper)
+Blending BlendingOf(vtkVolumeMapper* mapper, vtkVolumeProperty* property)
 {
   Blending blending;
   switch (mapper->GetBlendMode()) {
@@ -138,6 +140,14 @@ Blending BlendingOf(vtkVolumeMapper* mapper)
   case vtkVolumeMapper::ADDITIVE_BLEND:
     blending.mode = BlendMode::Additive;
     break;
+  case vtkVolumeMapper::ISOSURFACE_BLEND: {
+    blending.mode = BlendMode::Isosurface;
+    vtkContourValues* values = property->GetIsoSurfaceValues();
+    for (int k = 0; k < values->GetNumberOfContours(); ++k) {
+      blending.isosurfaces.push_back(values->GetValue(k));
+    }
+    break;
+  }
   default:
     break;
   }

@@ -14,6 +14,7 @@ class vtkMatrix4x4;
 class vtkPlaneCollection;
 class vtkRenderer;
 class vtkVolumeMapper;
+class vtkVolumeProperty;
 
 namespace inr {
 
@@ -50,8 +51,8 @@ std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes);
 /// neighbouring pieces then draw neighbouring parts.
 std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4& worldToIndex);
 
-/// How a mapper blends; its mode must be one that BlendMode has.
-Blending BlendingOf(vtkVolumeMapper* mapper);
+/// How a mapper blends, and which isosurfaces; its mode must be one that BlendMode has.
+Blending BlendingOf(vtkVolumeMapper* mapper, vtkVolumeProperty* property);
 
 /// Whether the image holds less than the whole grid.
 bool IsPiece(const PresentedGrid& grid);

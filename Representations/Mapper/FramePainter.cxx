@@ -70,7 +70,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.shading = MaterialOf(volume->GetProperty());
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
   frame.mode = settings.mode;
-  frame.blending = BlendingOf(mapper);
+  frame.blending = BlendingOf(mapper, volume->GetProperty());
   frame.paths = settings.paths;
   frame.samplesPerPixel = settings.samplesPerPixel;
   frame.sampleDistance = settings.sampleDistance;

@@ -32,19 +32,19 @@ std::string WhyNotBlended(vtkVolumeMapper* mapper, const PresentedGrid& grid, Re
   if (blend == vtkVolumeMapper::COMPOSITE_BLEND) {
     return {};
   }
-  if (blend < 0 || blend >= vtkVolumeMapper::ISOSURFACE_BLEND) {
-    return "An INR has no blend mode " + std::to_string(blend) +
-           " (isosurface and slice are not there yet); set it to composite, maximum, minimum or "
-           "average intensity or additive.";
+  if (blend < 0 || blend > vtkVolumeMapper::ISOSURFACE_BLEND) {
+    return "An INR cannot be drawn with the blend mode slice or one that is none; choose another "
+           "one, and for a slice a slice filter.";
   }
   if (mode == RenderMode::PathTracing) {
     return "Path tracing knows no blend mode but composite; set the blend mode to composite or the "
            "render mode to ray marching.";
   }
-  return IsPiece(grid) ? "A projection (maximum, minimum, average or additive blending) of an INR "
-                         "needs the whole volume in one process, and this one has a piece; set the "
-                         "blend mode to composite."
-                       : "";
+  return blend != vtkVolumeMapper::ISOSURFACE_BLEND && IsPiece(grid)
+             ? "A projection (maximum, minimum, average or additive blending) of an INR "
+               "needs the whole volume in one process, and this one has a piece; set the "
+               "blend mode to composite."
+             : "";
 }
 
 } // namespace

@@ -15,9 +15,11 @@
  * specular power by the renderer's lights. Interpolation type has no meaning here: an INR is
  * continuous.
  *
- * Blend modes: composite, and the projections maximum, minimum and average intensity (of the values
- * in AverageIPScalarRange) and additive, unshaded, as VTK's GPU mapper has them. What cannot change
- * a picture is not looked at: no macro-cell whose largest value is below one that a ray has met.
+ * Blend modes: composite; the projections maximum, minimum and average intensity (of the values in
+ * AverageIPScalarRange) and additive, unshaded, as VTK's GPU mapper has them; and isosurfaces, of
+ * the volume property's values, with the opacity function's opacity and its shading, found between
+ * two samples by bisection. What cannot change a picture is not looked at: no macro-cell whose
+ * largest value is below one that a ray has met, none without an isosurface.
  *
  * Ordinary translucent surfaces are in their places in front of, inside and behind the volume,
  * whether the renderer peels them or not: up to 64 of them along a pixel's ray are drawn once more
@@ -28,9 +30,9 @@
  * is behind another. Where they overlap they are not mixed; the one whose middle is nearer to the
  * camera lies over the other.
  *
- * Refused with an error and not drawn: other blend modes, projections of a piece of the grid or by
- * path tracing, cropping, gradient opacity, 2D transfer functions, masks, scalars that are not an
- * INR. A message comes once, not at every frame.
+ * Refused with an error and not drawn: the blend mode slice, projections of a piece of the grid or
+ * by path tracing, cropping, gradient opacity, 2D transfer functions, masks, scalars that are not
+ * an INR. A message comes once, not at every frame.
  *
  * What rays meet is decoded brick by brick, at the level of resolution that the picture's pixels
  * deserve, and kept in a cache from frame to frame. A still frame waits until every sample is

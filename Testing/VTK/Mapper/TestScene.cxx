@@ -8,6 +8,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
+#include <vtkContourValues.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkImageData.h>
 #include <vtkLight.h>
@@ -150,6 +151,18 @@ SceneCase Projected(const std::string& name, int blendMode)
           }};
 }
 
+/// One in the other, lit; the outer one shows the inner one.
+void Surfaces(Scene& scene, const MapperFactory& mapper)
+{
+  Perspective(scene, mapper);
+  vtkVolume* volume = FirstVolume(scene);
+  vtkVolumeMapper::SafeDownCast(volume->GetMapper())->SetBlendModeToIsoSurface();
+  volume->GetProperty()->GetIsoSurfaceValues()->SetValue(0, 40);
+  volume->GetProperty()->GetIsoSurfaceValues()->SetValue(1, 100);
+  volume->GetProperty()->ShadeOn();
+  volume->GetProperty()->SetSpecular(0); // VTK before 9.2 has others
+}
+
 /// Of what two planes leave; at its faces the whole volume is at its minimum.
 void MinimumInside(Scene& scene, const MapperFactory& mapper)
 {
@@ -210,7 +223,8 @@ std::vector<SceneCase> SceneCases()
           Projected("Maximum", vtkVolumeMapper::MAXIMUM_INTENSITY_BLEND),
           {"Minimum", MinimumInside},
           Projected("Average", vtkVolumeMapper::AVERAGE_INTENSITY_BLEND),
-          Projected("Additive", vtkVolumeMapper::ADDITIVE_BLEND)};
+          Projected("Additive", vtkVolumeMapper::ADDITIVE_BLEND),
+          {"Isosurfaces", Surfaces}};
 }
 
 Scene::Scene()

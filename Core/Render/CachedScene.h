@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/Requests.h"
+#include "Core/Render/BrickRun.h"
+#include "Core/Render/Frame.h"
+#include "Core/Render/SampleShader.h"
+#include "Core/Render/SampleWalker.h"
+
+namespace inr {
+
+/// What a frame's rays share when they read from the cache. All read-only.
+struct CachedScene
+{
+  const Frame& frame;
+  const RayGeometry& geometry;
+  const Majorants& majorants;
+  const ColorLookup& colors;
+  const StepLookup& steps;
+  const BrickCache& cache;
+  const BrickKernel& kernel;
+  BrickFormat format; ///< of the cache's bricks
+  MarchSettings settings;
+  const Shading* shading; ///< null: colours as the transfer function gives them
+};
+
+/// What a ray does where the brick it wants is not there.
+enum class OnMiss {
+  UseCoarser, ///< read the nearest coarser level that is, and wish for the wanted one
+  Approach,   ///< the same, but wish for the level after the coarser one
+  Stop        ///< wait
+};
+
+} // namespace inr
