@@ -19,6 +19,8 @@ namespace inr {
 namespace {
 
 constexpr const char* ColorChannels[] = {"R", "G", "B", "A"};
+constexpr const char* DepthChannel[] = {"Z"};
+constexpr const char* SampleChannels[] = {"samples", "level"};
 
 /// One channel of `image` as OpenEXR addresses it: EXR's first row is the top one, ours the bottom.
 Imf::Slice SliceOf(Image& image, int channel)
@@ -31,30 +33,39 @@ Imf::Slice SliceOf(Image& image, int channel)
           static_cast<std::size_t>(pixelStride), static_cast<std::size_t>(-rowStride)};
 }
 
-void CheckShapes(const Image& rgba, const Image& depth)
+bool Fits(const Image& image, int channels, const Image& rgba)
 {
-  const bool withDepth = !depth.pixels.empty();
-  if (rgba.channels != 4 || rgba.width < 1 || rgba.height < 1 ||
-      (withDepth &&
-       (depth.channels != 1 || depth.width != rgba.width || depth.height != rgba.height))) {
+  return image.pixels.empty() ||
+         (image.channels == channels && image.width == rgba.width && image.height == rgba.height);
+}
+
+void CheckShapes(const Image& rgba, const Image& depth, const Image& samples)
+{
+  if (rgba.channels != 4 || rgba.width < 1 || rgba.height < 1 || !Fits(depth, 1, rgba) ||
+      !Fits(samples, 2, rgba)) {
     throw Error(ErrorCode::InvalidArgument,
-                "an EXR file takes RGBA and, of the same size, one channel of depth");
+                "an EXR file takes RGBA and, of the same size, one channel of depth and two of "
+                "samples and their level");
   }
 }
 
-void WriteChannels(const std::string& path, Image& rgba, Image& depth)
+void AddChannels(Imf::Header& header, Imf::FrameBuffer& buffer, Image& image,
+                 const char* const names[])
+{
+  for (int c = 0; c < image.channels && !image.pixels.empty(); ++c) {
+    header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+    buffer.insert(names[c], SliceOf(image, c));
+  }
+}
+
+void WriteChannels(const std::string& path, Image& rgba, Image& depth, Image& samples)
 {
   Imf::Header header(rgba.width, rgba.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer buffer;
-  for (int c = 0; c < 4; ++c) {
-    header.channels().insert(ColorChannels[c], Imf::Channel(Imf::FLOAT));
-    buffer.insert(ColorChannels[c], SliceOf(rgba, c));
-  }
-  if (!depth.pixels.empty()) {
-    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-    buffer.insert("Z", SliceOf(depth, 0));
-  }
+  AddChannels(header, buffer, rgba, ColorChannels);
+  AddChannels(header, buffer, depth, DepthChannel);
+  AddChannels(header, buffer, samples, SampleChannels);
   Imf::OutputFile file(path.c_str(), header, 1);
   file.setFrameBuffer(buffer);
   file.writePixels(rgba.height);
@@ -62,21 +73,22 @@ void WriteChannels(const std::string& path, Image& rgba, Image& depth)
 
 } // namespace
 
-void WriteExr(const std::string& path, const Image& rgba, const Image& depth)
+void WriteExr(const std::string& path, const Image& rgba, const Image& depth, const Image& samples)
 {
-  CheckShapes(rgba, depth);
+  CheckShapes(rgba, depth, samples);
   AtomicFile file(path);
   try {
     Image colors = rgba; // OpenEXR's slices are not const
     Image distances = depth;
-    WriteChannels(file.temporaryPath(), colors, distances);
+    Image counts = samples;
+    WriteChannels(file.temporaryPath(), colors, distances, counts);
   } catch (const std::exception& error) {
     throw Error(ErrorCode::CannotWrite, "cannot write '" + path + "': " + error.what());
   }
   file.commit();
 }
 
-Image ReadExr(const std::string& path, Image* depth)
+Image ReadExr(const std::string& path, Image* depth, Image* samples)
 {
   try {
     Imf::InputFile file(path.c_str(), 1);
@@ -95,10 +107,19 @@ Image ReadExr(const std::string& path, Image* depth)
       distances = Image(rgba.width, rgba.height, 1);
       buffer.insert("Z", SliceOf(distances, 0));
     }
+    Image counts;
+    if (channels.findChannel("samples") != nullptr && channels.findChannel("level") != nullptr) {
+      counts = Image(rgba.width, rgba.height, 2);
+      buffer.insert("samples", SliceOf(counts, 0));
+      buffer.insert("level", SliceOf(counts, 1));
+    }
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
     if (depth != nullptr) {
       *depth = std::move(distances);
+    }
+    if (samples != nullptr) {
+      *samples = std::move(counts);
     }
     return rgba;
   } catch (const Error&) {

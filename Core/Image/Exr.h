@@ -8,12 +8,15 @@
 namespace inr {
 
 /// Writes premultiplied RGBA as 32-bit float channels R, G, B, A and, when `depth` is not empty,
-/// its single channel as Z, bit-exact. Whole file or none (temporary name and rename). Throws
+/// its single channel as Z, and when `samples` is not empty, its two as "samples" and "level",
+/// bit-exact. Whole file or none (temporary name and rename). Throws
 /// Error(InvalidArgument) for wrong shapes, Error(CannotWrite) for an unwritable target.
-void WriteExr(const std::string& path, const Image& rgba, const Image& depth = {});
+void WriteExr(const std::string& path, const Image& rgba, const Image& depth = {},
+              const Image& samples = {});
 
 /// Reads what WriteExr wrote: R, G, B, A into a four-channel image; `depth`, when given, receives Z
-/// (empty if there is none). Throws Error(CannotRead) or Error(Malformed).
-Image ReadExr(const std::string& path, Image* depth = nullptr);
+/// (empty if there is none), and `samples` what was written of it. Throws Error(CannotRead) or
+/// Error(Malformed).
+Image ReadExr(const std::string& path, Image* depth = nullptr, Image* samples = nullptr);
 
 } // namespace inr

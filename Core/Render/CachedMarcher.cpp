@@ -194,7 +194,8 @@ void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, in
   run.length = LengthOf(alike.joined, alike.power);
   run.low = range.low;
   run.high = range.high;
-  this->Origins[this->RunCount++] = {this->Count, offset, samples.next(), alike.steps(), stretch};
+  this->Origins[this->RunCount++] = {this->Count,   offset,  samples.next(),
+                                     alike.steps(), stretch, fine.servedLevel()};
   this->Count += count;
 }
 
@@ -298,6 +299,7 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
   this->Statistics.samples += run.count();
   if (run.count() > 0) {
     this->Statistics.levels.add({run.servedLevel(), run.servedLevel()});
+    this->LevelSum += std::int64_t{run.count()} * run.servedLevel();
   }
   if (run.count() > 0 && !run.exact()) {
     this->Statistics.missed += run.count();
@@ -339,6 +341,9 @@ void CachedMarcher::goBackTo(int sample, const CachedRay& before, CachedRay& sta
   state.samples.resume(origin.interval + (sample - origin.sample) * origin.steps, origin.stretch,
                        this->Scene.settings);
   this->Statistics.samples -= this->Count - sample; // they will be counted again
+  for (int k = sample; k < this->Count; ++k) {
+    this->LevelSum -= this->originOf(k).level;
+  }
   this->Waiting = true;
   this->Ended = false;
 }

@@ -19,6 +19,13 @@ struct KnownValue
   float value = 0;
 };
 
+/// Samples and, of each, the level that it came from, summed up.
+struct SampleTally
+{
+  std::int64_t samples = 0;
+  std::int64_t levels = 0;
+};
+
 /// Where a ray stands.
 struct CachedRay
 {
@@ -29,6 +36,7 @@ struct CachedRay
   SampleWalker samples;
   RayColor color{{0, 0, 0}, 1};
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
+  SampleTally tally;        ///< of what it took
   Projection projection{};  ///< instead, of values that are projected
   KnownValue known;         ///< of rays that find surfaces, the latest
 
@@ -53,6 +61,7 @@ public:
   bool march(CachedRay& ray);
 
   const FrameStatistics& statistics() const { return this->Statistics; }
+  SampleTally tally() const { return {this->Statistics.samples, this->LevelSum}; }
   RequestList& requests() { return this->Requests; }
 
 private:
@@ -64,6 +73,7 @@ private:
     std::int64_t interval; ///< at which the first one begins
     std::int64_t steps;    ///< that each stands for
     SampleStretch stretch;
+    int level; ///< that they came from
   };
 
   /// A part of a ray at whose ends the field is on different sides of surfaces.
@@ -122,6 +132,7 @@ private:
   const CachedScene& Scene;
   OnMiss Missing;
   FrameStatistics Statistics;
+  std::int64_t LevelSum = 0;
   RequestList Requests;
 
   BrickWay Ways[2]; ///< of even and of odd levels, along the present ray

@@ -26,6 +26,22 @@ void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
   if (output.depth != nullptr) {
     *output.depth->pixel(x, y) = static_cast<float>(HalfOpaqueDepth(scene, ray));
   }
+  if (output.samples != nullptr) {
+    const auto count = static_cast<double>(ray.tally.samples);
+    float* tally = output.samples->pixel(x, y);
+    tally[0] = static_cast<float>(count);
+    tally[1] = static_cast<float>(count > 0 ? static_cast<double>(ray.tally.levels) / count : -1.0);
+  }
+}
+
+bool March(CachedMarcher& marcher, CachedRay& ray)
+{
+  const SampleTally before = marcher.tally();
+  const bool done = marcher.march(ray);
+  const SampleTally after = marcher.tally();
+  ray.tally.samples += after.samples - before.samples;
+  ray.tally.levels += after.levels - before.levels;
+  return done;
 }
 
 } // namespace
@@ -44,7 +60,7 @@ FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& 
       RequireGoing(keepGoing);
       for (int x = tile.x; x < tile.x + tile.width; ++x) {
         CachedRay ray = marcher.begin(x, y);
-        marcher.march(ray);
+        March(marcher, ray);
         WritePixel(scene, ray, x, y, output);
       }
     }
@@ -66,7 +82,7 @@ void CompletePass::start(ActiveTile& at, CachedMarcher& marcher, const PassOutpu
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
     for (int x = tile.x; x < tile.x + tile.width; ++x) {
       CachedRay ray = marcher.begin(x, y);
-      if (marcher.march(ray)) {
+      if (March(marcher, ray)) {
         WritePixel(this->Scene, ray, x, y, output);
       } else {
         at.waiting.push_back({x, y, ray});
@@ -81,7 +97,7 @@ void CompletePass::resume(ActiveTile& tile, CachedMarcher& marcher, const PassOu
   const auto done = [&](WaitingRay& waiting) {
     const bool mayMarch = first || !this->Alone;
     first = false;
-    if (!mayMarch || !marcher.march(waiting.ray)) {
+    if (!mayMarch || !March(marcher, waiting.ray)) {
       return false;
     }
     WritePixel(this->Scene, waiting.ray, waiting.x, waiting.y, output);

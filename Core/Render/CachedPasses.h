@@ -12,11 +12,13 @@ namespace inr {
 
 class Arena;
 
-/// Where a pass puts its pixels. `depth` may be null.
+/// Where a pass puts its pixels. `depth` may be null, and so may `samples`: two channels, how many
+/// samples the pixel took and the mean of the levels that they came from, -1 where it took none.
 struct PassOutput
 {
   Image& rgba;
   Image* depth;
+  Image* samples = nullptr;
 };
 
 /// Marches the whole picture once with what is in the cache and notes what was missing. Throws

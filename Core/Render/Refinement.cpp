@@ -22,13 +22,15 @@ Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
             scene.kernel,    scene.format,
             scene.settings,  this->Lighting ? &*this->Lighting : nullptr},
       Pass(this->Scene), Rgba(soFar.rgba),
-      Depth(soFar.depth != nullptr ? *soFar.depth : Image(soFar.rgba.width, soFar.rgba.height, 1))
+      Depth(soFar.depth != nullptr ? *soFar.depth : Image(soFar.rgba.width, soFar.rgba.height, 1)),
+      Samples(soFar.samples != nullptr ? *soFar.samples
+                                       : Image(soFar.rgba.width, soFar.rgba.height, 2))
 {}
 
 void Refinement::advance(const Arena& arena, const std::function<bool()>& keepGoing,
                          RequestRanking& requests)
 {
-  this->Pass.advance(arena, keepGoing, {this->Rgba, &this->Depth}, requests);
+  this->Pass.advance(arena, keepGoing, {this->Rgba, &this->Depth, &this->Samples}, requests);
 }
 
 void Refinement::copyTo(const PassOutput& output) const
@@ -36,6 +38,9 @@ void Refinement::copyTo(const PassOutput& output) const
   output.rgba = this->Rgba;
   if (output.depth != nullptr) {
     *output.depth = this->Depth;
+  }
+  if (output.samples != nullptr) {
+    *output.samples = this->Samples;
   }
 }
 

@@ -41,6 +41,7 @@ private:
   CompletePass Pass;
   Image Rgba;
   Image Depth;
+  Image Samples;
 };
 
 } // namespace inr

@@ -205,7 +205,7 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
 }
 
 FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
-                                 const std::function<bool()>& keepGoing)
+                                 const std::function<bool()>& keepGoing, Image* samples)
 {
   const Timer timer;
   Implementation& self = *this->Self;
@@ -218,7 +218,12 @@ FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
   if (depth != nullptr) {
     *depth = Image(frame.width, frame.height, 1);
   }
-  const PassOutput output{rgba, depth};
+  if (samples != nullptr) {
+    const bool counts = frame.mode == RenderMode::RayMarching && self.Cached;
+    *samples = counts ? Image(frame.width, frame.height, 2) : Image();
+    samples = counts ? samples : nullptr;
+  }
+  const PassOutput output{rgba, depth, samples};
   FrameStatistics statistics = frame.mode == RenderMode::PathTracing
                                    ? self.tracePaths(frame, output, keepGoing)
                                    : self.march(frame, output, keepGoing);

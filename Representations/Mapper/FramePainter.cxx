@@ -121,6 +121,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   this->makeRenderer(input.array->GetModel(), settings.renderer);
   this->Caster->setTransferFunction(this->TransferFunctions.get(property));
   Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
+  this->CountSamples = settings.countSamples;
   frame.timeLimit = this->timeLimit(renderer->GetRenderWindow(), settings.stillTimeLimit);
   if (!this->draw(frame, renderer)) {
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
@@ -251,7 +252,8 @@ bool FramePainter::render(const Frame& scene, const Viewport& viewport, const Su
   PaintedFrame& last = this->Last;
   const bool depthRead = last.depthRead;
   try {
-    last.statistics = this->Caster->render(frame, last.rgba, &last.depth, keepGoing);
+    last.statistics = this->Caster->render(frame, last.rgba, &last.depth, keepGoing,
+                                           this->CountSamples ? &last.samples : nullptr);
   } catch (const Error& error) {
     last = {}; // half a picture must not be written out later
     if (error.code() == ErrorCode::Cancelled) {

@@ -46,6 +46,7 @@ struct PaintSettings
   double sampleDistance = 1; ///< voxels
   bool adaptiveSampling = true;
   double levelOfDetailScale = 1;
+  bool countSamples = false;  ///< into PaintedFrame::samples
   double stillTimeLimit = -1; ///< seconds; below 0: see vtkINRVolumeMapper
   std::uint64_t seed = 0;
   RendererOptions renderer;
@@ -56,6 +57,7 @@ struct PaintedFrame
 {
   Image rgba;
   Image depth;
+  Image samples; ///< empty unless asked for and known
   FrameStatistics statistics;
   std::string backend; ///< "CPU avx512", ...
   double seconds = 0;  ///< from the mapper's call to the blended picture
@@ -111,6 +113,7 @@ private:
   std::unique_ptr<Renderer> Caster;
   ModelPointer CasterModel;
   RendererOptions CasterOptions;
+  bool CountSamples = false;
   TransferFunctionCache TransferFunctions;
   ImageReduction Rays;
   /// Nobody knows what paths cost before some are traced: a thousand samples, or ten.

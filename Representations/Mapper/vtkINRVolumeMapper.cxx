@@ -156,6 +156,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   settings.adaptiveSampling = this->AdaptiveSampling;
   settings.levelOfDetailScale = this->LevelOfDetailScale;
   settings.stillTimeLimit = this->StillTimeLimit;
+  settings.countSamples = this->SampleChannels;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   inr::RendererOptions& renderer = settings.renderer;
   renderer.threads = this->NumberOfThreads;
@@ -224,10 +225,14 @@ bool vtkINRVolumeMapper::WriteEXR(const char* fileName)
     return false;
   }
   try {
-    inr::WriteExr(fileName, frame.rgba, frame.depth);
+    inr::WriteExr(fileName, frame.rgba, frame.depth, frame.samples);
   } catch (const std::exception& problem) {
     vtkErrorMacro(<< problem.what());
     return false;
+  }
+  if (this->SampleChannels && frame.samples.pixels.empty()) {
+    vtkWarningMacro("'" << fileName << "' has no samples and levels: they are known of frames that "
+                        << "were marched through the cache with SampleChannels on.");
   }
   return true;
 }
@@ -262,6 +267,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Seed: " << this->Seed << "\n"
      << indent << "Deterministic: " << this->Deterministic << "\n"
+     << indent << "SampleChannels: " << this->SampleChannels << "\n"
      << indent << "FrameTime: " << this->GetFrameTime() << "\n"
      << indent << "NumberOfSamples: " << this->GetNumberOfSamples() << "\n"
      << indent << "NumberOfClampedSamples: " << this->GetNumberOfClampedSamples() << "\n"

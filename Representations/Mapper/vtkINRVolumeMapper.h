@@ -252,6 +252,16 @@ public:
   enum { RefineEvent = vtkCommand::UserEvent + 73 };
 
   ///@{
+  /**
+   * Whether frames count, for WriteEXR(), how many samples each pixel takes and from which levels
+   * of resolution. Default off.
+   */
+  vtkSetMacro(SampleChannels, bool);
+  vtkGetMacro(SampleChannels, bool);
+  vtkBooleanMacro(SampleChannels, bool);
+  ///@}
+
+  ///@{
   /** Threads that compute a frame; 0, the default, means every core this process may use. */
   vtkSetClampMacro(NumberOfThreads, int, 0, 4096);
   vtkGetMacro(NumberOfThreads, int);
@@ -339,8 +349,10 @@ public:
   /**
    * Writes the last frame as OpenEXR, exact: premultiplied float R, G, B, A and window-space depth
    * Z of the volume alone, where its opacity first reaches one half. With translucent surfaces in
-   * the view it is what lies over a picture of these. False, with an error, when there is no frame
-   * or the file cannot be written.
+   * the view it is what lies over a picture of these. With SampleChannels also "samples", how many
+   * the pixel took, and "level", the mean of the levels that they came from (-1 where it took
+   * none), or a warning where these are not known: of paths, and without a cache. False, with an
+   * error, when there is no frame or the file cannot be written.
    */
   bool WriteEXR(const char* fileName);
 
@@ -384,6 +396,7 @@ private:
   int NumberOfThreads = 0;
   int Seed = 0;
   bool Deterministic = false;
+  bool SampleChannels = false;
 
   struct Internals;
   std::unique_ptr<Internals> Self;

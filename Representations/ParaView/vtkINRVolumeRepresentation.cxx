@@ -231,6 +231,11 @@ void vtkINRVolumeRepresentation::SetDeterministic(bool on)
   this->GetMapper()->SetDeterministic(on);
 }
 
+void vtkINRVolumeRepresentation::SetSampleChannels(bool on)
+{
+  this->GetMapper()->SetSampleChannels(on);
+}
+
 bool vtkINRVolumeRepresentation::GetConverged() { return this->GetMapper()->GetConverged(); }
 
 double vtkINRVolumeRepresentation::GetCacheHitRate()

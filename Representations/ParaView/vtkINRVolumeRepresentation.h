@@ -63,6 +63,7 @@ public:
   void SetNumberOfThreads(int threads);
   void SetSeed(int seed);
   void SetDeterministic(bool on);
+  void SetSampleChannels(bool on);
   bool GetConverged();
   double GetCacheHitRate();
   double GetCacheUsed();

@@ -108,6 +108,18 @@ check(mapper.WriteEXR(output_file("mapper.exr")), "the mapper writes none")
 own = read_exr(output_file("mapper.exr"))
 check(all(np.array_equal(exact[name], own[name]) for name in exact), "not the mapper's floats")
 
+# How the picture came about, when asked for.
+display.SampleChannels = 1
+display.LevelOfDetailScale = 4
+check(save(path).errors() == 0, "counting samples reported something")
+counted = read_exr(path)
+check(sorted(counted) == ["A", "B", "G", "R", "Z", "level", "samples"], sorted(counted))
+hit = counted["samples"] > 0
+check((counted["A"][~hit] == 0).all() and (counted["A"][hit] > 0).mean() > 0.9, "samples")
+check((counted["level"][~hit] == -1).all() and (counted["level"][hit] > 0.5).all(), "level")
+display.SampleChannels = 0
+display.LevelOfDetailScale = 1
+
 # A smaller picture than the view's is drawn in that size.
 check(save(path, ImageResolution=[80, 60]).errors() == 0, "a small picture reported something")
 check(read_exr(path)["A"].shape == (60, 80), "size", read_exr(path)["A"].shape)

@@ -66,6 +66,19 @@ TEST_F(Exr, KeepsEveryBit)
   EXPECT_EQ(read.width, 13);
 }
 
+TEST_F(Exr, KeepsSamplesAndLevels)
+{
+  const inr::Image rgba = RandomImage(13, 7, 4, 1);
+  const inr::Image samples = RandomImage(13, 7, 2, 2);
+  inr::WriteExr(Folder / "a.exr", rgba, {}, samples);
+  inr::Image readDepth;
+  inr::Image readSamples;
+  EXPECT_EQ(inr::ReadExr(Folder / "a.exr", &readDepth, &readSamples).pixels, rgba.pixels);
+  EXPECT_EQ(readSamples.pixels, samples.pixels);
+  EXPECT_TRUE(readDepth.pixels.empty());
+  EXPECT_THROW(inr::WriteExr(Folder / "a.exr", rgba, {}, RandomImage(13, 7, 1, 2)), inr::Error);
+}
+
 TEST_F(Exr, DepthIsOptional)
 {
   inr::WriteExr(Folder / "b.exr", RandomImage(4, 4, 4, 3));

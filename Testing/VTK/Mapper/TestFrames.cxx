@@ -188,6 +188,42 @@ TEST(Frames, SayWhatLevelsTheyShow)
   EXPECT_EQ(one.mapper->GetCoarsestLevel(), -1);
 }
 
+TEST(Frames, CountSamplesAndLevelsOfEachPixel)
+{
+  OneVolume one;
+  one.mapper->SampleChannelsOn();
+  one.mapper->SetBrickSize(8);
+  const std::string file = std::string(INR_TEST_OUTPUT) + "/FramesSamples.exr";
+  inr::Image samples;
+  for (const double scale : {0.0, 1.5}) {
+    for (const bool shade : {false, true}) {
+      one.mapper->SetLevelOfDetailScale(scale);
+      one.volume->GetProperty()->SetShade(shade);
+      one.scene.capture();
+      ASSERT_TRUE(one.mapper->WriteEXR(file.c_str()));
+      const inr::Image rgba = inr::ReadExr(file, nullptr, &samples);
+      ASSERT_EQ(samples.channels, 2);
+      double sum = 0;
+      for (std::size_t k = 0; 2 * k < samples.pixels.size(); ++k) {
+        const float count = samples.pixels[2 * k];
+        const float level = samples.pixels[2 * k + 1];
+        sum += count;
+        EXPECT_TRUE(count > 0 || rgba.pixels[4 * k + 3] == 0);
+        EXPECT_TRUE(count > 0 ? level >= static_cast<float>(one.mapper->GetFinestLevel()) &&
+                                    level <= static_cast<float>(one.mapper->GetCoarsestLevel())
+                              : level == -1);
+      }
+      EXPECT_EQ(sum, static_cast<double>(one.mapper->GetNumberOfSamples()));
+    }
+  }
+  one.mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+  one.mapper->SetSamplesPerPixel(1);
+  one.scene.capture();
+  ASSERT_TRUE(one.mapper->WriteEXR(file.c_str())); // and warns
+  inr::ReadExr(file, nullptr, &samples);
+  EXPECT_TRUE(samples.pixels.empty());
+}
+
 TEST(Frames, CannotBeWrittenBeforeTheFirstOrToNowhere)
 {
   OneVolume one;
