@@ -157,7 +157,7 @@ double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) c
   if (!RefinementTimer::canRefine(window)) {
     return 0;
   }
-  const double limit = stillTimeLimit < 0 ? glance : stillTimeLimit;
+  const double limit = stillTimeLimit >= 0 ? stillTimeLimit : glance; // no number is no wish
   // Nobody waits for what follows the first look; the application's events do.
   constexpr double piece = 0.1;
   return this->Refine.isPending() ? std::min(limit, piece) : limit;

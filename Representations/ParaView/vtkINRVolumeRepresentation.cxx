@@ -8,6 +8,7 @@
 #include "vtkINRStatusActor.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkInformation.h"
+#include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
 #include "vtkPVRenderView.h"
@@ -15,6 +16,9 @@
 #include "vtkPolyDataMapper.h"
 #include "vtkRenderer.h"
 #include "vtkVolumeProperty.h"
+
+#include <algorithm>
+#include <cmath>
 
 vtkStandardNewMacro(vtkINRVolumeRepresentation);
 
@@ -67,8 +71,23 @@ void vtkINRVolumeRepresentation::DeliverOutline(vtkInformation* in, vtkInformati
   out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
 }
 
+namespace {
+
+/// A prop whose place is not a number is left out by the renderer, without a word.
+bool IsPlaced(vtkProp3D* prop)
+{
+  const double* elements = prop->GetMatrix()->GetData();
+  return std::all_of(elements, elements + 16, [](double x) { return std::isfinite(x); });
+}
+
+} // namespace
+
 std::string vtkINRVolumeRepresentation::WhyBlank()
 {
+  if (!IsPlaced(this->Actor)) {
+    return "The volume has no place: its position, scale, orientation or origin is not a finite "
+           "number; set them anew";
+  }
   vtkDataSet* data = this->VolumeMapper->GetDataSetInput();
   if (!data || data->GetNumberOfPoints() == 0) {
     return {}; // another process draws, or the reader has said why there is nothing

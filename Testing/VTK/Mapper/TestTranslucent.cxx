@@ -298,6 +298,38 @@ TEST_P(Translucent, InteractivePicturesHaveThemToo)
   EXPECT_LT(MeanDifference(still, moving), 5.0 / 255);
 }
 
+TEST_P(Translucent, SurviveWindowsAndViewportsOfNoSize)
+{
+  Glasses scene(this->GetParam());
+  test::Messages messages(scene.mapper);
+  scene.addSheet(0.05, Clear);
+  const inr::Image before = scene.capture();
+  scene.renderer->SetViewport(0.5, 0, 0.5, 1);
+  scene.scene.window->Render();
+  scene.renderer->SetViewport(0, 0, 1, 1);
+  scene.scene.window->SetSize(1, 1);
+  scene.scene.window->Render();
+  scene.scene.window->SetSize(test::Scene::Width, test::Scene::Height);
+  EXPECT_LT(LargestDifference(scene.capture(), before), 1e-6);
+  EXPECT_EQ(messages.errors, 0) << messages.last;
+}
+
+TEST_P(Translucent, MayBeAroundTheCamera)
+{
+  Glasses scene(this->GetParam());
+  test::Messages messages(scene.mapper);
+  scene.addSphere(300, Clear);
+  scene.addSphere(5, Clear);
+  vtkCamera* camera = scene.renderer->GetActiveCamera();
+  const auto eye = scene.place(0.1);
+  camera->SetPosition(eye.data());
+  const inr::Image shown = scene.capture();
+  Write(shown, std::string("Around") + this->GetParam().name);
+  EXPECT_TRUE(std::all_of(shown.pixels.begin(), shown.pixels.end(),
+                          [](float x) { return std::isfinite(x); }));
+  EXPECT_EQ(messages.errors, 0) << messages.last;
+}
+
 INSTANTIATE_TEST_SUITE_P(Mapper, Translucent,
                          testing::Values(Peeling{"Blended", false, false},
                                          Peeling{"Peeled", true, false},
