@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace inr {
@@ -40,6 +41,15 @@ struct GridDescription
   int log2HashmapSize = 19;   ///< 0 to 30
   int baseResolution = 16;    ///< lattice points per axis on level 0: 1 to 2^20
   float perLevelScale = 2.0f; ///< resolution ratio of neighbouring levels, at least 1
+
+  bool operator==(const GridDescription& other) const
+  {
+    const auto all = [](const GridDescription& grid) {
+      return std::tie(grid.type, grid.interpolation, grid.hash, grid.rule, grid.levels,
+                      grid.features, grid.log2HashmapSize, grid.baseResolution, grid.perLevelScale);
+    };
+    return all(*this) == all(other);
+  }
 };
 
 /// The multi-layer perceptron: no biases, one output.
@@ -50,6 +60,15 @@ struct NetworkDescription
   Activation activation = Activation::ReLU;
   Activation outputActivation = Activation::None;
   int alignment = 16; ///< input and output widths are padded to it: 8 or 16
+
+  bool operator==(const NetworkDescription& other) const
+  {
+    const auto all = [](const NetworkDescription& network) {
+      return std::tie(network.neurons, network.hiddenLayers, network.activation,
+                      network.outputActivation, network.alignment);
+    };
+    return all(*this) == all(other);
+  }
 };
 
 /// What an INR is, without its parameters.
@@ -57,6 +76,11 @@ struct Description
 {
   GridDescription grid;
   NetworkDescription network;
+
+  bool operator==(const Description& other) const
+  {
+    return this->grid == other.grid && this->network == other.network;
+  }
 };
 
 /// One level of the grid in the parameter vector.

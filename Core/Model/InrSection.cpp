@@ -135,6 +135,9 @@ VolumeInfo ParseVolume(const JsonSection& section)
   const JsonSection range = section.section("data_range");
   volume.low = range.number("low");
   volume.high = range.number("high");
+  if (section.has("time")) {
+    volume.time = section.number("time");
+  }
   RequireValidVolume(volume, ErrorCode::InvalidModel);
   return volume;
 }
@@ -155,6 +158,9 @@ TrainingRecord ParseTraining(const JsonSection& section)
   record.seconds = section.number("seconds");
   record.kernel = section.text("kernel");
   record.nonFinite = static_cast<std::uint64_t>(section.integer("non_finite"));
+  if (section.has("earlier_steps")) {
+    record.earlierSteps = static_cast<std::uint64_t>(section.integer("earlier_steps"));
+  }
   return record;
 }
 
@@ -229,6 +235,9 @@ json InrSectionToJson(const Model& model, std::uint32_t checksum)
                   {"macrocell_apron",
                    std::llround(model.macroCells.apron.x * static_cast<double>(volume.dims.x))},
                   {"checksum", ChecksumToText(checksum)}};
+  if (volume.time) {
+    section["time"] = *volume.time;
+  }
   if (model.quality) {
     section["quality"] = {{"psnr", RealToJson(model.quality->psnr)},
                           {"ssim", RealToJson(model.quality->ssim)},
@@ -241,6 +250,9 @@ json InrSectionToJson(const Model& model, std::uint32_t checksum)
                            {"seconds", model.training->seconds},
                            {"kernel", model.training->kernel},
                            {"non_finite", AsSigned(model.training->nonFinite)}};
+    if (model.training->earlierSteps) {
+      section["training"]["earlier_steps"] = AsSigned(*model.training->earlierSteps);
+    }
   }
   return section;
 }
@@ -271,6 +283,9 @@ void RequireValidVolume(const VolumeInfo& volume, ErrorCode code)
   }
   if (!(volume.low <= volume.high) || !std::isfinite(volume.high - volume.low)) {
     throw Error(code, "the value range must be finite, its low end not above its high end");
+  }
+  if (volume.time && !std::isfinite(*volume.time)) {
+    throw Error(code, "the time must be finite");
   }
   if (volume.arrayName.size() > MaximumNameLength) {
     throw Error(code,

@@ -36,7 +36,7 @@ glm::i64vec3 ParseDims(const JsonSection& section);
 
 /// Throws Error(`code`) unless dims are 1 to 2^31 - 1 with a product of at most 2^53, spacing is
 /// finite and not zero, origin and direction are finite, the direction can be inverted, and low <=
-/// high are finite with a finite difference. A name may have up to 1024 bytes.
+/// high are finite with a finite difference, as is a time. A name may have up to 1024 bytes.
 void RequireValidVolume(const VolumeInfo& volume, ErrorCode code);
 
 } // namespace inr

@@ -43,8 +43,9 @@ struct VolumeInfo
   glm::dmat3 direction{1.0};
   std::string arrayName = "Scalars";
   ScalarType type = ScalarType::Float32;
-  double low = 0.0;  ///< value at the network's normalised output 0
-  double high = 1.0; ///< and at 1
+  double low = 0.0;           ///< value at the network's normalised output 0
+  double high = 1.0;          ///< and at 1
+  std::optional<double> time; ///< of a step of a series, in whatever unit its source had
 };
 
 /// The network's output as everything sees it: clamped to [0, 1]; NaN becomes 0.
@@ -76,6 +77,9 @@ struct TrainingRecord
   double seconds = 0;          ///< wall time, training only
   std::string kernel;          ///< kernel family ("avx512", ...): same family, same parameters
   std::uint64_t nonFinite = 0; ///< NaN and infinite voxels left out
+  /// Where it started from another model's parameters: steps that had gone into those, 0 = not
+  /// known.
+  std::optional<std::uint64_t> earlierSteps;
 };
 
 enum class ParameterType {

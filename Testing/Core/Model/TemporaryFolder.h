@@ -51,6 +51,7 @@ inline std::shared_ptr<inr::Model> FullModel()
   model->volume.type = inr::ScalarType::UInt16;
   model->volume.low = -1.25e-3;
   model->volume.high = 6.02e23;
+  model->volume.time = -0.1;
   model->macroCells = inr::MakeMacroCells({40, 30, 20}, 16);
   model->macroCells.provenance = inr::MacroCellProvenance::Decoded;
   model->macroCells.apron = 5.0 / glm::dvec3(model->volume.dims);
@@ -59,7 +60,7 @@ inline std::shared_ptr<inr::Model> FullModel()
     model->macroCells.ranges[k] = {low, low + 0.1f * inr::RandomUnit(4, k)};
   }
   model->quality = inr::Quality{41.25, 0.987, 3.5};
-  model->training = inr::TrainingRecord{12345, 20000, ~std::uint64_t{0}, 67.5, "avx2", 3};
+  model->training = inr::TrainingRecord{12345, 20000, ~std::uint64_t{0}, 67.5, "avx2", 3, 777};
   return model;
 }
 

@@ -25,6 +25,7 @@ TEST_F(ModelFile, KeepsEveryField)
   EXPECT_EQ(read->storedAs, written->storedAs);
   EXPECT_EQ(read->volume.dims, written->volume.dims);
   EXPECT_EQ(read->volume.spacing, written->volume.spacing);
+  EXPECT_EQ(read->volume.time, written->volume.time);
   EXPECT_EQ(read->volume.origin, written->volume.origin);
   EXPECT_EQ(read->volume.direction, written->volume.direction);
   EXPECT_EQ(read->volume.arrayName, written->volume.arrayName);
@@ -38,9 +39,24 @@ TEST_F(ModelFile, KeepsEveryField)
   EXPECT_EQ(read->training->seed, written->training->seed);
   EXPECT_EQ(read->training->kernel, written->training->kernel);
   EXPECT_EQ(read->training->nonFinite, written->training->nonFinite);
+  EXPECT_EQ(read->training->earlierSteps, written->training->earlierSteps);
   EXPECT_EQ(read->macroCells.dims, written->macroCells.dims);
   EXPECT_EQ(read->macroCells.provenance, written->macroCells.provenance);
   EXPECT_EQ(read->macroCells.apron, written->macroCells.apron);
+}
+
+TEST_F(ModelFile, TellsNoTimeAndNoEarlierStepsUnlessThereAreSome)
+{
+  auto model = FullModel();
+  model->volume.time.reset();
+  model->training->earlierSteps.reset();
+  const inr::ModelPointer read = this->roundTrip(*model);
+  EXPECT_FALSE(read->volume.time.has_value());
+  EXPECT_FALSE(read->training->earlierSteps.has_value());
+  const std::string bytes = ReadBytes(Folder.file("model.inr"));
+  EXPECT_EQ(bytes.find("earlier_steps"), std::string::npos);
+  model->volume.time = HUGE_VAL;
+  EXPECT_THROW(inr::WriteModel(*model, Folder.file("model.inr")), inr::Error);
 }
 
 TEST_F(ModelFile, AnApronThatIsNotSaidIsAVoxel)
