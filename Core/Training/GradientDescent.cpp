@@ -123,6 +123,11 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
   PreferHugePages(this->Updates.data(), this->Updates.size() * sizeof(std::uint16_t));
 }
 
+void GradientDescent::startFrom(const std::vector<float>& parameters)
+{
+  std::copy(parameters.begin(), parameters.end(), this->Parameters.begin());
+}
+
 std::optional<double> GradientDescent::step(const SampleSource& source, const StopCheck& check)
 {
   this->drawBatch(source);

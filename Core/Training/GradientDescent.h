@@ -47,6 +47,10 @@ public:
   GradientDescent(const GradientDescent&) = delete;
   GradientDescent& operator=(const GradientDescent&) = delete;
 
+  /// Before the first step: takes these parameters instead of random ones. The learning rate is the
+  /// same; a lower one would follow a field that goes on moving less well.
+  void startFrom(const std::vector<float>& parameters);
+
   /// Spreads the learning rate over so many steps (default: no end in sight, a constant rate).
   void plan(std::uint64_t steps) { this->PlannedSteps = steps; }
 

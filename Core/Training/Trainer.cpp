@@ -40,6 +40,16 @@ void CheckArguments(const VolumeData& volume, const TrainingOptions& options)
   }
 }
 
+/// Goes on from the start's parameters where these fit, which is then on record.
+void StartFrom(const ModelPointer& start, Model& model, GradientDescent& descent)
+{
+  if (start && start->description == model.description) {
+    descent.startFrom(start->parameters);
+    const TrainingRecord before = start->training.value_or(TrainingRecord());
+    model.training->earlierSteps = before.steps + before.earlierSteps.value_or(0);
+  }
+}
+
 /// Makes the parameters what the file gives back; keeps them as floats where a half cannot hold
 /// one.
 void RoundAsStored(Model& model)
@@ -131,7 +141,8 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
                                   options.seed,
                                   0.0,
                                   InstructionSetName(set),
-                                  static_cast<std::uint64_t>(statistics.nonFinite)};
+                                  static_cast<std::uint64_t>(statistics.nonFinite),
+                                  std::nullopt};
   model.macroCells = MakeMacroCells(volume.dims, macroCellSize);
   RequireStorable(model);
   if (!(statistics.low < statistics.high)) {
@@ -140,6 +151,7 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
 
   const InMemorySource source(volume, statistics.low, statistics.high);
   GradientDescent descent(model.description, options.seed, set, arena);
+  StartFrom(options.start, model, descent);
   TrainingLoop loop(options, observer);
   loop.run(descent, source, EvaluateKernelFor(set));
   model.training->steps = descent.steps();

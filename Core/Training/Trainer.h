@@ -27,6 +27,9 @@ struct TrainingOptions
   std::uint64_t seed = 1;
   int macroCellSize = 0;                  ///< voxels, a power of two; 0 = DefaultMacroCellSize
   std::optional<Description> description; ///< empty = ChooseDescription
+  /// A model of a similar volume, whose parameters are where the training starts if they mean the
+  /// same, that is, if it has the same description; null = random ones.
+  ModelPointer start;
   /// Quantised costs 0.1 dB at most, but more where targetRatio takes it. Half instead where steps
   /// cannot be that fine, and Float where a half cannot hold a parameter.
   ParameterType storedAs = ParameterType::Quantised;
@@ -61,7 +64,8 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 /// Mini-batches of BatchSize StratifiedPositions, trilinear targets, L2 loss, Adam. In a cell with
 /// a NaN or infinite voxel the target is the nearest voxel's value, and where that one is not
 /// finite the position carries no gradient; such voxels are counted and left out of range and
-/// quality. A constant volume takes no step and is exact. The result's quality and macro-cells are
+/// quality. A constant volume takes no step and is exact. A start shows in the record's
+/// earlierSteps, where it is of use. The result's quality and macro-cells are
 /// those of the parameters as they are stored. For a given seed, number of steps, plan and kernel
 /// family the result is the same whatever the number of threads. Throws Error(InvalidArgument) for
 /// a volume without finite voxels or when no limit is set; before it trains what RequireStorable
