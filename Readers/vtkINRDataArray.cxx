@@ -33,9 +33,14 @@ vtkINRDataArray* vtkINRDataArray::SafeDownCast(vtkAbstractArray* array)
   return dynamic_cast<vtkINRDataArray*>(array);
 }
 
-vtkSmartPointer<vtkDataArray>
-vtkINRDataArray::Create(inr::ModelPointer model, const int presentedDims[3], const int extent[6])
+vtkSmartPointer<vtkDataArray> vtkINRDataArray::Create(inr::ModelPointer model,
+                                                      const int presentedDims[3],
+                                                      const int extent[6],
+                                                      std::shared_ptr<Keepsake> keepsake)
 {
+  if (!keepsake) {
+    keepsake = std::make_shared<Keepsake>();
+  }
   const GridPart part = PartOf(presentedDims, extent);
   const auto decoder = std::make_shared<const GridDecoder>(
       std::move(model), glm::ivec3(presentedDims[0], presentedDims[1], presentedDims[2]));
@@ -43,7 +48,7 @@ vtkINRDataArray::Create(inr::ModelPointer model, const int presentedDims[3], con
 
   auto array = DispatchScalar(volume.type, [&](auto zero) {
     auto typed = vtkSmartPointer<vtkINRTypedArray<decltype(zero)>>::New();
-    typed->Initialize(decoder, part);
+    typed->Initialize(decoder, part, keepsake);
     return vtkSmartPointer<vtkDataArray>(typed);
   });
   array->SetName(volume.arrayName.c_str());

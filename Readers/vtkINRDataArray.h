@@ -15,22 +15,37 @@
 
 #include <vtkSmartPointer.h> // for return value
 
+#include <memory> // for Keepsake
+
 class vtkAbstractArray;
 class vtkDataArray;
 
 class VTKINRREADERS_EXPORT vtkINRDataArray
 {
 public:
+  /// A place for what whoever draws the model wants to find again when it is drawn the next time.
+  /// It lives as long as the model may be shown again, whatever becomes of the arrays: a reader
+  /// that shows another time step makes new arrays of the earlier ones' models later.
+  struct Keepsake
+  {
+    std::shared_ptr<const void> Content;
+  };
+
   /// The interface of `array`, or null if it is an ordinary array or null.
   static vtkINRDataArray* SafeDownCast(vtkAbstractArray* array);
 
   /// An array over the points `extent` (inclusive limits) of a grid that spans the point bounds of
-  /// the model's native grid with `presentedDims` points. Nothing is evaluated here. Throws
-  /// inr::Error when the model contradicts itself or the extent lies outside the grid.
+  /// the model's native grid with `presentedDims` points. Nothing is evaluated here. Without a
+  /// `keepsake` it has one of its own. Throws inr::Error when the model contradicts itself or the
+  /// extent lies outside the grid.
   static vtkSmartPointer<vtkDataArray> Create(inr::ModelPointer model, const int presentedDims[3],
-                                              const int extent[6]);
+                                              const int extent[6],
+                                              std::shared_ptr<Keepsake> keepsake = nullptr);
 
   virtual const inr::ModelPointer& GetModel() const = 0;
+
+  /// Never null.
+  virtual const std::shared_ptr<Keepsake>& GetKeepsake() const = 0;
 
   /// Points per axis of the whole presented grid, whatever part of it this array holds.
   virtual void GetPresentedDimensions(int dims[3]) const = 0;

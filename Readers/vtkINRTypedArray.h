@@ -38,13 +38,16 @@ public:
   /// GetVoidPointer hands out a decoded copy of at most this many values.
   static constexpr vtkIdType MaximumCopiedValues = LargestPresentedGrid;
 
-  void Initialize(std::shared_ptr<const GridDecoder> decoder, const GridPart& part)
+  void Initialize(std::shared_ptr<const GridDecoder> decoder, const GridPart& part,
+                  std::shared_ptr<Keepsake> keepsake)
   {
     this->Values = std::make_shared<Shared>(std::move(decoder), part);
+    this->Values->Kept = std::move(keepsake);
     this->Adopt();
   }
 
   const inr::ModelPointer& GetModel() const override { return this->Decoder().GetModel(); }
+  const std::shared_ptr<Keepsake>& GetKeepsake() const override { return this->Values->Kept; }
   void GetPresentedDimensions(int dims[3]) const override
   {
     for (int axis = 0; axis < 3; ++axis) {
@@ -147,6 +150,7 @@ private:
     }
 
     BrickCache<T> Cache;
+    std::shared_ptr<Keepsake> Kept;
     std::mutex CopyMutex;
     std::vector<T> CopyStore;
     std::atomic<const T*> Copy{nullptr};

@@ -32,6 +32,7 @@ public:
   BrickStore& operator=(const BrickStore&) = delete;
 
   const CacheBudget& budget() const { return *this->Budget; }
+  const std::shared_ptr<CacheBudget>& sharedBudget() const { return this->Budget; }
   const BrickCache& cache() const { return this->Cache; }
   std::int64_t mapped() const; ///< bricks
   /// Bricks that it may come to hold while the other stores that are in use keep what they have.

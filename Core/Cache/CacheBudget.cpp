@@ -2,6 +2,7 @@
 #include "Core/Cache/CacheBudget.h"
 
 #include "Core/Cache/BrickStore.h"
+#include "Core/Cache/KeptBricks.h"
 
 #include <algorithm>
 #include <numeric>
@@ -68,7 +69,27 @@ CacheBudget::storeFor(const StoreKey& key, const std::function<std::shared_ptr<B
   }
   std::shared_ptr<BrickStore> store = make();
   this->Shared.emplace_back(key, store);
+  this->dropKept();
   return store;
+}
+
+/// Kept bricks go for good, the earliest first, where those that nobody uses would take much of the
+/// memory even if they gave all that they can.
+void CacheBudget::dropKept()
+{
+  constexpr std::int64_t share = 4;
+  const auto idle = [](const KeptBricks* kept) { return kept->Store.use_count() == 1; };
+  const auto tooMuch = [&] {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    std::int64_t least = 0;
+    for (const KeptBricks* kept : this->Kept) {
+      least += idle(kept) ? kept->Store->least() : 0;
+    }
+    return least > this->largest() / share;
+  };
+  while (tooMuch()) {
+    (*std::find_if(this->Kept.begin(), this->Kept.end(), idle))->Store.reset();
+  }
 }
 
 std::int64_t CacheBudget::total() const
@@ -85,15 +106,22 @@ std::int64_t CacheBudget::bytes() const
       [](std::int64_t sum, const BrickStore* store) { return sum + store->bytes(); });
 }
 
-std::int64_t CacheBudget::limit() const
+std::int64_t CacheBudget::largest() const
 {
   std::int64_t largest = 0;
-  std::int64_t least = 0;
   for (const BrickStore* store : this->Stores) {
     largest = std::max(largest, store->Limit);
+  }
+  return largest;
+}
+
+std::int64_t CacheBudget::limit() const
+{
+  std::int64_t least = 0;
+  for (const BrickStore* store : this->Stores) {
     least += store->least();
   }
-  return std::max(largest, least);
+  return std::max(this->largest(), least);
 }
 
 bool CacheBudget::fits(std::int64_t bytes) const

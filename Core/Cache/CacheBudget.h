@@ -17,6 +17,7 @@
 namespace inr {
 
 class BrickStore;
+class KeptBricks;
 
 /// What a store's bricks depend on, and how much memory it may take: stores of the same are one.
 struct StoreKey
@@ -61,8 +62,12 @@ public:
 
 private:
   friend class BrickStore;
+  friend class KeptBricks;
+
+  void dropKept(); ///< for who is making
 
   // All that follows is for who holds the mutex.
+  std::int64_t largest() const; ///< limit of a store
   std::int64_t limit() const;
   /// What a store can have when all others give what they can.
   std::int64_t roomFor(const BrickStore& asking) const;
@@ -77,8 +82,9 @@ private:
   std::uint64_t Clock = 1; ///< frames begun by all stores
   std::vector<BrickStore*> Stores;
 
-  std::mutex Making; ///< guards the next; taken before the other
+  std::mutex Making; ///< guards the next two; taken before the other
   std::vector<std::pair<StoreKey, std::weak_ptr<BrickStore>>> Shared;
+  std::vector<KeptBricks*> Kept; ///< the earliest first
 };
 
 } // namespace inr

@@ -74,6 +74,7 @@ public:
   void forgetColors();
 
   const BrickStore& store() const { return *this->Store; }
+  const std::shared_ptr<BrickStore>& sharedStore() const { return this->Store; }
 
 private:
   void beginFrame();

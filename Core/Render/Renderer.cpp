@@ -107,6 +107,12 @@ std::int64_t Renderer::cachedBricks() const
   return this->Self->Cached ? this->Self->Cached->store().mapped() : 0;
 }
 
+std::shared_ptr<const KeptBricks> Renderer::keepBricks() const
+{
+  const std::optional<CachedRenderer>& cached = this->Self->Cached;
+  return cached ? std::make_shared<const KeptBricks>(cached->sharedStore()) : nullptr;
+}
+
 std::string Renderer::kernel() const { return this->Self->Field->kernel(); }
 
 void Renderer::setTransferFunction(const TransferFunction& transferFunction)

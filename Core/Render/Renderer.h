@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/KeptBricks.h"
 #include "Core/Image/Image.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Model/Model.h"
@@ -37,7 +38,7 @@ struct RendererOptions
 ///
 /// Renderers of the same field (one model or one Evaluator) share their bricks if these are of the
 /// same size and precision and in a cache as large; how many are asked for at once, and in which
-/// order, may differ. They are kept as long as one such renderer exists.
+/// order, may differ. They are kept as long as one such renderer or KeptBricks of one exist.
 /// All renderers of the process share the memory of their caches: see CacheBudget.
 ///
 /// A complete frame is a pure function of model, transfer function and Frame: threads, tiles, the
@@ -72,6 +73,9 @@ public:
   std::int64_t cacheBytes() const;
   /// Bricks in the cache of this renderer and those that it shares them with, 0 as above.
   std::int64_t cachedBricks() const;
+
+  /// Keeps the bricks beyond the life of the renderer; null where there is no cache.
+  std::shared_ptr<const KeptBricks> keepBricks() const;
 
   /// The instruction set that infers: Evaluator::kernel().
   std::string kernel() const;

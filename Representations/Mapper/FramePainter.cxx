@@ -118,7 +118,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   if (!problem.empty()) {
     return problem;
   }
-  this->makeRenderer(input.array->GetModel(), settings.renderer);
+  this->makeRenderer(*input.array, settings.renderer);
   this->Caster->setTransferFunction(this->TransferFunctions.get(property));
   Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
   this->CountSamples = settings.countSamples;
@@ -132,8 +132,9 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   return problem;
 }
 
-void FramePainter::makeRenderer(const ModelPointer& model, const RendererOptions& options)
+void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOptions& options)
 {
+  const ModelPointer& model = array.GetModel();
   if (this->Caster && this->CasterModel == model && this->CasterOptions == options) {
     return;
   }
@@ -145,6 +146,7 @@ void FramePainter::makeRenderer(const ModelPointer& model, const RendererOptions
   }
   this->CasterModel = model;
   this->CasterOptions = options;
+  array.GetKeepsake()->Content = this->Caster->keepBricks();
 }
 
 double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) const

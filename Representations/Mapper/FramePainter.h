@@ -87,7 +87,7 @@ public:
   }
 
 private:
-  void makeRenderer(const ModelPointer& model, const RendererOptions& options);
+  void makeRenderer(const vtkINRDataArray& array, const RendererOptions& options);
   using Clock = std::chrono::steady_clock;
 
   bool draw(const Frame& frame, vtkRenderer* renderer);

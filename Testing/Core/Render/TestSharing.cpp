@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <thread>
 
 namespace {
@@ -303,6 +304,88 @@ TEST(Sharing, RenderersOnSeveralThreadsHaveTheirPictures)
   first.join();
   second.join();
   EXPECT_LE(most, HalfOfAView);
+}
+
+/// Plays the steps of a series: each in a renderer of its own, of which the bricks are kept.
+class Player
+{
+public:
+  explicit Player(const inr::CacheOptions& cache, std::size_t steps) : Cache(cache), Kept(steps)
+  {
+    for (std::size_t k = 0; k < steps; ++k) {
+      this->Fields.emplace_back(1 + 0.25f * static_cast<float>(k));
+    }
+  }
+
+  std::vector<float> show(std::size_t step)
+  {
+    inr::Renderer next = this->Fields[step].renderer(this->Cache);
+    this->Kept[step] = next.keepBricks();
+    this->Shown.emplace(std::move(next));
+    return Render(*this->Shown, View(false)).pixels;
+  }
+  void forget(std::size_t step) { this->Kept[step] = nullptr; }
+  std::vector<float> alone(std::size_t step) const
+  {
+    return Alone(this->Fields[step], View(false));
+  }
+  std::int64_t asked() const
+  {
+    std::int64_t sum = 0;
+    for (const Field& field : this->Fields) {
+      sum += field.asked();
+    }
+    return sum;
+  }
+  const inr::Renderer& shown() const { return *this->Shown; }
+
+private:
+  inr::CacheOptions Cache;
+  std::vector<Field> Fields;
+  std::optional<inr::Renderer> Shown;
+  std::vector<std::shared_ptr<const inr::KeptBricks>> Kept;
+};
+
+TEST(Sharing, KeptBricksOfEarlierStepsAreNotInferredAgain)
+{
+  Player player(Cache(Enough), 3);
+  std::vector<std::vector<float>> first;
+  for (std::size_t k = 0; k < 3; ++k) {
+    first.push_back(player.show(k));
+  }
+  EXPECT_NE(first[0], first[1]);
+  const std::int64_t asked = player.asked();
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(player.show(k), first[k]) << k;
+  }
+  EXPECT_EQ(player.asked(), asked);
+}
+
+TEST(Sharing, KeptBricksGoWithWhoKeepsThem)
+{
+  Player player(Cache(Enough), 2);
+  player.show(0);
+  const std::int64_t alone = player.shown().cacheBytes();
+  player.show(1);
+  const std::int64_t both = player.shown().cacheBytes();
+  EXPECT_GT(both, alone + alone / 2);
+  player.forget(0);
+  EXPECT_LT(player.shown().cacheBytes(), both - alone / 2);
+  const std::int64_t asked = player.asked();
+  player.show(0);
+  EXPECT_GT(player.asked(), asked);
+}
+
+TEST(Sharing, KeptBricksMakeRoomWhereTheBudgetIsSmall)
+{
+  Player player(Cache(HalfOfAView), 9); // whose least needs are more than all of it
+  for (std::size_t k = 0; k < 18; ++k) {
+    const std::vector<float> truth = player.alone(k % 9);
+    const std::int64_t asked = player.asked();
+    EXPECT_EQ(player.show(k % 9), truth) << k;
+    EXPECT_GT(player.asked(), asked) << k;
+    EXPECT_LE(player.shown().cacheBytes(), HalfOfAView) << k;
+  }
 }
 
 } // namespace
