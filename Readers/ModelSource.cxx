@@ -37,6 +37,7 @@ void ModelSource::Scale(double factor)
   if (factor != this->Factor) {
     this->Factor = factor;
     this->Scaled = nullptr;
+    this->Kept = nullptr;
   }
 }
 
@@ -62,4 +63,30 @@ const inr::ModelPointer& ModelSource::Model()
     this->Scaled = inr::ScaledModel(this->Loaded, this->Factor);
   }
   return this->Scaled;
+}
+
+const std::shared_ptr<vtkINRDataArray::Keepsake>& ModelSource::Keepsake()
+{
+  if (!this->Kept) {
+    this->Kept = std::make_shared<vtkINRDataArray::Keepsake>();
+  }
+  return this->Kept;
+}
+
+std::int64_t ModelSource::MemorySize() const
+{
+  const auto bytes = [](const inr::ModelPointer& model) {
+    return model ? model->parameters.size() * sizeof(float) +
+                       model->macroCells.ranges.size() * sizeof(inr::ValueRange)
+                 : 0;
+  };
+  const bool scaledIsOther = this->Scaled != this->Loaded;
+  return static_cast<std::int64_t>(bytes(this->Loaded) + (scaledIsOther ? bytes(this->Scaled) : 0));
+}
+
+void ModelSource::Unload()
+{
+  this->Loaded = nullptr;
+  this->Scaled = nullptr;
+  this->Kept = nullptr;
 }

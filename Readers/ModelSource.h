@@ -3,6 +3,7 @@
 
 #include "Core/Model/Model.h"
 #include "Core/Model/ModelFile.h"
+#include "vtkINRDataArray.h"
 
 #include <cstdint>
 #include <optional>
@@ -28,7 +29,16 @@ public:
   /// The whole model, scaled. Throws inr::Error.
   const inr::ModelPointer& Model();
 
+  /// Goes with Model(): another one for another model.
+  const std::shared_ptr<vtkINRDataArray::Keepsake>& Keepsake();
+
+  const std::string& GetPath() const { return this->Path; }
   std::int64_t FileSize() const { return this->File.size; }
+
+  /// Bytes of the models in memory.
+  std::int64_t MemorySize() const;
+  /// Forgets the models, and what was kept with them, but not the header.
+  void Unload();
 
 private:
   /// Tells versions of a file apart. A file that is replaced within one tick of the clock has
@@ -55,4 +65,5 @@ private:
   inr::ModelPointer Loaded;
   double Factor = 1;
   inr::ModelPointer Scaled;
+  std::shared_ptr<vtkINRDataArray::Keepsake> Kept; ///< with Scaled
 };

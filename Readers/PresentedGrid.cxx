@@ -54,14 +54,27 @@ PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoi
   const double limit = std::min(wanted, static_cast<double>(LargestPresentedGrid));
   const glm::i64vec3 dims = FinestDims(volume.dims, limit);
 
-  PresentedGrid grid;
+  PresentedGrid grid = PresentGridOf(volume, glm::ivec3(dims));
   grid.limited = std::min(wanted, native) > limit;
-  grid.dims = glm::ivec3(dims);
+  return grid;
+}
+
+PresentedGrid PresentGridOf(const inr::VolumeInfo& volume, const glm::ivec3& dims)
+{
+  PresentedGrid grid;
+  grid.dims = dims;
   grid.spacing = volume.spacing;
   for (int axis = 0; axis < 3; ++axis) {
-    if (dims[axis] != volume.dims[axis]) {
-      grid.spacing[axis] *=
-          static_cast<double>(volume.dims[axis] - 1) / static_cast<double>(dims[axis] - 1);
+    const std::int64_t native = volume.dims[axis];
+    if ((native == 1) != (dims[axis] == 1)) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument,
+                       "the volume has " + std::to_string(native) +
+                           " voxels along an axis, and the other steps of the series have " +
+                           std::to_string(dims[axis]) +
+                           "; flat and thick volumes cannot be steps of one series");
+    }
+    if (dims[axis] != native) {
+      grid.spacing[axis] *= static_cast<double>(native - 1) / static_cast<double>(dims[axis] - 1);
     }
   }
   return grid;

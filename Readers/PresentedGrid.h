@@ -30,3 +30,7 @@ PresentedGrid PresentGrid(const inr::VolumeInfo& volume, std::int64_t maximumPoi
 /// Points per axis when as many are left out evenly as it takes to have at most `maximumPoints`,
 /// but at least two on every axis that has two.
 glm::i64vec3 FinestDims(const glm::i64vec3& native, double maximumPoints);
+
+/// The grid of so many points, more or fewer than the native one's. Throws
+/// inr::Error(InvalidArgument) where one of the two is flat along an axis and the other is not.
+PresentedGrid PresentGridOf(const inr::VolumeInfo& volume, const glm::ivec3& dims);

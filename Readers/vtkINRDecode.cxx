@@ -15,6 +15,7 @@
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkMatrix3x3.h>
+#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -67,6 +68,15 @@ void CheckMemory(const int extent[6], int type)
     bytes *= extent[2 * axis + 1] - extent[2 * axis] + 1;
   }
   RequireMemory(bytes, "the voxels", "choose a higher Level or a smaller VolumeOfInterest");
+}
+
+void RequireSameGrid(const int known[6], const int found[6])
+{
+  if (!std::equal(known, known + 6, found)) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument,
+                     "this time step has more or fewer voxels than the one that was there first; "
+                     "open its file alone");
+  }
 }
 
 } // namespace
@@ -137,10 +147,13 @@ int vtkINRDecode::RequestData(vtkInformation*, vtkInformationVector**,
     if (extent[1] < extent[0] || extent[3] < extent[2] || extent[5] < extent[4]) {
       return 1; // RequestInformation has said why, or there are more processes than voxels
     }
+    vtkNew<vtkInformation> step; // the pipeline knows the grid of one time step only
+    this->DescribeOutput(step);
+    RequireSameGrid(outInfo->Get(Pipeline::WHOLE_EXTENT()), step->Get(Pipeline::WHOLE_EXTENT()));
     output->SetExtent(extent);
-    output->SetSpacing(outInfo->Get(vtkDataObject::SPACING()));
-    output->SetOrigin(outInfo->Get(vtkDataObject::ORIGIN()));
-    output->SetDirectionMatrix(outInfo->Get(vtkDataObject::DIRECTION()));
+    output->SetSpacing(step->Get(vtkDataObject::SPACING()));
+    output->SetOrigin(step->Get(vtkDataObject::ORIGIN()));
+    output->SetDirectionMatrix(step->Get(vtkDataObject::DIRECTION()));
     this->Decode(*grid, output, signals);
   } catch (const std::exception& error) { // inr::Error, or no memory
     output->Initialize();

@@ -2,8 +2,9 @@
 #include "vtkINRReader.h"
 
 #include "Core/Error.h"
-#include "ModelSource.h"
+#include "Core/Render/CachedRenderer.h"
 #include "PresentedGrid.h"
+#include "RecentModels.h"
 #include "Scalars.h"
 #include "vtkINRDataArray.h"
 
@@ -36,9 +37,12 @@ vtkStandardNewMacro(vtkINRReader);
 class vtkINRReader::Internals
 {
 public:
-  ModelSource Source;
+  RecentModels Models{inr::DefaultCacheBytes() / 4};
+  ModelSource* Source = nullptr; ///< of the models, after ReadInformation
   PresentedGrid Grid;
-  bool Failed = false; ///< the header was not to be had, and the user has been told
+  bool Failed = false; ///< the file is of no use, and the user has been told
+  std::string Told;    ///< the latest message, and the reader's MTime then
+  vtkMTimeType ToldAt = 0;
 };
 
 namespace {
@@ -73,6 +77,19 @@ void RequestedExtent(vtkInformation* outInfo, int extent[6])
 bool IsEmpty(const int extent[6])
 {
   return extent[1] < extent[0] || extent[3] < extent[2] || extent[5] < extent[4];
+}
+
+/// What the user knows better than the file.
+inr::ModelOverrides OverridesOf(const int dims[3], const double range[2])
+{
+  inr::ModelOverrides overrides;
+  if (dims[0] != 0 || dims[1] != 0 || dims[2] != 0) {
+    overrides.dims = glm::i64vec3(dims[0], dims[1], dims[2]);
+  }
+  if (range[0] != range[1]) {
+    overrides.dataRange = glm::dvec2(range[0], range[1]);
+  }
+  return overrides;
 }
 
 /// Row by row, as VTK keeps it; glm's matrices are columns.
@@ -145,13 +162,12 @@ int vtkINRReader::RequestInformation(vtkInformation*, vtkInformationVector**,
 {
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
   outInfo->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
-  this->Internal->Failed = true;
+  this->Internal->Failed = false;
   try {
     this->ReadInformation(outInfo);
-    this->Internal->Failed = false;
   } catch (const std::exception& error) { // inr::Error, or no memory
     outInfo->Set(Pipeline::WHOLE_EXTENT(), EmptyExtent, 6);
-    vtkErrorMacro("Cannot open an implicit neural representation: " << error.what());
+    this->Fail(error.what());
   }
   return 1; // a failed request would add the pipeline's own error to ours
 }
@@ -161,20 +177,21 @@ void vtkINRReader::ReadInformation(vtkInformation* outInfo)
   if (!this->FileName || !*this->FileName) {
     throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
   }
-  inr::ModelOverrides overrides;
-  if (this->Dimensions[0] != 0 || this->Dimensions[1] != 0 || this->Dimensions[2] != 0) {
-    overrides.dims = glm::i64vec3(this->Dimensions[0], this->Dimensions[1], this->Dimensions[2]);
-  }
-  if (this->DataRange[0] != this->DataRange[1]) {
-    overrides.dataRange = glm::dvec2(this->DataRange[0], this->DataRange[1]);
-  }
-  this->Internal->Source.Select(this->FileName, overrides);
-  this->Internal->Source.Scale(this->ScaleFactor);
-  const inr::VolumeInfo volume = this->Internal->Source.Volume();
+  ModelSource& source =
+      this->Internal->Models.Select(this->FileName, OverridesOf(this->Dimensions, this->DataRange));
+  this->Internal->Source = &source;
+  source.Scale(this->ScaleFactor);
+  const inr::VolumeInfo volume = source.Volume();
   this->Internal->Grid = PresentGrid(volume, this->MaximumGridPoints);
   this->Describe(volume);
   this->WarnIfLimited();
 
+  this->TellPipeline(outInfo);
+}
+
+void vtkINRReader::TellPipeline(vtkInformation* outInfo)
+{
+  const inr::VolumeInfo volume = this->Internal->Source->Volume();
   int extent[6];
   WholeExtent(this->Internal->Grid.dims, extent);
   double direction[9];
@@ -184,6 +201,40 @@ void vtkINRReader::ReadInformation(vtkInformation* outInfo)
   outInfo->Set(vtkDataObject::ORIGIN(), &volume.origin.x, 3);
   outInfo->Set(vtkDataObject::DIRECTION(), direction, 9);
   vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VtkTypeOf(volume.type), 1);
+}
+
+int vtkINRReader::RequestUpdateExtent(vtkInformation*, vtkInformationVector**,
+                                      vtkInformationVector* outputVector)
+{
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  int extent[6];
+  outInfo->Get(Pipeline::WHOLE_EXTENT(), extent);
+  if (this->Internal->Failed || IsEmpty(extent)) {
+    return 1;
+  }
+  try { // in a series the pipeline, and what follows in it, knows the grid of another step
+    const glm::ivec3 known(extent[1] + 1, extent[3] + 1, extent[5] + 1);
+    if (known != this->Internal->Grid.dims) {
+      this->Internal->Grid = PresentGridOf(this->Internal->Source->Volume(), known);
+    }
+    this->TellPipeline(outInfo);
+  } catch (const std::exception& error) {
+    this->Fail(error.what());
+  }
+  return 1;
+}
+
+bool vtkINRReader::FindTime(const char* fileName, double& time)
+{
+  time = std::numeric_limits<double>::quiet_NaN();
+  try {
+    ModelSource& source =
+        this->Internal->Models.Find(fileName, OverridesOf(this->Dimensions, this->DataRange));
+    time = source.Header().volume.time.value_or(time);
+    return true;
+  } catch (const std::exception&) { // to be told when the file is to be shown
+    return false;
+  }
 }
 
 void vtkINRReader::WarnIfLimited()
@@ -202,7 +253,7 @@ void vtkINRReader::WarnIfLimited()
 
 void vtkINRReader::Describe(const inr::VolumeInfo& scaled)
 {
-  const inr::Model& header = this->Internal->Source.Header();
+  const inr::Model& header = this->Internal->Source->Header();
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   for (int axis = 0; axis < 3; ++axis) {
     this->NativeDimensions[axis] = header.volume.dims[axis];
@@ -217,7 +268,7 @@ void vtkINRReader::Describe(const inr::VolumeInfo& scaled)
   const glm::dvec3 dims(header.volume.dims);
   this->Ratio = dims.x * dims.y * dims.z *
                 static_cast<double>(inr::ScalarSize(header.volume.type)) /
-                static_cast<double>(this->Internal->Source.FileSize());
+                static_cast<double>(this->Internal->Source->FileSize());
 }
 
 int vtkINRReader::RequestData(vtkInformation*, vtkInformationVector**,
@@ -232,9 +283,21 @@ int vtkINRReader::RequestData(vtkInformation*, vtkInformationVector**,
     this->ReadData(outInfo);
   } catch (const std::exception& error) {
     vtkImageData::GetData(outInfo)->Initialize();
-    vtkErrorMacro("Cannot open an implicit neural representation: " << error.what());
+    this->Fail(error.what());
   }
   return 1;
+}
+
+void vtkINRReader::Fail(const char* reason)
+{
+  Internals& self = *this->Internal;
+  self.Failed = true;
+  // A series' reader asks again where nothing has changed.
+  if (self.Told != reason || self.ToldAt != this->GetMTime()) {
+    vtkErrorMacro("Cannot open an implicit neural representation: " << reason);
+  }
+  self.Told = reason;
+  self.ToldAt = this->GetMTime();
 }
 
 void vtkINRReader::ReadData(vtkInformation* outInfo)
@@ -247,8 +310,10 @@ void vtkINRReader::ReadData(vtkInformation* outInfo)
     return;
   }
 
-  const inr::ModelPointer& model = this->Internal->Source.Model();
-  auto array = vtkINRDataArray::Create(model, &this->Internal->Grid.dims.x, extent);
+  ModelSource& source = *this->Internal->Source;
+  const inr::ModelPointer& model = source.Model();
+  auto array =
+      vtkINRDataArray::Create(model, &this->Internal->Grid.dims.x, extent, source.Keepsake());
   if (this->ArrayName && *this->ArrayName) {
     array->SetName(this->ArrayName);
   }

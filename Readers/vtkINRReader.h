@@ -13,6 +13,13 @@
  * INRNativeSpacing, INRScaledDimensions, INRScaledSpacing, INRRatio and, where the file has them,
  * INRPSNR (dB), INRSSIM, INRMaximumError; and INRSummary says the most of it in words.
  *
+ * In a series of files (vtkINRSeriesReader, in ParaView), all steps present as many points as the
+ * first one that was asked for, between bounds of their own, since filters do not expect more or
+ * fewer at another time.
+ *
+ * Models of files that were shown before stay in memory, in a sixteenth of the machine's at most,
+ * so that going back to a time step of a series of files loads nothing unless its file has changed.
+ *
  * A file that cannot be read gives one error and an empty output; mend the file, call Modified(),
  * and the reader goes on.
  */
@@ -46,6 +53,10 @@ public:
   /// 1 if the file's content is a model file, whatever its name; INRIA's images, which are called
   /// .inr too, are not.
   virtual int CanReadFile(VTK_FILEPATH const char* fileName);
+
+  /// The time that a file says its volume belongs to, NaN where it says none. False, without a
+  /// message, where it cannot be read.
+  bool FindTime(VTK_FILEPATH const char* fileName, double& time);
 
   ///@{
   /// Name of the point array; empty (default) = the name in the file.
@@ -112,6 +123,7 @@ protected:
   ~vtkINRReader() override;
 
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
@@ -121,6 +133,8 @@ private:
   class Internals;
 
   void ReadInformation(vtkInformation* outInfo);
+  void TellPipeline(vtkInformation* outInfo);
+  void Fail(const char* reason);
   void ReadData(vtkInformation* outInfo);
   void Describe(const inr::VolumeInfo& scaled);
   void WarnIfLimited();

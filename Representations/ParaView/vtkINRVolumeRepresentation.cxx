@@ -11,6 +11,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
+#include "vtkPVDataDeliveryManager.h"
 #include "vtkPVRenderView.h"
 #include "vtkPointData.h"
 #include "vtkPolyDataMapper.h"
@@ -40,6 +41,9 @@ vtkINRVolumeRepresentation::~vtkINRVolumeRepresentation() = default;
 int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* request,
                                                    vtkInformation* in, vtkInformation* out)
 {
+  if (request == vtkPVView::REQUEST_UPDATE()) {
+    this->ForgetOutlines();
+  }
   // Not the direct superclass: it would deliver the volume to the process that draws, and a virtual
   // image has no end of values.
   // NOLINTNEXTLINE(bugprone-parent-virtual-call)
@@ -57,6 +61,16 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
   }
   return 1;
+}
+
+void vtkINRVolumeRepresentation::ForgetOutlines()
+{
+  // A view that keeps the geometry of an animation would not ask for the volume of a time again
+  // that it has the outline of.
+  auto* view = vtkPVView::SafeDownCast(this->GetView());
+  if (view && this->GetNeedsUpdate()) {
+    view->GetDeliveryManager()->ClearCache(this);
+  }
 }
 
 void vtkINRVolumeRepresentation::DeliverOutline(vtkInformation* in, vtkInformation* out)

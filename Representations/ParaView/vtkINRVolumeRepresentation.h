@@ -84,6 +84,7 @@ private:
 
   vtkINRVolumeMapper* GetMapper();
   void UpdateStatus();
+  void ForgetOutlines();
   void DeliverOutline(vtkInformation* in, vtkInformation* out);
   std::string WhyBlank();
   void ReportColouring();
