@@ -6,6 +6,7 @@
 
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
 
 #include <optional>
@@ -68,6 +69,11 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkDataArray* array)
     }
   }
   input.info.arrayName = name;
+  vtkInformation* about = image->GetInformation();
+  if (about->Has(vtkDataObject::DATA_TIME_STEP())) {
+    const double time = about->Get(vtkDataObject::DATA_TIME_STEP());
+    input.info.time = std::isfinite(time) ? std::optional<double>(time) : std::nullopt;
+  }
   input.info.type = *type;
   input.values = Contiguous(array);
   input.data.values = input.values->GetVoidPointer(0);

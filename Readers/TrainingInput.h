@@ -17,7 +17,7 @@ struct TrainingInput
   inr::VolumeInfo info;
 };
 
-/// The image's geometry, with the origin at the first point of its extent, and the values of
-/// `array`, copied only where they do not lie in memory one after the other. Throws
-/// inr::Error(InvalidArgument) that says what is wrong with the array.
+/// The image's geometry, with the origin at the first point of its extent, its time step, if any,
+/// and the values of `array`, copied only where they do not lie in memory one after the other.
+/// Throws inr::Error(InvalidArgument) that says what is wrong with the array.
 TrainingInput MakeTrainingInput(vtkImageData* image, vtkDataArray* array);

@@ -6,6 +6,7 @@
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Training/Trainer.h"
+#include "StepSequence.h"
 #include "StopSignals.h"
 #include "TrainingInput.h"
 #include "VTKCompat.h"
@@ -16,16 +17,30 @@
 #include <vtkErrorCode.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
+#include <vtkInformationVector.h>
 #include <vtkLogger.h>
 #include <vtkObjectFactory.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <exception>
-#include <string>
+#include <vector>
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 vtkStandardNewMacro(vtkINRWriter);
 
-vtkINRWriter::vtkINRWriter()
+class vtkINRWriter::Internals
 {
+public:
+  StepSequence Steps;         ///< those of WriteTimeSteps
+  std::string Problem;        ///< why there are none
+  std::string Target;         ///< the file that is being written
+  inr::ModelPointer Previous; ///< what was written last, if it is of a time step
+};
+
+vtkINRWriter::vtkINRWriter() : Internal(std::make_unique<Internals>())
+{
+  this->SetFileNameSuffix("_%d");
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::SCALARS);
 }
@@ -34,6 +49,7 @@ vtkINRWriter::~vtkINRWriter()
 {
   delete[] this->FileName;
   delete[] this->ModelConfig;
+  delete[] this->FileNameSuffix;
 }
 
 int vtkINRWriter::FillInputPortInformation(int, vtkInformation* info)
@@ -43,25 +59,86 @@ int vtkINRWriter::FillInputPortInformation(int, vtkInformation* info)
   return 1;
 }
 
+vtkTypeBool vtkINRWriter::ProcessRequest(vtkInformation* request, vtkInformationVector** inputs,
+                                         vtkInformationVector* outputs)
+{
+  vtkInformation* input = inputs[0]->GetInformationObject(0);
+  StepSequence& steps = this->Internal->Steps;
+  if (input && request->Has(Pipeline::REQUEST_INFORMATION())) {
+    this->PlanSteps(input);
+  }
+  if (input && request->Has(Pipeline::REQUEST_UPDATE_EXTENT()) && !steps.isEmpty()) {
+    input->Set(Pipeline::UPDATE_TIME_STEP(), steps.time());
+  }
+  const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
+  if (request->Has(Pipeline::REQUEST_DATA()) && !steps.isEmpty()) {
+    if (this->GetErrorCode() == vtkErrorCode::NoError && steps.advance()) {
+      request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
+    } else {
+      request->Remove(Pipeline::CONTINUE_EXECUTING());
+      steps.rewind();
+    }
+  }
+  return result;
+}
+
+void vtkINRWriter::PlanSteps(vtkInformation* input)
+{
+  this->Internal->Steps = StepSequence();
+  this->Internal->Problem.clear();
+  const int count = this->WriteTimeSteps ? input->Length(Pipeline::TIME_STEPS()) : 0;
+  if (count < 2) {
+    return; // the present state is all there is
+  }
+  this->Internal->Previous = nullptr; // a series does not depend on what was written before it
+  const double* times = input->Get(Pipeline::TIME_STEPS());
+  try {
+    this->Internal->Steps =
+        StepSequence(std::vector<double>(times, times + count), this->MinTimeStep,
+                     this->MaxTimeStep, this->TimeStepStride);
+  } catch (const inr::Error& error) {
+    this->Internal->Problem = error.what(); // to be told when it is to be written
+  }
+}
+
 void vtkINRWriter::WriteData()
 {
   this->ForgetResult();
+  std::string& fileName = this->Internal->Target;
+  fileName = this->FileName ? this->FileName : "";
   const StopSignals signals; // hands a signal on, which may end the process, after our message
   try {
-    if (!this->FileName || !*this->FileName) {
-      throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
-    }
-    const TrainingInput input = this->FindInput();
-    {
-      // Learn that the target is not writable now, not after minutes of training.
-      const inr::AtomicFile attempt{std::string(this->FileName)};
-    }
-    this->Train(input, signals);
+    this->WriteInput(signals);
   } catch (const std::exception& error) { // inr::Error, or no memory
     this->SetErrorCode(vtkErrorCode::UserError);
-    vtkErrorMacro("Cannot save '" << (this->FileName ? this->FileName : "")
+    vtkErrorMacro("Cannot save '" << fileName
                                   << "' as an implicit neural representation: " << error.what());
   }
+}
+
+void vtkINRWriter::WriteInput(const StopSignals& signals)
+{
+  std::string& fileName = this->Internal->Target;
+  if (fileName.empty()) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
+  }
+  if (!this->Internal->Problem.empty()) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument, this->Internal->Problem);
+  }
+  const StepSequence& steps = this->Internal->Steps;
+  if (!steps.isEmpty()) {
+    const std::string suffix = this->FileNameSuffix ? this->FileNameSuffix : "";
+    fileName = StepFileName(fileName, suffix, steps.number());
+  }
+  TrainingInput input = this->FindInput();
+  if (!steps.isEmpty()) {
+    input.info.time = steps.time();
+  }
+  {
+    // Learn that the target is not writable now, not after minutes of training.
+    const inr::AtomicFile attempt(fileName);
+  }
+  this->Train(input, signals);
 }
 
 TrainingInput vtkINRWriter::FindInput()
@@ -95,6 +172,14 @@ TrainingInput vtkINRWriter::FindInput()
   return MakeTrainingInput(image, numbers);
 }
 
+inr::ModelPointer vtkINRWriter::FindStart(const inr::VolumeInfo& volume) const
+{
+  const inr::ModelPointer& previous = this->Internal->Previous;
+  const bool follows = previous && volume.time && volume.time != previous->volume.time &&
+                       volume.arrayName == previous->volume.arrayName;
+  return this->StartFromPrevious && follows ? previous : nullptr;
+}
+
 void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
 {
   inr::TrainingOptions options;
@@ -110,16 +195,19 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
   if (this->ModelConfig && *this->ModelConfig) {
     options.description = inr::ParseDescription(std::string(this->ModelConfig));
   }
+  options.start = this->FindStart(input.info);
+  this->Internal->Previous = nullptr;
 
   const auto observe = [&](const inr::TrainingProgress& progress) {
     const bool training = progress.phase == inr::TrainingPhase::Training;
     this->SetProgressText(training ? "Training INR" : "Measuring INR quality");
-    this->UpdateProgress(progress.fraction);
+    this->UpdateProgress(this->Internal->Steps.progress(progress.fraction));
     return !signals.Received() && !IsAborted(*this);
   };
   const inr::ModelPointer model = inr::TrainModel(input.data, input.info, options, observe);
-  this->KeepResult(*model, inr::WriteModel(*model, this->FileName));
-  this->UpdateProgress(1.0);
+  this->KeepResult(*model, inr::WriteModel(*model, this->Internal->Target));
+  this->UpdateProgress(this->Internal->Steps.progress(1.0));
+  this->Internal->Previous = model->volume.time ? model : nullptr;
   if (model->training->nonFinite > 0) {
     vtkWarningMacro("Array '" << input.info.arrayName << "' has " << model->training->nonFinite
                               << " NaN or infinite values; they were left out of the training.");
@@ -143,7 +231,7 @@ void vtkINRWriter::KeepResult(const inr::Model& model, vtkIdType fileSize)
   this->Ratio = bytes / static_cast<double>(fileSize);
   this->Steps = static_cast<vtkIdType>(model.training->steps);
   this->TrainingSeconds = model.training->seconds;
-  vtkLog(INFO, << this->FileName << ": PSNR " << this->PSNR << " dB, SSIM " << this->SSIM
+  vtkLog(INFO, << this->Internal->Target << ": PSNR " << this->PSNR << " dB, SSIM " << this->SSIM
                << ", largest error " << this->MaximumError << ", ratio " << this->Ratio << ", "
                << this->Steps << " steps in " << this->TrainingSeconds << " s");
 }
@@ -160,5 +248,11 @@ void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "PlannedSteps: " << this->PlannedSteps << "\n"
      << indent << "Seed: " << this->Seed << "\n"
      << indent << "ModelConfig: " << (this->ModelConfig ? this->ModelConfig : "(chosen)") << "\n"
-     << indent << "ReadableByInstantVNR: " << (this->ReadableByInstantVNR ? "on" : "off") << "\n";
+     << indent << "ReadableByInstantVNR: " << (this->ReadableByInstantVNR ? "on" : "off") << "\n"
+     << indent << "WriteTimeSteps: " << (this->WriteTimeSteps ? "on" : "off") << "\n"
+     << indent << "FileNameSuffix: " << (this->FileNameSuffix ? this->FileNameSuffix : "") << "\n"
+     << indent << "MinTimeStep: " << this->MinTimeStep << "\n"
+     << indent << "MaxTimeStep: " << this->MaxTimeStep << "\n"
+     << indent << "TimeStepStride: " << this->TimeStepStride << "\n"
+     << indent << "StartFromPrevious: " << (this->StartFromPrevious ? "on" : "off") << "\n";
 }

@@ -9,6 +9,9 @@
  * family the result is the same on any number of threads; where TimeLimit ended it, with the same
  * PlannedSteps, too.
  *
+ * With WriteTimeSteps each time step of the input goes into a file of its own, which tells its
+ * time, and is trained from the parameters of the one before.
+ *
  * NaNs and infinities are left out: they are no targets, count neither in the range nor in the
  * quality, and are reported with a warning; where they were, the file holds a smooth continuation.
  *
@@ -22,11 +25,14 @@
 
 #include <vtkWriter.h>
 
+#include <memory> // for Internals
+
 class StopSignals;
 struct TrainingInput;
 namespace inr {
 struct Model;
-}
+struct VolumeInfo;
+} // namespace inr
 
 class VTKINRREADERS_EXPORT vtkINRWriter : public vtkWriter
 {
@@ -85,6 +91,41 @@ public:
   ///@}
 
   ///@{
+  /// Write all time steps of the input, each into its own file, instead of the present one.
+  /// TimeLimit, MaximumSteps and targets are for each of them. Default off.
+  vtkSetMacro(WriteTimeSteps, bool);
+  vtkGetMacro(WriteTimeSteps, bool);
+  vtkBooleanMacro(WriteTimeSteps, bool);
+  ///@}
+
+  ///@{
+  /// What WriteTimeSteps puts between the file's name and its extension, with %d, or %.3d for at
+  /// least three digits, for the number of the step. Default "_%d".
+  vtkSetStringMacro(FileNameSuffix);
+  vtkGetStringMacro(FileNameSuffix);
+  ///@}
+
+  ///@{
+  /// The first and the last of the steps that WriteTimeSteps writes, and their distance, by number.
+  /// Default: from 0 to the end (a last one before the first), each.
+  vtkSetClampMacro(MinTimeStep, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MinTimeStep, int);
+  vtkSetMacro(MaxTimeStep, int);
+  vtkGetMacro(MaxTimeStep, int);
+  vtkSetClampMacro(TimeStepStride, int, 1, VTK_INT_MAX);
+  vtkGetMacro(TimeStepStride, int);
+  ///@}
+
+  ///@{
+  /// Start the training of a time step from the parameters of the one that this writer wrote
+  /// before, where the model is of the same size: that of WriteTimeSteps, or of an earlier Write of
+  /// data that tell another time. Default on.
+  vtkSetMacro(StartFromPrevious, bool);
+  vtkGetMacro(StartFromPrevious, bool);
+  vtkBooleanMacro(StartFromPrevious, bool);
+  ///@}
+
+  ///@{
   /// Start of the random numbers. Default 1.
   vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
   vtkGetMacro(Seed, int);
@@ -124,13 +165,20 @@ protected:
   ~vtkINRWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**,
+                             vtkInformationVector*) override;
   void WriteData() override;
 
 private:
   vtkINRWriter(const vtkINRWriter&) = delete;
   void operator=(const vtkINRWriter&) = delete;
 
+  class Internals;
+
+  void PlanSteps(vtkInformation* input);
+  void WriteInput(const StopSignals& signals);
   TrainingInput FindInput();
+  std::shared_ptr<const inr::Model> FindStart(const inr::VolumeInfo& volume) const;
   void Train(const TrainingInput& input, const StopSignals& signals);
   void ForgetResult();
   void KeepResult(const inr::Model& model, vtkIdType fileSize);
@@ -145,6 +193,12 @@ private:
   int Seed = 1;
   char* ModelConfig = nullptr;
   bool ReadableByInstantVNR = false;
+  bool WriteTimeSteps = false;
+  char* FileNameSuffix = nullptr;
+  int MinTimeStep = 0;
+  int MaxTimeStep = -1;
+  int TimeStepStride = 1;
+  bool StartFromPrevious = true;
 
   double PSNR = 0;
   double SSIM = 0;
@@ -152,6 +206,8 @@ private:
   double Ratio = 0;
   vtkIdType Steps = 0;
   double TrainingSeconds = 0;
+
+  std::unique_ptr<Internals> Internal;
 };
 
 #endif
