@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A series of files is the time steps of a volume: opened, played, warm the second time, changed on
-disk, broken in the middle."""
+"""A series of files is the time steps of a volume: opened, played, warm the second time, written,
+changed on disk, broken in the middle."""
 import json
 import os
 import shutil
@@ -167,6 +167,31 @@ for time in (0, 1, 2, 0, 1, 2):
     check(value("CacheUsed") <= 1, "the cache takes", value("CacheUsed"), "at", time)
 display.BrickSize = 4
 display.CacheSize = 64
+
+# Save Data of all time steps: their times come back, and each went on from the one before.
+shifted = simple.TemporalShiftScale(Input=reader, Scale=0.5, PostShift=3)
+sampled = simple.ResampleToImage(Input=shifted, SamplingDimensions=[9, 8, 7])
+written = os.path.join(folder, "written.inr")
+with Messages() as messages:
+    simple.SaveData(written, sampled, Scalars=["POINTS", "RTData"], MaximumSteps=40,
+                    TimeLimit=0, Writetimestepsasfileseries=1, Firsttimestep=1,
+                    Filenamesuffix="_%.3d")
+check(messages.errors() == 0, "saving reported", messages.text)
+names = sorted(name for name in os.listdir(folder) if name.startswith("written"))
+check(names == ["written_001.inr", "written_002.inr"], "files:", names)
+again = simple.OpenDataFile([os.path.join(folder, name) for name in names])
+check(list(again.TimestepValues) == [3.5, 4], "times", again.TimestepValues)
+for time in (3.5, 4):
+    again.UpdatePipeline(time)
+    sampled.UpdatePipeline(time)
+    for data in (again, sampled):
+        check(data.GetDataInformation().GetNumberOfPoints() == 9 * 8 * 7, "points at", time)
+    found, truth = again.GetDataInformation().GetBounds(), sampled.GetDataInformation().GetBounds()
+    check(np.allclose(found, truth), "bounds", found, "of", truth, "at", time)
+with open(os.path.join(folder, names[1]), "rb") as file:
+    check(b"earlier_steps" in file.read(), "the second step started anew")
+for proxy in (again, sampled, shifted):
+    simple.Delete(proxy)
 
 # A file that changes is read anew; the others stay.
 view.ViewTime = 0
