@@ -322,17 +322,13 @@ public:
   int GetCoarsestLevel() const;
   ///@}
 
-  /**
-   * Paths through each pixel in the last frame; 0 when rays were marched.
-   */
+  /** Paths through each pixel in the last frame; 0 when rays were marched. */
   vtkIdType GetNumberOfPaths() const;
 
   /** What computed the last frame, such as "CPU avx512"; empty before the first. */
   const char* GetBackendInUse() const;
 
-  /**
-   * Width and height of the last frame's picture in pixels; 0 before the first.
-   */
+  /** Width and height of the last frame's picture in pixels; 0 before the first. */
   void GetFrameSize(int size[2]) const;
 
   /**
@@ -341,9 +337,7 @@ public:
    */
   vtkMTimeType GetFrameMTime() const;
 
-  /**
-   * Whether the last frame read the depth of opaque geometry.
-   */
+  /** Whether the last frame read the depth of opaque geometry. */
   bool GetOpaqueDepthRead() const;
 
   /**
