@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr double SmallestEdge = 16;
+constexpr double SmallestEdge = 8;
 constexpr double LargestEdge = 64;
 
 /// Voxels per edge of a brick, shared ones included.

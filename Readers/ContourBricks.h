@@ -26,7 +26,7 @@ private:
 };
 
 /// The bricks of one level of a volume, and which of them isosurfaces may run through. A brick's
-/// edge is that of a macro-cell, where that is from 16 to 64 voxels of the level.
+/// edge is that of a macro-cell, where that is from 8 to 64 voxels of the level.
 class ContourBricks
 {
 public:

@@ -59,7 +59,8 @@ public:
 
   ///@{
   /// Evaluations of the network that an automatic Level may take: one per voxel on level 0, eight
-  /// per voxel on the others. Default 2^26, some seconds on two cores.
+  /// per voxel on the others. Default 2^27, on two cores some seconds with a small model and some
+  /// 20 with one of instantvnr's size.
   vtkSetClampMacro(MaximumSamples, vtkIdType, 1, VTK_ID_MAX);
   vtkGetMacro(MaximumSamples, vtkIdType);
   ///@}
@@ -111,7 +112,7 @@ private:
 
   std::vector<double> Values;
   int Level = -1;
-  vtkIdType MaximumSamples = vtkIdType{1} << 26;
+  vtkIdType MaximumSamples = vtkIdType{1} << 27;
   int MemoryLimit = 2048;
   bool ComputeNormals = true;
 

@@ -280,7 +280,7 @@ TEST_F(Contour, IsWhatVTKFindsInTheDecodedVoxels)
     this->Filter->SetLevel(level);
     this->expectSame(this->update(), this->reference(level, {57.0, 61.5}));
     EXPECT_EQ(this->Filter->GetLevelInUse(), level);
-    EXPECT_EQ(this->Filter->GetNumberOfBricks(), level == 0 ? 4 * 3 * 3 : 2 * 2 * 2);
+    EXPECT_EQ(this->Filter->GetNumberOfBricks(), level == 0 ? 4 * 3 * 3 : 3 * 3 * 3);
   }
 }
 
@@ -386,10 +386,10 @@ TEST_F(Contour, ChoosesTheFinestLevelThatTheSamplesAllow)
     EXPECT_EQ(surface->GetFieldData()->GetArray("INRLevel")->GetTuple1(0), level);
     before = level;
   }
-  EXPECT_EQ(before, 2); // where one brick holds the volume
+  EXPECT_EQ(before, 3); // where one brick holds the volume
   this->Filter->SetLevel(30);
   this->update();
-  EXPECT_EQ(this->Filter->GetLevelInUse(), 2);
+  EXPECT_EQ(this->Filter->GetLevelInUse(), 3);
 }
 
 TEST_F(Contour, SharesItselfOutAmongProcesses)
