@@ -4,6 +4,7 @@ The argument is the server's port."""
 import os
 import sys
 
+from inrvolume import vtkINRContour, vtkINRReader
 from paraview import simple
 from pvtest import MODEL, check, load_plugin, look_at, picture, show_view
 
@@ -35,5 +36,21 @@ display.LevelOfDetailScale = 0
 view.SMProxy.InteractiveRender()
 check(value("Converged") == 0, "all bricks came in one interactive picture")
 check(value("CacheHitRate") < 1, "nothing is missing in an interactive picture")
+
+# Processes share an isosurface and a slice out among them: together all is there, once.
+alone = vtkINRReader()
+alone.SetFileName(MODEL)
+whole = vtkINRContour()
+whole.SetInputConnection(alone.GetOutputPort())
+whole.SetValue(0, 80)
+whole.Update()
+reader = simple.OpenDataFile(MODEL)
+shared = simple.INRContour(Input=reader, Isosurfaces=[80])
+cut = simple.INRSlice(Input=reader)
+for filter in (shared, cut):
+    filter.UpdatePipeline()
+triangles = shared.GetDataInformation().GetNumberOfCells()
+check(triangles == whole.GetOutput().GetNumberOfCells() > 10000, triangles, "triangles")
+check(cut.GetDataInformation().GetNumberOfCells() == 90 * 90, "cells of the slice are missing")
 simple.Disconnect()
 os._exit(0)
