@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ctrl-C during a long training ends it with KeyboardInterrupt and leaves no file behind."""
+"""Ctrl-C during a long training, decoding or contouring ends it with KeyboardInterrupt; a training
+leaves no file behind."""
 import os
 import signal
 import subprocess
@@ -7,48 +8,92 @@ import sys
 import tempfile
 import time
 
-TRAINING = """
+COMMON = """
 import sys
-from inrvolume import vtkINRWriter
+from inrvolume import vtkINRContour, vtkINRDecode, vtkINRReader, vtkINRWriter
 from vtkmodules.vtkCommonDataModel import vtkImageData
-image = vtkImageData()
-image.SetDimensions(40, 40, 40)
-image.AllocateScalars(11, 1)
-scalars = image.GetPointData().GetScalars()
-for index in range(40**3):
-    scalars.SetTuple1(index, index * 7919 % 1000)
-writer = vtkINRWriter()
-writer.SetInputData(image)
-writer.SetFileName(sys.argv[1])
 
-def announce(caller, event):
-    # Once only: an observer that meets the interrupt makes VTK end the program.
-    if caller.GetProgressText():
-        caller.RemoveObservers("ProgressEvent")
-        print("training", flush=True)
+def train(path, steps):
+    image = vtkImageData()
+    image.SetDimensions(40, 40, 40)
+    image.AllocateScalars(11, 1)
+    scalars = image.GetPointData().GetScalars()
+    for index in range(40**3):
+        scalars.SetTuple1(index, index % 40 * 25)
+    writer = vtkINRWriter()
+    writer.SetInputData(image)
+    writer.SetFileName(path)
+    writer.SetMaximumSteps(steps)
+    return writer
 
-writer.AddObserver("ProgressEvent", announce)
-try:
-    writer.Write()
-    for _ in range(1000):  # Python delivers the signal between two of its instructions
-        pass
-except KeyboardInterrupt:
-    print("interrupted", flush=True)
+def interrupt(algorithm, start):
+    def announce(caller, event):
+        # Once only: an observer that meets the interrupt makes VTK end the program.
+        if 0 < caller.GetProgress() < 1:
+            caller.RemoveObservers("ProgressEvent")
+            print("at it", flush=True)
+
+    algorithm.AddObserver("ProgressEvent", announce)
+    try:
+        start()
+        for _ in range(1000):  # Python delivers the signal between two of its instructions
+            pass
+    except KeyboardInterrupt:
+        print("interrupted", flush=True)
+
+def read_large(path):
+    train(path, 100).Write()
+    reader = vtkINRReader()
+    reader.SetFileName(path)
+    reader.SetDimensions(1000, 1000, 1000)
+    return reader
 """
 
-with tempfile.TemporaryDirectory() as folder:
-    program = [sys.executable, "-c", TRAINING, os.path.join(folder, "never.inr")]
+TRAINING = """
+writer = train(sys.argv[1], 0)
+interrupt(writer, writer.Write)
+"""
+
+DECODING = """
+reader = read_large(sys.argv[1])
+decode = vtkINRDecode()
+decode.SetScalarType(3)
+decode.SetInputConnection(reader.GetOutputPort())
+interrupt(decode, decode.Update)
+assert decode.GetOutput().GetNumberOfPoints() == 0
+"""
+
+CONTOURING = """
+reader = read_large(sys.argv[1])
+contour = vtkINRContour()
+contour.SetValue(0, 500)
+contour.SetLevel(0)
+contour.SetMemoryLimit(100000)
+contour.SetInputConnection(reader.GetOutputPort())
+interrupt(contour, contour.Update)
+assert contour.GetOutput().GetNumberOfPoints() == 0
+"""
+
+
+def interrupted(what, folder):
+    program = [sys.executable, "-c", COMMON + what, os.path.join(folder, "model.inr")]
     process = subprocess.Popen(program, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
-        assert process.stdout.readline() == "training\n", process.communicate()
+        assert process.stdout.readline() == "at it\n", process.communicate()
         start = time.monotonic()
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     finally:
         process.kill()
     seconds = time.monotonic() - start
-    assert out.splitlines()[-1] == "interrupted", (out, err)
-    assert process.returncode == 0, process.returncode
-    assert "stopped" in err, err
-    assert os.listdir(folder) == [], os.listdir(folder)
+    assert out == "interrupted\n", (out, err)
+    assert process.returncode == 0, (process.returncode, err)
     assert seconds < 20, seconds
+    return err
+
+
+with tempfile.TemporaryDirectory() as folder:
+    assert "stopped" in interrupted(TRAINING, folder)
+    assert os.listdir(folder) == [], os.listdir(folder)
+    for what in (DECODING, CONTOURING):
+        interrupted(what, folder)

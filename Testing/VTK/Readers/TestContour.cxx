@@ -73,7 +73,7 @@ int OpenEdges(vtkPolyData* surface)
   for (vtkIdType k = 0; k < surface->GetNumberOfCells(); ++k) {
     surface->GetCellPoints(k, ids);
     for (int corner = 0; corner < 3; ++corner) {
-      const auto edge = std::minmax(ids->GetId(corner), ids->GetId((corner + 1) % 3));
+      const auto edge = std::minmax({ids->GetId(corner), ids->GetId((corner + 1) % 3)});
       ++uses[{edge.first, edge.second}];
     }
   }
