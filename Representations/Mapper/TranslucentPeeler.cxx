@@ -270,7 +270,7 @@ TranslucentPeeler::peel(vtkRenderer* renderer, const Viewport& viewport,
   const auto result = std::make_shared<TranslucentLayers>();
   const auto pixels = static_cast<std::size_t>(viewport.width) * viewport.height;
   std::vector<float> limits = FirstLimits(opaqueDepth, pixels);
-  while (result->count() < LargestCount) {
+  while (result->count() < MostLayers(static_cast<std::int64_t>(pixels))) {
     self.Pass->Limits->Create2DFromRaw(static_cast<unsigned int>(viewport.width),
                                        static_cast<unsigned int>(viewport.height), 2, VTK_FLOAT,
                                        limits.data());

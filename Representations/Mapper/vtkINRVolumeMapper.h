@@ -22,13 +22,14 @@
  * largest value is below one that a ray has met, none without an isosurface.
  *
  * Ordinary translucent surfaces are in their places in front of, inside and behind the volume,
- * whether the renderer peels them or not: up to 64 of them along a pixel's ray are drawn once more
- * to learn where they are, which is done only when a visible prop has translucent geometry. Paths
- * inside the volume do not meet them: they throw no shadow on it, and projections, which have no
- * depth, lie over all of them. Several volumes in a renderer are blended
- * one after another, from the furthest to the nearest, whatever their order there: right where one
- * is behind another. Where they overlap they are not mixed; the one whose middle is nearer to the
- * camera lies over the other.
+ * whether the renderer peels them or not: up to 64 of them along a pixel's ray (fewer in windows of
+ * more than 800,000 pixels: 25 in one of 1920 x 1080) are drawn once more to learn where they are,
+ * which is done only when a visible prop has translucent geometry. Paths inside the volume do not
+ * meet them: they throw no shadow on it; and projections, which have no depth, lie over all of them.
+ *
+ * Several volumes in a renderer are blended one after another, from the furthest to the nearest,
+ * whatever their order there. Where they overlap they are not mixed; the one whose middle is nearer
+ * to the camera lies over the other.
  *
  * Refused with an error and not drawn: the blend mode slice, projections of a piece of the grid or
  * by path tracing, cropping, gradient opacity, 2D transfer functions, masks, scalars that are not

@@ -5,6 +5,7 @@
 #include "Core/Image/Metrics.h"
 #include "TestModel.h"
 #include "TestScene.h"
+#include "TranslucentPeeler.h"
 #include "vtkINRVolumeMapper.h"
 
 #include <vtkActor.h>
@@ -348,6 +349,13 @@ TEST(TranslucentSphere, AgreesWithVtkPeelingTheVoxels)
   Write(shown, "Sphere");
   Write(truth, "SphereVoxels");
   EXPECT_GT(inr::ImagePsnr(shown, truth), 29.0);
+}
+
+TEST(MostLayers, FitMemory)
+{
+  EXPECT_EQ(inr::MostLayers(1), 64);
+  EXPECT_EQ(inr::MostLayers(1920 * 1080), 25);
+  EXPECT_EQ(inr::MostLayers(std::int64_t{1} << 28), 4);
 }
 
 TEST(TranslucentSphere, IsOnlyDrawnAgainWhenItIsSeen)
