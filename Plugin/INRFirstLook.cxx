@@ -92,7 +92,10 @@ struct PanelProperty
 constexpr PanelProperty PanelProperties[] = {{"INRUnitDistance", "ScalarOpacityUnitDistance"},
                                              {"INRShade", "Shade"},
                                              {"INRBlendMode", "BlendMode"},
-                                             {"INRIsosurfaceValues", "IsosurfaceValues"}};
+                                             {"INRIsosurfaceValues", "IsosurfaceValues"},
+                                             {"INRUseCropping", "UseCropping"},
+                                             {"INRCroppingOrigin", "CroppingOrigin"},
+                                             {"INRCroppingScale", "CroppingScale"}};
 
 /// Passes what was changed in the panel on to the stock property: scripts and state files then find
 /// the same value under both names.

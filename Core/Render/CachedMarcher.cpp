@@ -27,7 +27,8 @@ CachedRay::CachedRay(const CachedScene& scene, int x, int y)
 {}
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
-    : Scene(scene), Missing(onMiss)
+    : Scene(scene), Missing(onMiss),
+      DitherMask(scene.settings.projector.findsSurfaces() ? 0 : ~std::int64_t{0})
 {
   if (scene.settings.projector.findsSurfaces()) {
     this->Probe.emplace(scene, onMiss);
@@ -93,6 +94,9 @@ bool CachedMarcher::marchPart(CachedRay& state)
   if (this->Probe) {
     this->Probe->leave();
   }
+  if (this->Scene.settings.crops) {
+    this->Cropped.emplace(this->Scene.settings.cropping, state.ray, this->Scene.settings.step);
+  }
   while (!this->Ended && !this->Waiting) {
     if (this->Probe) {
       this->advanceSurfaces(state);
@@ -130,8 +134,9 @@ void CachedMarcher::place(CachedRay& state)
       this->Ended = true;
       return;
     }
-    const AlikeSamples alike = state.samples.alike();
-    if (settings.projector.canSkip(state.projection, state.samples.stretch().range)) {
+    AlikeSamples alike = state.samples.alike();
+    if (settings.projector.canSkip(state.projection, state.samples.stretch().range) ||
+        (this->Cropped && this->isCropped(state, alike))) {
       state.samples.pass(alike, alike.count);
       continue;
     }
@@ -143,6 +148,14 @@ void CachedMarcher::place(CachedRay& state)
     }
     state.samples.pass(alike, count);
   }
+}
+
+bool CachedMarcher::isCropped(const CachedRay& state, AlikeSamples& alike) const
+{
+  const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
+  const double end = this->Cropped->end(place);
+  alike.count = CountBelow((end - place) / static_cast<double>(alike.steps()), alike.count);
+  return !this->Cropped->shows(place);
 }
 
 int CachedMarcher::add(const CachedRay& state, const AlikeSamples& alike)
@@ -189,7 +202,7 @@ void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, in
   run.growth = static_cast<float>(growth);
   run.seed = DitherSeed(state.stream);
   run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
-  run.stride = this->Probe ? 0 : static_cast<std::uint32_t>(alike.steps());
+  run.stride = static_cast<std::uint32_t>(this->ditherOf(alike.steps()));
   run.count = count;
   run.length = LengthOf(alike.joined, alike.power);
   run.low = range.low;

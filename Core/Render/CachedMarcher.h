@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Render/CachedScene.h"
+#include "Core/Render/CroppedWay.h"
 #include "Core/Render/RayMarching.h"
 #include "Core/Render/RayProbe.h"
 #include "Core/Render/SampleShader.h"
@@ -92,6 +93,8 @@ private:
   bool enterNextPart(CachedRay& ray) const;
   /// Fills the batch, unless the ray ends or has to wait.
   void place(CachedRay& state);
+  /// Whether the first of such samples is; leaves those in `alike` of which the same is true.
+  bool isCropped(const CachedRay& state, AlikeSamples& alike) const;
   /// Adds such samples as far as they share bricks and the batch has room; how many.
   int add(const CachedRay& state, const AlikeSamples& alike);
   void addRun(const CachedRay& state, const AlikeSamples& alike, int count, const BrickRun& fine,
@@ -101,7 +104,7 @@ private:
                 BrickRun& coarse) const;
   /// The number that chooses between two levels for a sample. A surface would be torn where one
   /// sample is of this and the next of that level, so of its rays all have the same.
-  std::int64_t ditherOf(std::int64_t interval) const { return this->Probe ? 0 : interval; }
+  std::int64_t ditherOf(std::int64_t interval) const { return interval & this->DitherMask; }
   bool open(BrickRun& run, const Ray& ray, int level, double place);
   /// What is there instead of a brick that is not: the slot.
   std::int32_t openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted, double t);
@@ -141,13 +144,15 @@ private:
   Origin Origins[SampleBatch::Capacity];          ///< of its runs
   BrickKey Bricks[2 * SampleBatch::Capacity + 2]; ///< of the batch's paths
   int Count = 0;
-  int RunCount = 0;     ///< in Batch
-  int Paths = 0;        ///< in Batch
-  float LastLength = 0; ///< of the ray's last sample, if it is shorter than a step; else 0
+  int RunCount = 0;        ///< in Batch
+  int Paths = 0;           ///< in Batch
+  std::int64_t DitherMask; ///< of sample numbers
+  float LastLength = 0;    ///< of the ray's last sample, if it is shorter than a step; else 0
   bool Waiting = false;
   bool Ended = false;
   std::optional<SampleShader> Shader;
   std::optional<RayProbe> Probe; ///< where surfaces are found
+  std::optional<CroppedWay> Cropped;
 };
 
 } // namespace inr

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Render/Blending.h"
+#include "Core/Render/Cropping.h"
 #include "Core/Render/Lights.h"
 #include "Core/Render/PathOptions.h"
 #include "Core/Render/TranslucentLayers.h"
@@ -58,6 +59,8 @@ struct Frame
   std::shared_ptr<const TranslucentLayers> layers;
   /// World-space half spaces; a point p is kept where dot(plane, (p, 1)) >= 0 for all of them.
   std::vector<glm::dvec4> clippingPlanes;
+  /// What of the volume is shown; paths know only boxes, see CroppedBox::full.
+  std::optional<Cropping> cropping;
 
   /// How the field's gradients are lit by `lights` where ray marching composites; none: colours are
   /// as the transfer function has them.

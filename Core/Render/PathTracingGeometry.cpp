@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/PathTracingGeometry.h"
 
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
 namespace inr {
@@ -12,6 +13,11 @@ InnerRays::InnerRays(const Frame& frame, const RayGeometry& geometry, const glm:
   for (int axis = 0; axis < 3; ++axis) {
     this->Low[axis] = dims[axis] == 1 ? -0.5 : 0.0;
     this->High[axis] = dims[axis] == 1 ? 0.5 : static_cast<double>(dims[axis] - 1);
+  }
+  if (frame.cropping) { // to a box
+    const CroppedBox box = BoxOf(*frame.cropping);
+    this->Low = glm::max(this->Low, box.low);
+    this->High = glm::min(this->High, box.high);
   }
   for (const glm::dvec4& plane : frame.clippingPlanes) {
     this->Planes.push_back(glm::transpose(this->ToWorld) * plane);

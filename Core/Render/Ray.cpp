@@ -3,8 +3,10 @@
 
 #include "Core/Error.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -120,6 +122,15 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture
         std::min(this->WorldPerUnit, glm::length(glm::dvec3(this->IndexToWorld[axis])));
   }
   Require(this->WorldPerUnit > 0, "the volume is flat in world space");
+  if (frame.cropping) {
+    Require(!glm::any(glm::isnan(frame.cropping->low + frame.cropping->high)),
+            "cropping planes must be at numbers");
+    const CroppedBox box = BoxOf(*frame.cropping);
+    Require(box.full || frame.mode == RenderMode::RayMarching,
+            "paths can be cropped to a box of regions only");
+    this->Low = glm::max(this->Low, box.low);
+    this->High = glm::min(this->High, box.high);
+  }
   Require(!frame.layers || !frame.blending.projects(),
           "a projection has no depth at which to meet translucent layers; leave them out");
   Require(

@@ -52,7 +52,7 @@ private:
   const Frame& Picture;
   glm::dmat4 IndexToWorld;
   glm::dmat4 WorldToClip;
-  glm::dvec3 Low;
+  glm::dvec3 Low; ///< of what is shown
   glm::dvec3 High;
   double WorldPerUnit = 0;
 };

@@ -89,6 +89,10 @@ INR_HOST_DEVICE inline int PlaceSamples(const MarchSettings& settings, MarchStat
     const auto steps = alike.last ? walker.rest() : static_cast<double>(alike.steps());
     const double place = static_cast<double>(walker.next()) + walker.offset(alike);
     const double t = glm::min(place * settings.step, ray.length);
+    if (settings.crops && !settings.cropping.shows(ray.at(t))) {
+      walker.pass(alike, 1);
+      continue;
+    }
     samples[count++] = {FieldPosition(settings, ray.at(t)),
                         walker.stretch().range,
                         static_cast<float>(steps * settings.step * settings.unitsPerT),

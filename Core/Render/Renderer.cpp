@@ -175,6 +175,10 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   settings.adaptive = frame.adaptiveSampling && frame.blending.mode == BlendMode::Composite;
   settings.unitsPerT = geometry.worldPerUnit() / frame.unitDistance;
   settings.projector = this->projector();
+  if (frame.cropping && !BoxOf(*frame.cropping).full) { // rays end where a box does
+    settings.crops = true;
+    settings.cropping = *frame.cropping;
+  }
   const std::optional<Shading> shading = ShadingOf(frame);
   const Shading* lit = shading ? &*shading : nullptr;
   if (!this->Cached) {

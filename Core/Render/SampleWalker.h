@@ -3,6 +3,7 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Render/CellWalker.h"
+#include "Core/Render/Cropping.h"
 #include "Core/Render/LevelOfDetail.h"
 #include "Core/Render/Projection.h"
 
@@ -22,6 +23,8 @@ struct MarchSettings
   double unitsPerT = 1.0; ///< opacity unit distances per unit of t
   bool adaptive = true;   ///< Frame::adaptiveSampling
   Projector projector;    ///< of values, where these are not composited
+  bool crops = false;     ///< samples that `cropping` does not show are left out
+  Cropping cropping;
 };
 
 /// Optical depth that needs no finer sampling.

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "Core/Render/Blending.h"
+#include "Core/Render/Cropping.h"
 
 #include <glm/gtc/type_precision.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
+#include <optional>
 #include <vector>
 
 class vtkImageData;
@@ -53,6 +55,10 @@ std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4&
 
 /// How a mapper blends, and which isosurfaces; its mode must be one that BlendMode has.
 Blending BlendingOf(vtkVolumeMapper* mapper, vtkVolumeProperty* property);
+
+/// Which regions of the grid a mapper shows; its planes are in the image's coordinates, but for a
+/// direction matrix.
+std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* mapper);
 
 /// Whether the image holds less than the whole grid.
 bool IsPiece(const PresentedGrid& grid);

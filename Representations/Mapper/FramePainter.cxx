@@ -71,6 +71,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
   frame.mode = settings.mode;
   frame.blending = BlendingOf(mapper, volume->GetProperty());
+  frame.cropping = CroppingOf(grid, mapper);
   frame.paths = settings.paths;
   frame.samplesPerPixel = settings.samplesPerPixel;
   frame.sampleDistance = settings.sampleDistance;

@@ -57,8 +57,10 @@ std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
   if (!problem.empty()) {
     return problem;
   }
-  if (mapper->GetCropping()) {
-    return "An INR cannot be cropped by regions; turn Cropping off and use clipping planes.";
+  const std::optional<Cropping> cropping = CroppingOf(grid, mapper);
+  if (cropping && mode == RenderMode::PathTracing && !BoxOf(*cropping).full) {
+    return "Path tracing can crop an INR to a box only; choose cropping regions that make up one, "
+           "or ray marching.";
   }
   if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D) {
     return "An INR cannot be drawn with a 2D transfer function; set the transfer function mode "

@@ -9,7 +9,8 @@
  *
  * Honoured: every camera (perspective, parallel, stereo, off-axis), tiles and viewports, the
  * volume's matrix, the image's origin, spacing and direction, opaque geometry (its depth buffer is
- * read only when a visible prop has opaque geometry), the mapper's clipping planes, and from
+ * read only when a visible prop has opaque geometry), the mapper's clipping planes and cropping
+ * regions, and from
  * vtkVolumeProperty the colour and scalar opacity functions of component 0, the
  * ScalarOpacityUnitDistance, a length in world space, and shading: ambient, diffuse, specular and
  * specular power by the renderer's lights. Interpolation type has no meaning here: an INR is
@@ -32,8 +33,8 @@
  * to the camera lies over the other.
  *
  * Refused with an error and not drawn: the blend mode slice, projections of a piece of the grid or
- * by path tracing, cropping, gradient opacity, 2D transfer functions, masks, scalars that are not
- * an INR. A message comes once, not at every frame.
+ * by path tracing, paths cropped to what is no box, gradient opacity, 2D transfer functions, masks,
+ * scalars that are not an INR. A message comes once, not at every frame.
  *
  * What rays meet is decoded brick by brick, at the level of resolution that the picture's pixels
  * deserve, and kept in a cache from frame to frame. A still frame waits until every sample is

@@ -54,6 +54,28 @@ check(list(display.INRIsosurfaceValues) == SURFACES[1:], "the values do not come
 fewer = picture(view, "blend-one-surface")
 check(np.abs(fewer - pictures["Isosurface"]).max() > 0.1, "a surface is left that was taken away")
 
+# Cropped to a box: what the bounds are scaled and moved to.
+def columns(image):
+    return np.flatnonzero(np.any(image < 0.98, axis=(0, 2)))
+
+
+display.INRBlendMode = "Maximum Intensity"
+display.INRCroppingScale = [0.5, 1, 1]
+display.INRUseCropping = 1
+check((display.UseCropping, list(display.CroppingScale)) == (1, [0.5, 1, 1]), "not passed on")
+left = picture(view, "blend-cropped")
+display.CroppingOrigin = [45, 0, 0]
+check(list(display.INRCroppingOrigin) == [45, 0, 0], "the origin does not come back")
+right = picture(view, "blend-cropped-other-half")
+whole = columns(pictures["Maximum Intensity"])
+for half in left, right:
+    check(0.4 < len(columns(half)) / len(whole) < 0.95, "is no half", columns(half))
+check(np.abs(left - right).max() > 0.1, "both halves are the same")
+check_baseline(left, "blend-cropped")
+display.UseCropping = 0
+check(display.INRUseCropping == 0, "cropping does not come back")
+check(np.abs(picture(view, "blend-whole") - pictures["Maximum Intensity"]).max() < 1e-6, "cropped")
+
 # What is not supported says so once.
 for refused in (dict(BlendMode="Slice"), dict(RenderMode="Path Tracing")):
     display.RenderMode, display.BlendMode = "Ray Marching", "Isosurface"

@@ -137,10 +137,15 @@ TEST_F(Refusals, ProjectionsOfAPiece)
   EXPECT_TRUE(this->draws());
 }
 
-TEST_F(Refusals, Cropping)
+TEST_F(Refusals, PathsThatAreCroppedToWhatIsNoBox)
 {
   this->mapper->CroppingOn();
-  this->expectRefused("cropped");
+  this->mapper->SetCroppingRegionPlanes(this->mapper->GetBounds());
+  this->mapper->SetCroppingRegionFlagsToCross();
+  this->mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+  this->expectRefused("crop an INR to a box only");
+  this->mapper->SetCroppingRegionFlagsToSubVolume();
+  EXPECT_TRUE(this->draws());
 }
 
 TEST_F(Refusals, OrdinaryVoxels)
@@ -193,13 +198,13 @@ TEST_F(Refusals, ATransformThatFlattens)
 
 TEST_F(Refusals, ComeAgainAfterTheSceneWasFine)
 {
-  this->mapper->CroppingOn();
-  this->expectRefused("cropped");
-  this->mapper->CroppingOff();
+  this->mapper->SetBlendModeToSlice();
+  this->expectRefused("slice");
+  this->mapper->SetBlendModeToComposite();
   EXPECT_TRUE(this->draws());
   this->messages.errors = 0;
-  this->mapper->CroppingOn();
-  this->expectRefused("cropped");
+  this->mapper->SetBlendModeToSlice();
+  this->expectRefused("slice");
 }
 
 } // namespace

@@ -151,6 +151,25 @@ SceneCase Projected(const std::string& name, int blendMode)
           }};
 }
 
+SceneCase Cropped(const std::string& name, int flags)
+{
+  return {name, [flags](Scene& scene, const MapperFactory& mapper) {
+            Perspective(scene, mapper);
+            vtkVolume* volume = FirstVolume(scene);
+            auto* cropped = vtkVolumeMapper::SafeDownCast(volume->GetMapper());
+            const double* bounds = volume->GetBounds();
+            double planes[6];
+            for (int axis = 0; axis < 3; ++axis) {
+              const double size = bounds[2 * axis + 1] - bounds[2 * axis];
+              planes[2 * axis] = bounds[2 * axis] + 0.35 * size;
+              planes[2 * axis + 1] = bounds[2 * axis] + 0.6 * size;
+            }
+            cropped->CroppingOn();
+            cropped->SetCroppingRegionPlanes(planes);
+            cropped->SetCroppingRegionFlags(flags);
+          }};
+}
+
 /// One in the other, lit; the outer one shows the inner one.
 void Surfaces(Scene& scene, const MapperFactory& mapper)
 {
@@ -224,7 +243,9 @@ std::vector<SceneCase> SceneCases()
           {"Minimum", MinimumInside},
           Projected("Average", vtkVolumeMapper::AVERAGE_INTENSITY_BLEND),
           Projected("Additive", vtkVolumeMapper::ADDITIVE_BLEND),
-          {"Isosurfaces", Surfaces}};
+          {"Isosurfaces", Surfaces},
+          Cropped("Cropped", VTK_CROP_SUBVOLUME),
+          Cropped("CroppedFence", VTK_CROP_FENCE)};
 }
 
 Scene::Scene()
