@@ -37,12 +37,12 @@ bool IsSamePicture(const Frame& a, const Frame& b)
 {
   return a.width == b.width && a.height == b.height && a.clipToWorld == b.clipToWorld &&
          a.worldToIndex == b.worldToIndex && a.clippingPlanes == b.clippingPlanes &&
-         a.cropping == b.cropping && a.lights == b.lights && a.shading == b.shading &&
-         a.mode == b.mode && a.paths == b.paths && a.blending == b.blending &&
-         a.unitDistance == b.unitDistance && a.sampleDistance == b.sampleDistance &&
-         a.adaptiveSampling == b.adaptiveSampling && a.levelOfDetailScale == b.levelOfDetailScale &&
-         a.seed == b.seed && a.frameIndex == b.frameIndex && HaveSameDepth(a, b) &&
-         IsSame(a.layers, b.layers);
+         a.piece == b.piece && a.cropping == b.cropping && a.lights == b.lights &&
+         a.shading == b.shading && a.mode == b.mode && a.paths == b.paths &&
+         a.blending == b.blending && a.unitDistance == b.unitDistance &&
+         a.sampleDistance == b.sampleDistance && a.adaptiveSampling == b.adaptiveSampling &&
+         a.levelOfDetailScale == b.levelOfDetailScale && a.seed == b.seed &&
+         a.frameIndex == b.frameIndex && HaveSameDepth(a, b) && IsSame(a.layers, b.layers);
 }
 
 } // namespace inr

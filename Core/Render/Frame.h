@@ -61,6 +61,11 @@ struct Frame
   std::vector<glm::dvec4> clippingPlanes;
   /// What of the volume is shown; paths know only boxes, see CroppedBox::full.
   std::optional<Cropping> cropping;
+  /// Such half spaces that bound the piece of the medium that this picture shows, others the rest.
+  /// Pictures of neighbouring pieces, blended in order of depth, make the one of the whole: where a
+  /// ray's samples are does not depend on the piece, and light comes from everywhere.
+  /// Not for projections.
+  std::vector<glm::dvec4> piece;
 
   /// How the field's gradients are lit by `lights` where ray marching composites; none: colours are
   /// as the transfer function has them.

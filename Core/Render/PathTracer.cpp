@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace inr {
 
@@ -62,6 +63,19 @@ std::vector<PathLight> PathLights(const InnerRays& inner, const std::vector<Ligh
     made.push_back(MakePathLight(inner, light));
   }
   return made;
+}
+
+std::uint64_t PieceNumber(const std::vector<glm::dvec4>& piece)
+{
+  std::uint64_t number = 0;
+  for (const glm::dvec4& plane : piece) {
+    for (int k = 0; k < 4; ++k) {
+      std::uint64_t bits;
+      std::memcpy(&bits, &plane[k], sizeof(bits));
+      number = RandomBits(number, bits);
+    }
+  }
+  return number;
 }
 
 /// The paths of a tile, each asking for one value in a round.
@@ -212,7 +226,8 @@ PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const gl
                                                            glm::dvec3(dims),
                                                            geometry.worldPerUnit() /
                                                                frame.unitDistance,
-                                                           levels}
+                                                           levels,
+                                                           PieceNumber(frame.piece)}
 {
   Check(frame.paths);
   Require(levels >= 1, "a field has at least one level");

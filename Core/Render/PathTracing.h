@@ -52,9 +52,10 @@ struct PathScene
   const PathLight* lights;
   int lightCount;
   const PathOptions& options;
-  glm::dvec3 dims;  ///< voxels per axis
-  double unitsPerT; ///< opacity unit distances per unit of t
-  int levels;       ///< that a point may be asked at, at least 1
+  glm::dvec3 dims;     ///< voxels per axis
+  double unitsPerT;    ///< opacity unit distances per unit of t
+  int levels;          ///< that a point may be asked at, at least 1
+  std::uint64_t piece; ///< a number that the frame's piece has for itself, 0: the whole
 };
 
 INR_HOST_DEVICE inline CellWalker WalkerFor(const PathScene& scene, const Ray& ray)
@@ -62,13 +63,21 @@ INR_HOST_DEVICE inline CellWalker WalkerFor(const PathScene& scene, const Ray& r
   return {scene.majorants, scene.dims, ray, scene.frame.levelOfDetailScale, scene.levels};
 }
 
+/// Of a pixel's path. Pictures of neighbouring pieces are multiplied when they are blended, and
+/// must not come from the same numbers.
+INR_HOST_DEVICE inline std::uint64_t RandomStream(const PathScene& scene, int x, int y)
+{
+  const std::uint64_t stream = PixelStream(scene.frame, x, y);
+  return scene.piece == 0 ? stream : RandomBits(stream, scene.piece);
+}
+
 /// Where a path stands: on its way, or between a scattering and a light.
 struct PathState
 {
   /// At the beginning; the ray may miss the volume.
   INR_HOST_DEVICE PathState(const PathScene& scene, int x, int y)
-      : ray(scene.geometry.ray(x, y)), walker(WalkerFor(scene, ray)),
-        stream(PixelStream(scene.frame, x, y)), travel(scene.inner.worldDirection(ray.direction))
+      : ray(scene.geometry.rayThroughPiece(x, y)), walker(WalkerFor(scene, ray)),
+        stream(RandomStream(scene, x, y)), travel(scene.inner.worldDirection(ray.direction))
   {}
 
   Ray ray; ///< the one that is being followed now

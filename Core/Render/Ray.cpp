@@ -64,6 +64,18 @@ glm::dvec3 Point(const glm::dvec4& homogeneous)
   return glm::dvec3(homogeneous) * (1.0 / homogeneous.w);
 }
 
+/// Cuts off what is not in the ray's piece.
+void KeepPiece(Ray& ray)
+{
+  if (ray.length > 0) {
+    ray.entry = ray.at(ray.pieceBegin);
+    ray.length = std::min(ray.length, ray.pieceEnd) - ray.pieceBegin;
+    ray.footprint += ray.footprintGrowth * ray.pieceBegin;
+    ray.pieceBegin = 0;
+    ray.pieceEnd = std::numeric_limits<double>::infinity();
+  }
+}
+
 /// The part of a line that survives clipping.
 struct Interval
 {
@@ -208,12 +220,20 @@ Ray RayGeometry::clipped(const Line& line, int x, int y, double begin, double en
       world.end = std::min(world.end, line.distanceTo(depth));
     }
   }
+  Interval piece{world.begin, world.end};
+  for (const glm::dvec4& plane : this->Picture.piece) {
+    piece.keep(glm::dot(plane, glm::dvec4(near, 1.0)), glm::dot(plane, glm::dvec4(forward, 0.0)));
+  }
   Ray ray;
-  if (world.begin < world.end) { // false, too, where something was not a number
+  if (piece.begin < piece.end) { // false, too, where something was not a number
     ray.entry = origin + world.begin * direction;
     ray.direction = direction * this->WorldPerUnit;
     ray.inverse = 1.0 / ray.direction;
     ray.length = (world.end - world.begin) / this->WorldPerUnit;
+    ray.pieceBegin = (piece.begin - world.begin) / this->WorldPerUnit;
+    if (piece.end < world.end) {
+      ray.pieceEnd = (piece.end - world.begin) / this->WorldPerUnit;
+    }
     // A pixel's edge grows linearly from the near to the far plane.
     const glm::dvec4 next =
         line.center + this->Picture.clipToWorld[0] * (2.0 / this->Picture.width);
@@ -222,6 +242,16 @@ Ray RayGeometry::clipped(const Line& line, int x, int y, double begin, double en
     ray.footprintGrowth = (atFar - atNear) / line.range;
     ray.footprint = (atNear + ray.footprintGrowth * world.begin) / this->WorldPerUnit;
   }
+  if (this->Picture.blending.mode == BlendMode::Isosurface) {
+    KeepPiece(ray); // surfaces are found between samples, of which the first is where it begins
+  }
+  return ray;
+}
+
+Ray RayGeometry::rayThroughPiece(int x, int y) const
+{
+  Ray ray = this->ray(x, y);
+  KeepPiece(ray);
   return ray;
 }
 

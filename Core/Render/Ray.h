@@ -7,6 +7,8 @@
 #include <glm/gtc/type_precision.hpp>
 #include <glm/vec3.hpp>
 
+#include <limits>
+
 namespace inr {
 
 /// A pixel's way through the volume. Parameter t counts from the ray's own entry, in voxels of the
@@ -19,6 +21,8 @@ struct Ray
   double length = 0;          ///< t where the ray leaves or meets something opaque; <= 0: a miss
   double footprint = 0;       ///< edge of the pixel at t = 0, in units of t
   double footprintGrowth = 0; ///< of the footprint per unit of t
+  double pieceBegin = 0;      ///< t between which the picture\'s piece of the medium is
+  double pieceEnd = std::numeric_limits<double>::infinity();
 
   INR_HOST_DEVICE glm::dvec3 at(double t) const { return this->entry + t * this->direction; }
 };
@@ -31,11 +35,15 @@ public:
   RayGeometry(const Frame& frame, const glm::i64vec3& dims);
 
   /// The ray through the centre of pixel (x, y), clipped to near and far plane, the visible domain
-  /// (point bounds), the clipping planes and the opaque depth.
+  /// (point bounds), the clipping planes and the opaque depth; a miss where it misses the frame's
+  /// piece.
   Ray ray(int x, int y) const;
   /// The part of it between two translucent layers: from layer `part` - 1, or its beginning, to
   /// layer `part`, or its end.
   Ray ray(int x, int y, int part) const;
+
+  /// The same ray, entering where its piece begins and leaving where it ends.
+  Ray rayThroughPiece(int x, int y) const;
 
   /// Window-space depth in [0, 1] of a point on a ray.
   double windowDepth(const glm::dvec3& index) const;

@@ -92,51 +92,39 @@ public:
   INR_HOST_DEVICE SampleWalker(const Majorants& majorants, const MarchSettings& settings,
                                const Ray& ray, double scale, int levels, double jitter)
       : Detail(ray, scale, levels), Cells(majorants, settings.dims, ray, scale, levels),
-        Jitter(jitter), End(ray.length / settings.step), Next(jitter < 1.0 ? 0 : -1)
+        Jitter(jitter), End(ray.length / settings.step), PieceBegin(ray.pieceBegin / settings.step),
+        PieceEnd(ray.pieceEnd / settings.step), Next(jitter < 1.0 ? 0 : -1)
   {}
 
-  /// Moves on to the next sample that may be seen; false when there is none before the ray ends.
+  /// Moves on to the next sample of the ray's piece that may be seen; false when there is none.
   INR_HOST_DEVICE bool moveToVisible(const MarchSettings& settings)
   {
-    while (static_cast<double>(this->Next) < this->End) {
-      if (static_cast<double>(this->Next) < this->Stretch.levelEnd &&
-          this->firstPlace() < this->Stretch.exit) {
+    while (this->moveAlongRay(settings)) {
+      if (this->isInPiece()) {
         return true;
       }
-      this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
-      this->Cells.moveTo(this->firstPlace() * settings.step);
-      if (this->Cells.extinction() > 0.0f || this->isLeaving(settings)) {
-        this->beginStretch(settings);
-        return true;
-      }
-      if (!this->Cells.moveToVisible(this->End * settings.step)) {
+      const AlikeSamples samples = this->alikeOnRay();
+      const double first = static_cast<double>(this->Next) + this->offset(samples);
+      if (first >= this->PieceEnd) {
         return false;
       }
-      this->skipTo(this->Cells.enter(), settings);
+      if (first >= this->PieceBegin) {
+        return true;
+      }
+      this->pass(samples, this->countBelow(this->PieceBegin, samples));
     }
     return false;
   }
 
-  /// The samples from here on, as far as they lie in the stretch and on the ray; there is one.
+  /// The samples from here on, as far as they lie in the stretch and on the ray's piece; there is
+  /// one.
   INR_HOST_DEVICE AlikeSamples alike() const
   {
-    const int power = this->shortest();
-    const double inverse = PowerOfTwo(-power);
-    const auto begin = static_cast<double>(this->Next);
-    const double onRay = (this->End - begin) * inverse;
-    if (onRay < 1.0) {
-      return {1, 1, power, true};
+    AlikeSamples samples = this->alikeOnRay();
+    if (samples.count > 1 && this->Stretch.exit > this->PieceEnd) {
+      samples.count = this->countBelow(this->PieceEnd, samples);
     }
-    if (power < this->Stretch.level) { // up to the next interval of the level
-      return {1, 1, power, false};
-    }
-    const double inCells = (this->Stretch.exit - begin) * inverse - this->Jitter;
-    const double inLevel = (this->Stretch.levelEnd - begin) * inverse;
-    const int count = glm::min(CountBelow(glm::min(inCells, inLevel), Plenty),
-                               static_cast<int>(glm::min(onRay, Plenty)));
-    const int joined = count >> this->Stretch.faint;
-    return joined == 0 ? AlikeSamples{1, count, power, false}
-                       : AlikeSamples{joined, 1 << this->Stretch.faint, power, false};
+    return samples;
   }
 
   /// Goes past `count` of such samples.
@@ -171,6 +159,64 @@ public:
 private:
   static constexpr double Plenty = 1024;    ///< more samples than anybody asks for at once
   static constexpr double BlockLength = 64; ///< samples that are looked ahead for
+
+  /// To the next sample of the whole ray that may be seen.
+  INR_HOST_DEVICE bool moveAlongRay(const MarchSettings& settings)
+  {
+    while (static_cast<double>(this->Next) < this->End) {
+      if (static_cast<double>(this->Next) < this->Stretch.levelEnd &&
+          this->firstPlace() < this->Stretch.exit) {
+        return true;
+      }
+      this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
+      this->Cells.moveTo(this->firstPlace() * settings.step);
+      if (this->Cells.extinction() > 0.0f || this->isLeaving(settings)) {
+        this->beginStretch(settings);
+        return true;
+      }
+      if (!this->Cells.moveToVisible(glm::min(this->End, this->PieceEnd) * settings.step)) {
+        return false;
+      }
+      this->skipTo(this->Cells.enter(), settings);
+    }
+    return false;
+  }
+
+  /// The samples from here on, whichever piece they are in.
+  INR_HOST_DEVICE AlikeSamples alikeOnRay() const
+  {
+    const int power = this->shortest();
+    const double inverse = PowerOfTwo(-power);
+    const auto begin = static_cast<double>(this->Next);
+    const double onRay = (this->End - begin) * inverse;
+    if (onRay < 1.0) {
+      return {1, 1, power, true};
+    }
+    if (power < this->Stretch.level) { // up to the next interval of the level
+      return {1, 1, power, false};
+    }
+    const double inCells = (this->Stretch.exit - begin) * inverse - this->Jitter;
+    const double inLevel = (this->Stretch.levelEnd - begin) * inverse;
+    const int count = glm::min(CountBelow(glm::min(inCells, inLevel), Plenty),
+                               static_cast<int>(glm::min(onRay, Plenty)));
+    const int joined = count >> this->Stretch.faint;
+    return joined == 0 ? AlikeSamples{1, count, power, false}
+                       : AlikeSamples{joined, 1 << this->Stretch.faint, power, false};
+  }
+
+  /// Whether that goes without counting.
+  INR_HOST_DEVICE bool isInPiece() const
+  {
+    return static_cast<double>(this->Next) >= this->PieceBegin &&
+           this->Stretch.exit <= this->PieceEnd;
+  }
+
+  /// How many of these samples, the first of them in any case, are at places below `end`.
+  INR_HOST_DEVICE int countBelow(double end, const AlikeSamples& samples) const
+  {
+    const double first = static_cast<double>(this->Next) + this->offset(samples);
+    return CountBelow((end - first) / static_cast<double>(samples.steps()), samples.count);
+  }
 
   /// log2 of the steps that the next sample stands for at least: those of the level, if the lattice
   /// has such an interval here.
@@ -260,6 +306,8 @@ private:
   SampleStretch Stretch;
   double Jitter;
   double End;
+  double PieceBegin;
+  double PieceEnd;
   std::int64_t Next; ///< lattice interval that comes next
 };
 

@@ -49,8 +49,8 @@ glm::dmat4 WorldToIndex(const PresentedGrid& grid, vtkMatrix4x4* volumeToWorld);
 /// Half spaces (see Frame::clippingPlanes) of a mapper's planes; null means none.
 std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes);
 
-/// Half spaces that bound the image's piece, none when it holds the whole grid: ranks that hold
-/// neighbouring pieces then draw neighbouring parts.
+/// Half spaces (see Frame::piece) that bound the image's piece, none when it holds the whole grid:
+/// ranks that hold neighbouring pieces then draw neighbouring parts.
 std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4& worldToIndex);
 
 /// How a mapper blends, and which isosurfaces; its mode must be one that BlendMode has.

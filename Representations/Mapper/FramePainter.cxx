@@ -64,8 +64,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.clipToWorld = ClipToWorld(renderer);
   frame.worldToIndex = WorldToIndex(grid, volume->GetMatrix());
   frame.clippingPlanes = ClippingPlanes(mapper->GetClippingPlanes());
-  const auto piece = PiecePlanes(grid, frame.worldToIndex);
-  frame.clippingPlanes.insert(frame.clippingPlanes.end(), piece.begin(), piece.end());
+  frame.piece = PiecePlanes(grid, frame.worldToIndex);
   frame.lights = SceneLights(renderer);
   frame.shading = MaterialOf(volume->GetProperty());
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
