@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 
 #include <cerrno>
+#include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <system_error>
@@ -39,10 +40,26 @@ InputFile::InputFile(const std::string& path)
   this->Size = status.st_size;
 }
 
-InputFile::~InputFile() { close(this->Descriptor); }
+InputFile::InputFile(std::string bytes, InMemory /*unused*/)
+    : Bytes(std::move(bytes)), Size(static_cast<std::int64_t>(this->Bytes.size()))
+{}
+
+InputFile::~InputFile()
+{
+  if (this->Descriptor >= 0) {
+    close(this->Descriptor);
+  }
+}
 
 void InputFile::read(std::int64_t offset, void* target, std::size_t bytes) const
 {
+  if (this->Descriptor < 0) {
+    if (offset + static_cast<std::int64_t>(bytes) > this->Size) {
+      throw Error(ErrorCode::CannotRead, "the bytes end early", this->Size);
+    }
+    std::memcpy(target, this->Bytes.data() + offset, bytes);
+    return;
+  }
   char* next = static_cast<char*>(target);
   while (bytes > 0) {
     const ssize_t got = pread(this->Descriptor, next, bytes, offset);

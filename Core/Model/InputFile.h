@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace inr {
 
@@ -13,6 +14,8 @@ class InputFile
 {
 public:
   explicit InputFile(const std::string& path);
+  /// One that is in memory.
+  static InputFile OfBytes(std::string bytes) { return InputFile(std::move(bytes), InMemory{}); }
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
@@ -23,7 +26,12 @@ public:
   void read(std::int64_t offset, void* target, std::size_t bytes) const;
 
 private:
-  int Descriptor = -1;
+  struct InMemory
+  {};
+  InputFile(std::string bytes, InMemory unused);
+
+  std::string Bytes;
+  int Descriptor = -1; ///< below 0: it is Bytes
   std::int64_t Size = 0;
 };
 

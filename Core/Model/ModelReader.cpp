@@ -3,6 +3,7 @@
 #include "Core/Model/BsonScanner.h"
 #include "Core/Model/CompactBlobs.h"
 #include "Core/Model/LittleEndian.h"
+#include "Core/Model/ModelBytes.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/ModelHeader.h"
 
@@ -105,6 +106,12 @@ Model LoadBlobs(const InputFile& file, ModelHeader header)
   return std::move(model);
 }
 
+ModelPointer Load(const InputFile& file, const std::string& path, const ModelOverrides& overrides)
+{
+  const Document document = Scan(file, path);
+  return std::make_shared<const Model>(LoadBlobs(file, ParseModelHeader(document, overrides)));
+}
+
 // Every way in passes here, so that every message names the file.
 template <typename Body> auto Reading(const std::string& path, const Body& body)
 {
@@ -147,11 +154,13 @@ Model ReadModelHeader(const std::string& path, const ModelOverrides& overrides)
 
 ModelPointer ReadModel(const std::string& path, const ModelOverrides& overrides)
 {
-  return Reading(path, [&]() -> ModelPointer {
-    const InputFile file(path);
-    const Document document = Scan(file, path);
-    return std::make_shared<const Model>(LoadBlobs(file, ParseModelHeader(document, overrides)));
-  });
+  return Reading(path, [&] { return Load(InputFile(path), path, overrides); });
+}
+
+ModelPointer ModelFromBytes(std::string bytes)
+{
+  const char* const name = "a model that was sent";
+  return Reading(name, [&] { return Load(InputFile::OfBytes(std::move(bytes)), name, {}); });
 }
 
 } // namespace inr

@@ -5,6 +5,7 @@
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/InrSection.h"
 #include "Core/Model/ModelBlobs.h"
+#include "Core/Model/ModelBytes.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
 
@@ -179,10 +180,9 @@ void RequireSize(std::int64_t bytes)
   }
 }
 
-std::int64_t WriteFile(const Model& model, const std::string& path)
+// Hands the file to `write` piece by piece and returns its size.
+template <typename Write> std::int64_t WritePieces(const Model& model, const Write& write)
 {
-  RequireStorable(model);
-  AtomicFile file(path);
   const std::string parameters = ParameterBlob(model);
   const std::string ranges = RangeBlob(model);
   const std::uint32_t checksum = ContinueChecksum(
@@ -190,10 +190,19 @@ std::int64_t WriteFile(const Model& model, const std::string& path)
   const Framing framing = Frame(model, SizesOf(ranges, parameters), checksum);
   for (const std::string* piece :
        {&framing.text[0], &ranges, &framing.text[1], &parameters, &framing.text[2]}) {
-    file.write(piece->data(), piece->size());
+    write(*piece);
   }
-  file.commit();
   return framing.total();
+}
+
+std::int64_t WriteFile(const Model& model, const std::string& path)
+{
+  RequireStorable(model);
+  AtomicFile file(path);
+  const std::int64_t bytes = WritePieces(
+      model, [&file](const std::string& piece) { file.write(piece.data(), piece.size()); });
+  file.commit();
+  return bytes;
 }
 
 } // namespace
@@ -215,6 +224,14 @@ std::int64_t ModelFileSize(const Model& model)
   const BlobSizes sizes =
       pack ? SizesOf(RangeBlob(model), ParameterBlob(model)) : LargestSizes(model);
   return Frame(model, sizes, 0).total();
+}
+
+std::string ModelToBytes(const Model& model)
+{
+  RequireStorable(model);
+  std::string bytes;
+  WritePieces(model, [&bytes](const std::string& piece) { bytes += piece; });
+  return bytes;
 }
 
 std::int64_t WriteModel(const Model& model, const std::string& path)

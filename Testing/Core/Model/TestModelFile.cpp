@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
+#include "Core/Model/ModelBytes.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 
 #include <cmath>
@@ -57,6 +58,27 @@ TEST_F(ModelFile, TellsNoTimeAndNoEarlierStepsUnlessThereAreSome)
   EXPECT_EQ(bytes.find("earlier_steps"), std::string::npos);
   model->volume.time = HUGE_VAL;
   EXPECT_THROW(inr::WriteModel(*model, Folder.file("model.inr")), inr::Error);
+}
+
+TEST_F(ModelFile, IsTheSameInMemory)
+{
+  const auto written = FullModel();
+  inr::WriteModel(*written, Folder.file("model.inr"));
+  const std::string bytes = inr::ModelToBytes(*written);
+  EXPECT_EQ(bytes, ReadBytes(Folder.file("model.inr")));
+  const inr::ModelPointer read = inr::ModelFromBytes(bytes);
+  EXPECT_EQ(read->parameters, written->parameters);
+  EXPECT_EQ(read->volume.dims, written->volume.dims);
+  EXPECT_EQ(read->macroCells.dims, written->macroCells.dims);
+}
+
+TEST_F(ModelFile, IsRefusedInMemoryWhenItEndsEarly)
+{
+  const std::string bytes = inr::ModelToBytes(*FullModel());
+  for (const double part : {0.0, 0.001, 0.1, 0.5, 0.999}) {
+    const auto length = static_cast<std::size_t>(part * static_cast<double>(bytes.size()));
+    EXPECT_THROW(inr::ModelFromBytes(bytes.substr(0, length)), inr::Error) << length;
+  }
 }
 
 TEST_F(ModelFile, AnApronThatIsNotSaidIsAVoxel)
