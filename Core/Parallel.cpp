@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Parallel.h"
 
+#include "Core/Random.h"
+
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -13,6 +15,7 @@
 
 #ifdef __linux__
 #include <sched.h>
+#include <unistd.h>
 #endif
 
 namespace inr {
@@ -27,6 +30,26 @@ int AvailableCores()
   }
 #endif
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::uint64_t AvailableCoresKey()
+{
+  std::uint64_t key = 0;
+  const auto add = [&key](const void* bytes, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      key = RandomBits(key, static_cast<const unsigned char*>(bytes)[k]);
+    }
+  };
+#ifdef __linux__
+  char host[256] = {};
+  gethostname(host, sizeof(host) - 1);
+  add(host, sizeof(host));
+  cpu_set_t mask;
+  CPU_ZERO(&mask);
+  sched_getaffinity(0, sizeof(mask), &mask);
+  add(&mask, sizeof(mask));
+#endif
+  return key;
 }
 
 #ifdef __SANITIZE_THREAD__

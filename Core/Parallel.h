@@ -10,6 +10,10 @@ namespace inr {
 /// Cores this process may run on (its affinity mask), at least 1.
 int AvailableCores();
 
+/// The same number in all processes that may run on the same cores of the same machine, and hardly
+/// ever in others.
+std::uint64_t AvailableCoresKey();
+
 /// A set of worker threads of our own, apart from the host application's.
 ///
 /// Work is cut into blocks whose limits depend on the arguments only, never on the number of

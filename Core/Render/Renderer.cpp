@@ -115,6 +115,8 @@ std::shared_ptr<const KeptBricks> Renderer::keepBricks() const
 
 std::string Renderer::kernel() const { return this->Self->Field->kernel(); }
 
+int Renderer::threads() const { return this->Self->Threads.threads(); }
+
 void Renderer::setTransferFunction(const TransferFunction& transferFunction)
 {
   Implementation& self = *this->Self;

@@ -80,6 +80,9 @@ public:
   /// The instruction set that infers: Evaluator::kernel().
   std::string kernel() const;
 
+  /// That compute the pictures.
+  int threads() const;
+
   /// Renders into `rgba`: premultiplied RGBA, resized to the frame. `depth`, when given, receives
   /// the window-space depth where accumulated opacity first reaches one half, 1 where it never
   /// does; of the largest or smallest value where its opacity does; 1 for averages and sums; of

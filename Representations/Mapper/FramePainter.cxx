@@ -264,7 +264,9 @@ bool FramePainter::render(const Frame& scene, const Viewport& viewport, const Su
     }
     throw;
   }
-  last.backend = "CPU " + this->Caster->kernel();
+  const int threads = this->Caster->threads();
+  last.backend = "CPU " + this->Caster->kernel() + ", " + std::to_string(threads) +
+                 (threads == 1 ? " thread" : " threads");
   last.reduction = reduction;
   this->resolution(frame.mode)
       .record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);

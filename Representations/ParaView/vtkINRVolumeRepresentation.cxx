@@ -2,29 +2,62 @@
 #include "vtkINRVolumeRepresentation.h"
 
 #include "ClientWatch.h"
+#include "ModelDelivery.h"
+#include "ThreadShare.h"
+#include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
 #include "vtkINRStatusActor.h"
 #include "vtkINRVolumeMapper.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMatrix4x4.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
 #include "vtkPVDataDeliveryManager.h"
 #include "vtkPVRenderView.h"
+#include "vtkPVSession.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
+#include "vtkProcessModule.h"
 #include "vtkRenderer.h"
+#include "vtkSMSession.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 vtkStandardNewMacro(vtkINRVolumeRepresentation);
 
+namespace {
+
+/// Whether several processes have a piece of the data each: asked in a client, it is its server's.
+bool HasPieces()
+{
+  auto* session = vtkSMSession::SafeDownCast(vtkProcessModule::GetProcessModule()->GetSession());
+  vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
+  return (session && session->GetNumberOfProcesses(vtkPVSession::DATA_SERVER_ROOT) > 1) ||
+         (processes && processes->GetNumberOfProcesses() > 1);
+}
+
+/// Whether another process may have to draw. Several would each send a piece, of which ParaView
+/// puts no model together.
+bool MaySend()
+{
+  const int type = vtkProcessModule::GetProcessType();
+  const bool serves =
+      type == vtkProcessModule::PROCESS_SERVER || type == vtkProcessModule::PROCESS_DATA_SERVER;
+  return serves && !HasPieces();
+}
+
+} // namespace
+
 vtkINRVolumeRepresentation::vtkINRVolumeRepresentation()
-    : Client(std::make_unique<inr::ClientWatch>())
+    : Client(std::make_unique<inr::ClientWatch>()), Model(std::make_unique<inr::ModelDelivery>())
 {
   this->VolumeMapper.TakeReference(vtkINRVolumeMapper::New());
   this->Actor.TakeReference(vtkINRLODVolume::New());
@@ -51,11 +84,19 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     return 0;
   }
   if (request == vtkPVView::REQUEST_UPDATE()) {
-    this->DeliverOutline(in, out);
+    if (this->SharedThreads == 0) { // in all processes alike: they share them out together
+      this->SharedThreads = inr::ThreadShare(vtkMultiProcessController::GetGlobalController());
+    }
+    this->Deliver(in, out);
   } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
-    vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
+    if (HasPieces()) {
+      vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
+    }
   } else if (request == vtkPVView::REQUEST_RENDER()) {
     this->Client->update();
+    this->TakeDelivery(in);
+    this->GetMapper()->SetNumberOfThreads(this->NumberOfThreads > 0 ? this->NumberOfThreads
+                                                                    : this->SharedThreads);
     this->UpdateMapperParameters();
     this->ReportColouring();
     this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
@@ -73,16 +114,54 @@ void vtkINRVolumeRepresentation::ForgetOutlines()
   }
 }
 
-void vtkINRVolumeRepresentation::DeliverOutline(vtkInformation* in, vtkInformation* out)
+int vtkINRVolumeRepresentation::RequestData(vtkInformation* request, vtkInformationVector** inputs,
+                                            vtkInformationVector* outputs)
 {
-  vtkDataObject* outline = this->OutlineSource->GetOutputDataObject(0);
-  vtkPVRenderView::SetPiece(in, this, outline, 0, 0);
-  vtkPVRenderView::SetPiece(in, this, outline, 0, 1);
+  const int status = this->Superclass::RequestData(request, inputs, outputs);
+  this->Carrier->Initialize();
+  if (MaySend()) {
+    try {
+      this->Model->send(vtkImageData::SafeDownCast(this->Cache), this->Carrier);
+    } catch (const std::exception& problem) {
+      vtkErrorMacro(<< problem.what());
+    }
+  }
+  return status;
+}
+
+void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out)
+{
+  vtkPVRenderView::SetPiece(in, this, this->Carrier, 0, 0);
+  vtkPVRenderView::SetPiece(in, this, this->OutlineSource->GetOutputDataObject(0), 0, 1);
   vtkPVRenderView::SetGeometryBounds(in, this, this->DataBounds, this->Actor->GetMatrix());
-  vtkPVRenderView::SetRequiresDistributedRendering(in, this, true);
+  if (HasPieces()) { // false would forbid it
+    vtkPVRenderView::SetRequiresDistributedRendering(in, this, true);
+  }
   vtkPVRenderView::SetOrderedCompositingConfiguration(
       in, this, vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION);
   out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
+}
+
+void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
+{
+  if (this->GetNumberOfInputConnections(0) > 0) {
+    return; // the data are here
+  }
+  vtkAlgorithmOutput* producer = vtkPVRenderView::GetPieceProducer(in, this, 0);
+  vtkDataObject* carrier =
+      producer ? producer->GetProducer()->GetOutputDataObject(producer->GetIndex()) : nullptr;
+  try {
+    vtkImageData* image = this->Model->receive(carrier);
+    this->VolumeMapper->SetInputDataObject(image);
+    this->Actor->SetEnableLOD(image ? 0 : 1); // the outline
+  } catch (const std::exception& problem) {
+    vtkErrorMacro(<< problem.what());
+  }
+}
+
+bool vtkINRVolumeRepresentation::DrawsHere()
+{
+  return this->VolumeMapper->GetDataObjectInput() != nullptr;
 }
 
 namespace {
@@ -254,7 +333,7 @@ void vtkINRVolumeRepresentation::SetStillTimeLimit(double seconds)
 
 void vtkINRVolumeRepresentation::SetNumberOfThreads(int threads)
 {
-  this->GetMapper()->SetNumberOfThreads(threads);
+  this->NumberOfThreads = threads;
 }
 
 void vtkINRVolumeRepresentation::SetSeed(int seed) { this->GetMapper()->SetSeed(seed); }

@@ -5,26 +5,29 @@
  *
  * Takes what INRReader produces and draws it at its native resolution, whatever grid the reader
  * presents to filters. Colour, opacity and placement are those of ParaView's own volume
- * representation. The data never leave the process that has them: where that is not the process
- * that draws, the outline is shown. A colouring that leaves the picture blank is reported once.
- * Pictures are not refined while an animation plays or a modal dialog is open.
+ * representation. The values never leave the process that has them. Where that is not the process
+ * that draws, the model is sent there, from a server of a single process; that of a parallel server
+ * draws itself, or if it cannot, the outline is shown. A colouring that leaves the picture blank is
+ * reported once. Pictures are not refined while an animation plays or a modal dialog is open.
  */
 #ifndef vtkINRVolumeRepresentation_h
 #define vtkINRVolumeRepresentation_h
 
 #include "vtkINRRepresentationsModule.h" // for the export macro
 #include "vtkImageVolumeRepresentation.h"
-#include "vtkNew.h" // for Status
+#include "vtkNew.h" // for Carrier
 
 #include <memory> // for Client
 #include <string> // for LastProblem
 
 class vtkINRStatusActor;
 class vtkINRVolumeMapper;
+class vtkPolyData;
 
 namespace inr {
 class ClientWatch;
-}
+class ModelDelivery;
+} // namespace inr
 
 class VTKINRREPRESENTATIONS_EXPORT vtkINRVolumeRepresentation : public vtkImageVolumeRepresentation
 {
@@ -71,12 +74,17 @@ public:
   const char* GetBackendInUse();
   ///@}
 
+  /// Whether this process has something to draw.
+  bool DrawsHere();
+
 protected:
   vtkINRVolumeRepresentation();
   ~vtkINRVolumeRepresentation() override;
 
   bool AddToView(vtkView* view) override;
   bool RemoveFromView(vtkView* view) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs,
+                  vtkInformationVector* outputs) override;
 
 private:
   vtkINRVolumeRepresentation(const vtkINRVolumeRepresentation&) = delete;
@@ -85,12 +93,17 @@ private:
   vtkINRVolumeMapper* GetMapper();
   void UpdateStatus();
   void ForgetOutlines();
-  void DeliverOutline(vtkInformation* in, vtkInformation* out);
+  void Deliver(vtkInformation* in, vtkInformation* out);
+  void TakeDelivery(vtkInformation* in);
   std::string WhyBlank();
   void ReportColouring();
   void OnRefine(vtkObject* mapper, unsigned long event, void* mayRefine);
 
+  int NumberOfThreads = 0;
+  int SharedThreads = 0; ///< for 0 of the above; 0 = not known yet
   std::unique_ptr<inr::ClientWatch> Client;
+  std::unique_ptr<inr::ModelDelivery> Model;
+  vtkNew<vtkPolyData> Carrier; ///< of the model to where it is drawn, if that is elsewhere
   std::string LastProblem;
   vtkNew<vtkINRStatusActor> Status;
   bool ShowStatus = false;

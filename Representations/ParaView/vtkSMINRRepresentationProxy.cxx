@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSMINRRepresentationProxy.h"
 
+#include "vtkINRVolumeRepresentation.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVSession.h"
 
@@ -10,7 +11,9 @@ void vtkSMINRRepresentationProxy::UpdatePropertyInformationInternal(vtkSMPropert
 {
   // A session without a server answers itself wherever it is told to ask.
   const vtkTypeUInt32 everywhere = this->Location;
-  this->Location = everywhere & ~vtkTypeUInt32{vtkPVSession::CLIENT};
+  auto* here = vtkINRVolumeRepresentation::SafeDownCast(this->GetClientSideObject());
+  this->Location = here && here->DrawsHere() ? vtkTypeUInt32{vtkPVSession::CLIENT}
+                                             : everywhere & ~vtkTypeUInt32{vtkPVSession::CLIENT};
   this->Superclass::UpdatePropertyInformationInternal(property);
   this->Location = everywhere;
 }

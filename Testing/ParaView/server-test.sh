@@ -1,9 +1,9 @@
 #!/bin/bash
-# server-test.sh SCRIPT PVPYTHON PVSERVER [LAUNCHER...]: runs SCRIPT PORT in PVPYTHON while PVSERVER,
-# started by LAUNCHER, listens to PORT.
+# server-test.sh SCRIPT PVPYTHON PVSERVER PROCESSES [LAUNCHER...]: runs SCRIPT PORT PROCESSES in
+# PVPYTHON while so many of PVSERVER, started by LAUNCHER, listen to PORT.
 set -u
-script=$1 pvpython=$2 pvserver=$3
-shift 3
+script=$1 pvpython=$2 pvserver=$3 processes=$4
+shift 4
 log=$(mktemp)
 port=$((11000 + $$ % 20000))
 "$@" "$pvserver" --server-port="$port" > "$log" 2>&1 &
@@ -14,7 +14,7 @@ for _ in $(seq 600); do
   kill -0 "$server" 2> /dev/null || break
   sleep 0.1
 done
-timeout --kill-after=10 200 "$pvpython" "$script" "$port"
+timeout --kill-after=10 200 "$pvpython" "$script" "$port" "$processes"
 status=$?
 [ "$status" -eq 0 ] || cat "$log"
 exit "$status"

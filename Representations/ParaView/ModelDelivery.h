@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Model/Model.h"
+#include "vtkSmartPointer.h"
+
+class vtkDataObject;
+class vtkImageData;
+class vtkUnsignedCharArray;
+
+namespace inr {
+
+/// Takes models from the process that has them to the one that draws, within data that ParaView
+/// delivers: the model's file is a field array under the name of the point array it stands for.
+class ModelDelivery
+{
+public:
+  /// Puts the model of `image`, if it has one, into `carrier`. Packed once per model. Throws Error
+  /// for a model that no file can hold.
+  void send(vtkImageData* image, vtkDataObject* carrier);
+
+  /// An image of the model in `carrier`, over the model's bounds with as few points as can be; null
+  /// when there is none. Unpacked once per delivery. Throws Error for bytes that are not a model.
+  vtkImageData* receive(vtkDataObject* carrier);
+
+private:
+  ModelPointer Packed;
+  vtkSmartPointer<vtkUnsignedCharArray> Bytes;
+  vtkSmartPointer<vtkImageData> Image;
+};
+
+} // namespace inr
