@@ -158,28 +158,9 @@ bool CachedMarcher::isCropped(const CachedRay& state, AlikeSamples& alike) const
   return !this->Cropped->shows(place);
 }
 
-int CachedMarcher::add(const CachedRay& state, const AlikeSamples& alike)
-{
-  const LevelOfDetail& detail = state.samples.detail();
-  const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
-  BrickRun* fine = this->runFor(state, detail.level(), place);
-  BrickRun* coarse = detail.isDithered() ? this->runFor(state, detail.level() + 1, place) : fine;
-  if (fine == nullptr || coarse == nullptr) {
-    this->Waiting = true;
-    return 0;
-  }
-  int count = std::min(alike.count, SampleBatch::Capacity - this->Count);
-  if (count > 1) {
-    const double room = std::min(fine->exit(), coarse->exit()) - place;
-    count = CountBelow(room / static_cast<double>(alike.steps()), count);
-  }
-  this->addRun(state, alike, count, *fine, *coarse);
-  this->countUse(state, alike, count, *fine, *coarse);
-  return count;
-}
-
-void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
-                           const BrickRun& fine, const BrickRun& coarse)
+// Inline: called once per run of samples, and there are as many of them as of bricks.
+inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
+                                  const BrickRun& fine, const BrickRun& coarse)
 {
   const SampleWalker& samples = state.samples;
   const SampleStretch& stretch = samples.stretch();
@@ -212,8 +193,8 @@ void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, in
   this->Count += count;
 }
 
-void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike, int count,
-                             BrickRun& fine, BrickRun& coarse) const
+inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike, int count,
+                                    BrickRun& fine, BrickRun& coarse) const
 {
   if (fine.exact() && coarse.exact()) { // nobody asks which it was
     fine.count(count);
@@ -225,6 +206,26 @@ void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike, 
     const bool isFine = detail.dithered(state.stream, this->ditherOf(interval)) == fine.level();
     (isFine ? fine : coarse).count(1);
   }
+}
+
+int CachedMarcher::add(const CachedRay& state, const AlikeSamples& alike)
+{
+  const LevelOfDetail& detail = state.samples.detail();
+  const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
+  BrickRun* fine = this->runFor(state, detail.level(), place);
+  BrickRun* coarse = detail.isDithered() ? this->runFor(state, detail.level() + 1, place) : fine;
+  if (fine == nullptr || coarse == nullptr) {
+    this->Waiting = true;
+    return 0;
+  }
+  int count = std::min(alike.count, SampleBatch::Capacity - this->Count);
+  if (count > 1) {
+    const double room = std::min(fine->exit(), coarse->exit()) - place;
+    count = CountBelow(room / static_cast<double>(alike.steps()), count);
+  }
+  this->addRun(state, alike, count, *fine, *coarse);
+  this->countUse(state, alike, count, *fine, *coarse);
+  return count;
 }
 
 const CachedMarcher::Origin& CachedMarcher::originOf(int sample) const
