@@ -41,7 +41,7 @@ private:
   int pieceOf(double place) const
   {
     int piece = 0;
-    while (place >= this->Ends[piece]) {
+    while (piece < this->Count && place >= this->Ends[piece]) {
       ++piece;
     }
     return piece;

@@ -10,6 +10,7 @@
 #include <vtkHardwareSelector.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
+#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkRenderer.h>
 #include <vtkTimeStamp.h>
@@ -140,6 +141,25 @@ double* vtkINRVolumeMapper::GetBounds()
     }
   }
   return bounds;
+}
+
+void vtkINRVolumeMapper::GetWholeBounds(double bounds[6])
+{
+  const inr::MapperInput input = inr::FindInput(this);
+  if (!input.array) {
+    return;
+  }
+  vtkNew<vtkImageData> whole;
+  whole->CopyStructure(input.grid.image);
+  const glm::ivec3& dims = input.grid.presented;
+  whole->SetExtent(0, dims.x - 1, 0, dims.y - 1, 0, dims.z - 1);
+  whole->GetBounds(bounds);
+}
+
+bool vtkINRVolumeMapper::GetHasPiece()
+{
+  const inr::MapperInput input = inr::FindInput(this);
+  return input.array && inr::IsPiece(input.grid);
 }
 
 inr::PaintSettings vtkINRVolumeMapper::Settings() const

@@ -26,7 +26,8 @@
  * whether the renderer peels them or not: up to 64 of them along a pixel's ray (fewer in windows of
  * more than 800,000 pixels: 25 in one of 1920 x 1080) are drawn once more to learn where they are,
  * which is done only when a visible prop has translucent geometry. Paths inside the volume do not
- * meet them: they throw no shadow on it; and projections, which have no depth, lie over all of them.
+ * meet them: they throw no shadow on it; and projections, which have no depth, lie over all of
+ * them.
  *
  * Several volumes in a renderer are blended one after another, from the furthest to the nearest,
  * whatever their order there. Where they overlap they are not mixed; the one whose middle is nearer
@@ -355,6 +356,11 @@ public:
   /** Bounds of what is drawn: those of the input, and one spacing along an axis of one voxel. */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using vtkVolumeMapper::GetBounds;
+
+  /** Point bounds of the whole grid that the input has a piece of; left as they are without one. */
+  void GetWholeBounds(double bounds[6]);
+  /** Whether the input is a piece of a grid that other processes have the rest of. */
+  bool GetHasPiece();
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;
   void ReleaseGraphicsResources(vtkWindow* window) override;

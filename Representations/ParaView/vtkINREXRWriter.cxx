@@ -72,8 +72,13 @@ Mappers MappersOfScreenshot()
 }
 
 /// Why the float picture of `mapper` is not the one in `screenshot`; empty when it is.
-std::string WhyAnother(const vtkINRVolumeMapper* mapper, vtkImageData* screenshot)
+std::string WhyAnother(vtkINRVolumeMapper* mapper, vtkImageData* screenshot)
 {
+  if (mapper->GetHasPiece()) {
+    return "This process has drawn a piece of the volume, and others the rest; save an OpenEXR "
+           "file "
+           "in a single process.";
+  }
   int drawn[2];
   mapper->GetFrameSize(drawn);
   const int* wanted = screenshot->GetDimensions();

@@ -97,7 +97,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->TakeDelivery(in);
     this->GetMapper()->SetNumberOfThreads(this->NumberOfThreads > 0 ? this->NumberOfThreads
                                                                     : this->SharedThreads);
-    this->UpdateMapperParameters();
+    this->UpdateMapper();
     this->ReportColouring();
     this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
   }
@@ -174,6 +174,17 @@ bool IsPlaced(vtkProp3D* prop)
 }
 
 } // namespace
+
+void vtkINRVolumeRepresentation::UpdateMapper()
+{
+  // Cropping refers to the bounds of the data. Those that this process has are a piece's, or none
+  // where the model was sent to.
+  double own[6];
+  std::copy_n(this->DataBounds, 6, own);
+  this->GetMapper()->GetWholeBounds(this->DataBounds);
+  this->UpdateMapperParameters();
+  std::copy_n(own, 6, this->DataBounds);
+}
 
 std::string vtkINRVolumeRepresentation::WhyBlank()
 {

@@ -95,6 +95,7 @@ private:
   void ForgetOutlines();
   void Deliver(vtkInformation* in, vtkInformation* out);
   void TakeDelivery(vtkInformation* in);
+  void UpdateMapper();
   std::string WhyBlank();
   void ReportColouring();
   void OnRefine(vtkObject* mapper, unsigned long event, void* mayRefine);

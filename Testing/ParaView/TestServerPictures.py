@@ -34,6 +34,11 @@ def pictures(view, display, where):
     display.Shade = 1
     take("shaded")
     display.Shade = 0
+    display.INRUseCropping = 1
+    display.INRCroppingScale = [0.6, 1, 0.5]
+    display.INRCroppingOrigin = [10, 0, 5]
+    take("cropped")
+    display.INRUseCropping = 0
     display.RenderMode = "Path Tracing"
     take("paths")
     display.RenderMode = "Ray Marching"
