@@ -49,7 +49,7 @@ void ModelDelivery::send(vtkImageData* image, vtkDataObject* carrier)
 {
   vtkDataArray* scalars = image ? image->GetPointData()->GetScalars() : nullptr;
   const vtkINRDataArray* handle = vtkINRDataArray::SafeDownCast(scalars);
-  if (!handle || !handle->GetModel()) {
+  if (!scalars || !handle || !handle->GetModel()) {
     return;
   }
   if (handle->GetModel() != this->Packed) {

@@ -23,7 +23,7 @@ std::string LevelsOf(const vtkINRVolumeMapper* mapper)
   const int finest = mapper->GetFinestLevel();
   const int coarsest = mapper->GetCoarsestLevel();
   if (finest < 0) {
-    return "straight from the network";
+    return mapper->GetNumberOfSamples() == 0 ? "nothing visible" : "straight from the network";
   }
   const std::string first = std::to_string(finest);
   return finest == coarsest ? "level " + first

@@ -79,6 +79,13 @@ picture(view, "status-still")
 (actor,) = actors()
 check("straight from the network" in actor.GetInput(), "without a cache:", actor.GetInput())
 
+opacities = simple.GetOpacityTransferFunction(ARRAY)
+before = list(opacities.Points)
+opacities.Points = [0, 0, 0.5, 0, 300, 0, 0.5, 0]
+picture(view, "status-still")
+check("nothing visible" in actor.GetInput(), "of nothing:", actor.GetInput())
+opacities.Points = before
+
 # Two volumes, three texts high when one more comes, and none for a hidden one.
 display.CacheMode = "Cache and network"
 second = simple.INRReader(FileName=MODEL)
