@@ -22,9 +22,11 @@
 #include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <memory>
 #include <string>
+#include <vector>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
@@ -90,6 +92,14 @@ void RequireDepth(const glm::i64vec3& dims)
     throw inr::Error(inr::ErrorCode::Unsupported,
                      "a volume with a single voxel along an axis has no isosurfaces; decode it "
                      "with INRDecode and take ParaView's Contour");
+  }
+}
+
+void RequireNumbers(const std::vector<double>& values)
+{
+  if (std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); })) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument,
+                     "an isovalue is not a number; set Isosurfaces to values of the data's range");
   }
 }
 
@@ -167,6 +177,7 @@ void vtkINRContour::Contour(const NativeGrid& grid, vtkInformation* outInfo,
 {
   const inr::Model& model = *grid.model;
   RequireDepth(model.volume.dims);
+  RequireNumbers(this->Values);
   const CrossedCells crossed(model, this->Values, inr::Arena());
   this->NumberOfCells = static_cast<vtkIdType>(model.macroCells.ranges.size());
   this->SkippedCells = this->NumberOfCells - crossed.Count();

@@ -50,7 +50,11 @@ Plane PlaneOf(vtkPlane* function)
   function->FunctionGradient(zero, &gradient.x);
   const double offset = function->FunctionValue(zero);
   const double length = glm::length(gradient);
-  if (!(length > 0.0) || !std::isfinite(length) || !std::isfinite(offset)) {
+  if (!std::isfinite(length) || !std::isfinite(offset)) {
+    throw inr::Error(inr::ErrorCode::InvalidArgument,
+                     "the plane is nowhere; set an Origin and a Normal that are finite");
+  }
+  if (!(length > 0.0)) {
     throw inr::Error(inr::ErrorCode::InvalidArgument,
                      "the plane has no direction; set a Normal other than 0 0 0");
   }

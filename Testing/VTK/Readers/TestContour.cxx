@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -447,6 +448,10 @@ TEST_F(Contour, RefusesWhatItCannotDo)
   refused("not an implicit neural representation");
   this->connect(*MakeModel({12, 1, 9}));
   refused("single voxel along an axis");
+  this->connect(*MakeModel({12, 10, 9}));
+  this->Filter->SetValue(0, std::nan(""));
+  refused("not a number");
+  this->Filter->SetValue(0, 57.0);
   this->connect(*MakeModel({4096, 4096, 4096}));
   this->Filter->SetLevel(0);
   this->Filter->SetMemoryLimit(1);

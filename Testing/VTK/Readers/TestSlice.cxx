@@ -18,6 +18,7 @@
 #include <vtkPolygon.h>
 #include <vtkTransform.h>
 
+#include <cmath>
 #include <vector>
 
 namespace {
@@ -294,8 +295,14 @@ TEST_F(Slice, RefusesWhatItCannotDo)
     EXPECT_EQ(this->update()->GetNumberOfPoints(), 0);
     EXPECT_TRUE(messages.onlyError("Normal other than 0 0 0")) << messages.text();
   }
-  this->Reader->Update();
   this->Plane->SetNormal(0, 0, 1);
+  this->Plane->SetOrigin(0, 0, HUGE_VAL);
+  {
+    const MessageCapture messages;
+    EXPECT_EQ(this->update()->GetNumberOfPoints(), 0);
+    EXPECT_TRUE(messages.onlyError("Origin and a Normal that are finite")) << messages.text();
+  }
+  this->Reader->Update();
   this->Plane->SetOrigin(this->Reader->GetOutput()->GetCenter());
   this->Filter->SetMaximumPoints(0);
   {
