@@ -128,9 +128,13 @@ void GradientDescent::startFrom(const std::vector<float>& parameters)
   std::copy(parameters.begin(), parameters.end(), this->Parameters.begin());
 }
 
-std::optional<double> GradientDescent::step(const SampleSource& source, const StopCheck& check)
+std::optional<double> GradientDescent::step(BatchSource& batches, const StopCheck& check)
 {
-  this->drawBatch(source);
+  batches.prepare({this->Steps, this->PlannedSteps}, check);
+  if (!check.goesOn()) {
+    return std::nullopt;
+  }
+  this->drawBatch(batches);
   const std::optional<double> loss = this->computeGradient(this->Positions, this->Targets, check);
   if (!loss) {
     return loss;
@@ -142,18 +146,11 @@ std::optional<double> GradientDescent::step(const SampleSource& source, const St
   return loss;
 }
 
-void GradientDescent::drawBatch(const SampleSource& source)
+void GradientDescent::drawBatch(const BatchSource& batches)
 {
   const std::uint64_t stream = StreamSeed(this->Seed, BatchStream);
-  const std::uint64_t drawn = this->Steps * BatchSize;
-  if (!this->Boxes) {
-    this->Boxes.emplace(source.dims(), BatchSize);
-  }
   this->Threads.forEachBlock(BatchSize, ShardSize, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t k = begin; k < end; ++k) {
-      this->Positions[k] = this->Boxes->at(k, stream, drawn + static_cast<std::uint64_t>(k));
-    }
-    source.sample(&this->Positions[begin], end - begin, &this->Targets[begin]);
+    batches.draw(stream, this->Steps, begin, end, &this->Positions[begin], &this->Targets[begin]);
   });
 }
 

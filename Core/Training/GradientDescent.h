@@ -3,10 +3,9 @@
 
 #include "Core/Inference/ModelView.h"
 #include "Core/Parallel.h"
+#include "Core/Training/BatchSource.h"
 #include "Core/Training/GridGradient.h"
-#include "Core/Training/SampleSource.h"
 #include "Core/Training/StopCheck.h"
-#include "Core/Training/StratifiedPositions.h"
 #include "Core/Training/TrainKernel.h"
 
 #include <cstdint>
@@ -28,17 +27,13 @@ struct LearningRate
   float at(std::uint64_t step, std::uint64_t plannedSteps) const;
 };
 
-/// Positions per mini-batch.
-constexpr std::int64_t BatchSize = 1 << 14;
-
 /// Xavier-uniform MLP weights (SIREN's for sine; Sitzmann et al., NeurIPS 2020) and grid features
 /// uniform in +-1e-4, from `seed`.
 std::vector<float> InitialParameters(const Description& description, const Layout& layout,
                                      std::uint64_t seed);
 
-/// Fits the parameters of one INR with Adam on mini-batches of StratifiedPositions. The parameters
-/// after n steps depend on description, seed, plan, source and instruction set, not on the number
-/// of threads.
+/// Fits the parameters of one INR with Adam on mini-batches. The parameters after n steps depend on
+/// description, seed, plan, batches and instruction set, not on the number of threads.
 class GradientDescent
 {
 public:
@@ -57,7 +52,7 @@ public:
   /// One mini-batch; returns the mean squared error over it, before the update. Nothing when
   /// `check` stopped it: then no parameter has changed, and the next step draws the same batch. An
   /// update that has begun is always finished.
-  std::optional<double> step(const SampleSource& source, const StopCheck& check = StopCheck());
+  std::optional<double> step(BatchSource& batches, const StopCheck& check = StopCheck());
 
   /// Fills gradient() with d (mean (output - target)^2) / d parameter for `count` samples (targets
   /// that are NaN count as fitted) and returns the mean; nothing when `check` stopped it.
@@ -71,7 +66,7 @@ public:
   const std::vector<float>& gradient() const { return this->Gradient; }
 
 private:
-  void drawBatch(const SampleSource& source);
+  void drawBatch(const BatchSource& batches);
   void encode(const float* xyz, std::int64_t count, const StopCheck& check);
   void backpropagateShard(std::int64_t shard, const float* targets, std::int64_t begin,
                           std::int64_t end, std::int64_t total, const StopCheck& check);
@@ -95,7 +90,6 @@ private:
   std::vector<float> SecondMoments;
   std::vector<std::uint16_t> Updates; ///< of each parameter of the grid
   std::vector<float> Corrections;
-  std::optional<StratifiedPositions> Boxes; ///< of the source's volume
   std::vector<glm::vec3> Positions;
   std::vector<float> Targets;
   std::vector<float> Encoded; ///< features of the batch, then their gradients

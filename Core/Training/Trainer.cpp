@@ -153,7 +153,8 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   GradientDescent descent(model.description, options.seed, set, arena);
   StartFrom(options.start, model, descent);
   TrainingLoop loop(options, observer);
-  loop.run(descent, source, EvaluateKernelFor(set));
+  StratifiedBatches batches(source);
+  loop.run(descent, batches, PsnrEstimate(source, options.seed), EvaluateKernelFor(set));
   model.training->steps = descent.steps();
   model.training->plannedSteps = loop.plannedSteps();
   model.training->seconds = loop.seconds();

@@ -33,10 +33,9 @@ void RequireFinite(bool finite, std::uint64_t steps)
 
 } // namespace
 
-void TrainingLoop::run(GradientDescent& descent, const SampleSource& source,
-                       const EvaluateKernel& kernel)
+void TrainingLoop::run(GradientDescent& descent, BatchSource& batches,
+                       const PsnrEstimate& estimate, const EvaluateKernel& kernel)
 {
-  const PsnrEstimate estimate(source, this->Options.seed);
   const StopCheck check([&] { return this->keepGoing(descent.steps()); });
   const bool byTheClock = this->Options.timeLimit > 0 && this->Options.maximumSteps == 0;
   if (this->Options.plannedSteps > 0) {
@@ -46,7 +45,7 @@ void TrainingLoop::run(GradientDescent& descent, const SampleSource& source,
     this->plan(descent, steps > 0 ? steps : StepsToTarget);
   }
   while (!this->reachedLimit(descent.steps())) {
-    const std::optional<double> loss = descent.step(source, check);
+    const std::optional<double> loss = descent.step(batches, check);
     if (!loss) { // the time is up, and the step was dropped
       break;
     }

@@ -23,7 +23,8 @@ public:
   {}
 
   /// Throws what TrainModel says of training itself.
-  void run(GradientDescent& descent, const SampleSource& source, const EvaluateKernel& kernel);
+  void run(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
+           const EvaluateKernel& kernel);
 
   /// Of the run: wall time, and the steps that its learning rate was spread over.
   double seconds() const { return this->Clock.seconds(); }

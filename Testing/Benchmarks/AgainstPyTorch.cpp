@@ -157,7 +157,7 @@ public:
       : Threads(threads), Descent(description, 1, inr::ChooseInstructionSet(""), this->Threads)
   {
     WriteNumbers(folder + "/initial.parameters", this->Descent.parameters());
-    this->Loss = this->Descent.step(this->Field).value();
+    this->Loss = this->Descent.step(this->Batches).value();
     WriteNumbers(folder + "/batch.xyz", this->Field.stopRecording());
     WriteNumbers(folder + "/updated.parameters", this->Descent.parameters());
   }
@@ -166,13 +166,14 @@ public:
 
   std::size_t step()
   {
-    this->Descent.step(this->Field);
+    this->Descent.step(this->Batches);
     return inr::BatchSize;
   }
 
 private:
   inr::Arena Threads;
   Ramp Field;
+  inr::StratifiedBatches Batches{this->Field};
   inr::GradientDescent Descent;
   double Loss = 0;
 };

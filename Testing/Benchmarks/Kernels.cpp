@@ -98,8 +98,9 @@ void Training(benchmark::State& state, const inr::Description& description,
   const inr::Arena arena(threads);
   inr::GradientDescent descent(description, 1, inr::ChooseInstructionSet(kernel), arena);
   const Ramp source;
+  inr::StratifiedBatches batches(source);
   for (auto step : state) {
-    descent.step(source);
+    descent.step(batches);
   }
   state.SetItemsProcessed(state.iterations() * inr::BatchSize);
 }

@@ -169,16 +169,17 @@ TEST(GradientDescent, AStoppedStepChangesNothing)
 {
   const Field<float> field = Waves();
   const inr::InMemorySource source(field.data(), -1, 1);
+  inr::StratifiedBatches batches(source);
   const inr::Arena threads(2);
   const inr::InstructionSet set = inr::ChooseInstructionSet("");
   inr::GradientDescent expected(SmallDescription(), 1, set, threads);
-  expected.step(source);
+  expected.step(batches);
   inr::GradientDescent stopped(SmallDescription(), 1, set, threads);
   int stops = 0;
   for (int limit = 1; stopped.steps() == 0; limit += 7) {
     int asked = 0;
     const inr::StopCheck check([&] { return ++asked < limit; });
-    stops += stopped.step(source, check) ? 0 : 1;
+    stops += stopped.step(batches, check) ? 0 : 1;
   }
   EXPECT_GT(stops, 3);
   EXPECT_EQ(stopped.parameters(), expected.parameters());

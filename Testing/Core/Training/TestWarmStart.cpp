@@ -59,7 +59,8 @@ TEST_F(WarmStart, BeginsWithTheParametersAndErrorOfTheStart)
   inr::GradientDescent descent(start->description, 7, inr::ChooseInstructionSet(""), arena);
   descent.startFrom(start->parameters);
   EXPECT_EQ(descent.parameters(), start->parameters);
-  const double error = descent.step(source).value(); // before its update, on random positions
+  inr::StratifiedBatches batches(source);
+  const double error = descent.step(batches).value(); // before its update, on random positions
   EXPECT_NEAR(-10 * std::log10(error), start->quality->psnr, 1.0);
   EXPECT_NE(descent.parameters(), start->parameters);
 }

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/BatchSource.h"
+
+namespace inr {
+
+void StratifiedBatches::draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin,
+                             std::int64_t end, glm::vec3* positions, float* targets) const
+{
+  for (std::int64_t k = begin; k < end; ++k) {
+    const std::uint64_t drawn = step * BatchSize + static_cast<std::uint64_t>(k);
+    positions[k - begin] = this->Boxes.at(k, stream, drawn);
+  }
+  this->Source.sample(positions, end - begin, targets);
+}
+
+} // namespace inr

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Training/SampleSource.h"
+#include "Core/Training/StopCheck.h"
+#include "Core/Training/StratifiedPositions.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+
+namespace inr {
+
+/// Positions per mini-batch.
+constexpr std::int64_t BatchSize = 1 << 14;
+
+/// Where a training is: steps done, and how many are planned (the largest number = no end in
+/// sight).
+struct TrainingStep
+{
+  std::uint64_t number = 0;
+  std::uint64_t planned = 0;
+};
+
+/// The mini-batches of a training, BatchSize samples each, in an order that keeps neighbours
+/// together.
+class BatchSource
+{
+public:
+  virtual ~BatchSource() = default;
+
+  /// Called before the items of a step are drawn, by the thread that trains. May wait for data as
+  /// long as `check` lets it.
+  virtual void prepare(const TrainingStep&, const StopCheck&) {}
+
+  /// Items [begin, end) of the mini-batch of step number `step`: positions in the unit cube and
+  /// their targets (see SampleSource). Depends on the arguments and on what was prepared alone;
+  /// safe to call from several threads at once.
+  virtual void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
+                    glm::vec3* positions, float* targets) const = 0;
+};
+
+/// A sample in each of BatchSize StratifiedPositions.
+class StratifiedBatches : public BatchSource
+{
+public:
+  /// `source` must outlive this.
+  explicit StratifiedBatches(const SampleSource& source)
+      : Source(source), Boxes(source.dims(), BatchSize)
+  {}
+
+  void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
+            glm::vec3* positions, float* targets) const override;
+
+private:
+  const SampleSource& Source;
+  StratifiedPositions Boxes;
+};
+
+} // namespace inr
