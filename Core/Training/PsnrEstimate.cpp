@@ -3,8 +3,7 @@
 
 #include "Core/Model/Model.h"
 #include "Core/Random.h"
-
-#include <glm/common.hpp>
+#include "Core/Training/HalvedCube.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,13 +13,6 @@ namespace inr {
 namespace {
 constexpr std::int64_t BlockSize = 64;
 constexpr std::uint64_t EstimateStream = 3; // apart from those of GradientDescent
-
-glm::vec3 VoxelCentre(const glm::vec3& position, const glm::i64vec3& dims)
-{
-  const glm::dvec3 size(dims);
-  const glm::dvec3 voxel = glm::min(glm::floor(glm::dvec3(position) * size), size - 1.0);
-  return glm::vec3((voxel + 0.5) / size);
-}
 
 } // namespace
 

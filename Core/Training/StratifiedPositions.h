@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Training/HalvedCube.h"
+
 #include <glm/vec3.hpp>
 
 #include <cstdint>
-#include <vector>
 
 namespace inr {
 
@@ -22,17 +23,14 @@ public:
   /// an axis of one voxel is not divided, and positions are in its middle.
   StratifiedPositions(const glm::i64vec3& dims, std::int64_t count);
 
-  std::int64_t count() const { return static_cast<std::int64_t>(this->Corners.size()); }
+  std::int64_t count() const { return this->Boxes.count(); }
 
   /// The position in box k (0 to count() - 1) that number `drawn` of the random stream gives.
   glm::vec3 at(std::int64_t k, std::uint64_t stream, std::uint64_t drawn) const;
 
 private:
-  glm::vec3 inVoxelCentre(const glm::vec3& position) const;
-
   glm::i64vec3 Dims;
-  glm::vec3 Extent{1.0f};
-  std::vector<glm::vec3> Corners;
+  HalvedCube Boxes;
 };
 
 } // namespace inr

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/HalvedCube.h"
+
+#include "Core/Training/SampleSource.h"
+
+#include <glm/common.hpp>
+
+namespace inr {
+
+namespace {
+
+/// The longest axis of more than one voxel, or x where there is none.
+int LongestAxis(const glm::i64vec3& dims, const glm::dvec3& size)
+{
+  int longest = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (dims[axis] > 1 && (longest < 0 || size[axis] > size[longest])) {
+      longest = axis;
+    }
+  }
+  return longest < 0 ? 0 : longest;
+}
+
+} // namespace
+
+HalvedCube HalveLongest(const glm::i64vec3& dims, const glm::dvec3& size, std::int64_t count)
+{
+  HalvedCube cube;
+  cube.corners.assign(static_cast<std::size_t>(count), glm::vec3(0.0f));
+  glm::dvec3 edges = size;
+  // From the largest halves down. All corners are multiples of powers of two.
+  for (std::int64_t bit = count / 2; bit > 0; bit /= 2) {
+    const int axis = LongestAxis(dims, edges);
+    edges[axis] /= 2;
+    cube.extent[axis] /= 2;
+    for (std::int64_t k = 0; k < count; ++k) {
+      cube.corners[static_cast<std::size_t>(k)][axis] +=
+          (k & bit) != 0 ? cube.extent[axis] : 0.0f;
+    }
+  }
+  return cube;
+}
+
+glm::vec3 PositionInBox(const glm::vec3& corner, const glm::vec3& extent, const glm::i64vec3& dims,
+                        std::uint64_t stream, std::uint64_t drawn)
+{
+  glm::vec3 position = corner + RandomPosition(stream, drawn, dims) * extent;
+  for (int axis = 0; axis < 3; ++axis) {
+    position[axis] = dims[axis] > 1 ? position[axis] : 0.5f;
+  }
+  return position;
+}
+
+glm::vec3 VoxelCentre(const glm::vec3& position, const glm::i64vec3& dims)
+{
+  const glm::dvec3 size(dims);
+  const glm::dvec3 voxel = glm::min(glm::floor(glm::dvec3(position) * size), size - 1.0);
+  return glm::vec3((voxel + 0.5) / size);
+}
+
+} // namespace inr
