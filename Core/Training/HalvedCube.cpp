@@ -23,22 +23,30 @@ int LongestAxis(const glm::i64vec3& dims, const glm::dvec3& size)
 
 } // namespace
 
-HalvedCube HalveLongest(const glm::i64vec3& dims, const glm::dvec3& size, std::int64_t count)
+HalvedCube HalveAlong(const std::vector<int>& axes)
 {
   HalvedCube cube;
-  cube.corners.assign(static_cast<std::size_t>(count), glm::vec3(0.0f));
-  glm::dvec3 edges = size;
-  // From the largest halves down. All corners are multiples of powers of two.
-  for (std::int64_t bit = count / 2; bit > 0; bit /= 2) {
-    const int axis = LongestAxis(dims, edges);
-    edges[axis] /= 2;
+  std::size_t bit = std::size_t{1} << axes.size();
+  cube.corners.assign(bit, glm::vec3(0.0f));
+  for (const int axis : axes) {
+    bit /= 2;
     cube.extent[axis] /= 2;
-    for (std::int64_t k = 0; k < count; ++k) {
-      cube.corners[static_cast<std::size_t>(k)][axis] +=
-          (k & bit) != 0 ? cube.extent[axis] : 0.0f;
+    for (std::size_t k = 0; k < cube.corners.size(); ++k) {
+      cube.corners[k][axis] += (k & bit) != 0 ? cube.extent[axis] : 0.0f;
     }
   }
   return cube;
+}
+
+HalvedCube HalveLongest(const glm::i64vec3& dims, const glm::dvec3& size, std::int64_t count)
+{
+  glm::dvec3 edges = size;
+  std::vector<int> axes;
+  for (std::int64_t boxes = 1; boxes < count; boxes *= 2) {
+    axes.push_back(LongestAxis(dims, edges));
+    edges[axes.back()] /= 2;
+  }
+  return HalveAlong(axes);
 }
 
 glm::vec3 PositionInBox(const glm::vec3& corner, const glm::vec3& extent, const glm::i64vec3& dims,

@@ -19,6 +19,10 @@ struct HalvedCube
   std::int64_t count() const { return static_cast<std::int64_t>(this->corners.size()); }
 };
 
+/// The cube halved across each of these axes in turn: the first is the highest bit of a box's
+/// number.
+HalvedCube HalveAlong(const std::vector<int>& axes);
+
 /// `count` boxes, a power of two, as near to cubes as halving allows where the unit cube has the
 /// edges `size`; axes of which `dims` says 1 voxel are not divided.
 HalvedCube HalveLongest(const glm::i64vec3& dims, const glm::dvec3& size, std::int64_t count);

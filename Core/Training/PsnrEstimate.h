@@ -16,6 +16,7 @@ class PsnrEstimate
 {
 public:
   static constexpr std::int64_t UsualVoxels = 1 << 15;
+  static constexpr std::int64_t StoringVoxels = 4 * UsualVoxels; ///< where a tenth of a dB counts
 
   /// `voxels` is a multiple of 64.
   PsnrEstimate(const SampleSource& source, std::uint64_t seed, std::int64_t voxels = UsualVoxels);

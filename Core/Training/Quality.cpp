@@ -13,44 +13,37 @@ namespace inr {
 
 namespace {
 
-/// Sums over one row, added up in row order so that threads cannot change the result.
-struct RowError
-{
-  double squared = 0;
-  double largest = 0;
-  std::int64_t finite = 0;
-};
-
-/// One slice at a time: decoded and reference values in normalised units.
+/// One slice of a piece at a time: decoded and reference values in normalised units.
 class SliceComparison
 {
 public:
-  SliceComparison(const Evaluator& evaluator, const VolumeData& volume, const VolumeInfo& info,
+  SliceComparison(const Evaluator& evaluator, const VolumePiece& piece, const VolumeInfo& info,
                   const Arena& arena, std::int64_t bandSize)
-      : BandSize(bandSize), Source(evaluator), Volume(volume), Info(info), Threads(arena),
-        SliceSize(static_cast<std::size_t>(volume.dims.x * volume.dims.y)), Raw(this->SliceSize),
-        Decoded(this->SliceSize), Reference(this->SliceSize)
+      : BandSize(bandSize), Source(evaluator), Piece(piece), Info(info), Threads(arena),
+        SliceSize(static_cast<std::size_t>(piece.data.dims.x * piece.data.dims.y)),
+        Raw(this->SliceSize), Decoded(this->SliceSize), Reference(this->SliceSize)
   {}
 
-  /// `check` receives the fraction done and throws to stop.
+  /// `check` receives the fraction done of the piece and throws to stop.
   void load(std::int64_t z, const std::function<void(double)>& check)
   {
-    const glm::i64vec3 dims = this->Volume.dims;
-    const std::int64_t rows = std::max<std::int64_t>(1, this->BandSize / dims.x);
-    for (std::int64_t y = 0; y < dims.y; y += rows) {
-      check((static_cast<double>(z) + static_cast<double>(y) / static_cast<double>(dims.y)) /
-            static_cast<double>(dims.z));
-      const std::int64_t height = std::min(rows, dims.y - y);
+    const glm::i64vec3 size = this->Piece.data.dims;
+    const std::int64_t rows = std::max<std::int64_t>(1, this->BandSize / size.x);
+    for (std::int64_t y = 0; y < size.y; y += rows) {
+      check((static_cast<double>(z) + static_cast<double>(y) / static_cast<double>(size.y)) /
+            static_cast<double>(size.z));
+      const std::int64_t height = std::min(rows, size.y - y);
       EvaluateLattice(this->Source, this->Threads,
-                      VoxelLattice(dims, {0, y, z}, {dims.x, height, 1}),
-                      this->Raw.data() + y * dims.x);
+                      VoxelLattice(this->Info.dims, this->Piece.first + glm::i64vec3(0, y, z),
+                                   {size.x, height, 1}),
+                      this->Raw.data() + y * size.x);
     }
     const double range = this->Info.high - this->Info.low; // its inverse may be infinite
     const auto count = static_cast<std::int64_t>(this->SliceSize);
-    VisitScalars(this->Volume, [&](const auto* values) {
-      const auto* slice = values + z * count * this->Volume.stride;
+    VisitScalars(this->Piece.data, [&](const auto* values) {
+      const auto* slice = values + z * count * this->Piece.data.stride;
       for (std::int64_t k = 0; k < count; ++k) {
-        const auto value = static_cast<double>(slice[k * this->Volume.stride]);
+        const auto value = static_cast<double>(slice[k * this->Piece.data.stride]);
         this->Reference[k] = (value - this->Info.low) / range;
         this->Raw[k] = NormalisedOutput(this->Raw[k]);
         this->Decoded[k] = this->Raw[k];
@@ -58,18 +51,19 @@ public:
     });
   }
 
-  RowError rowError(std::int64_t y) const
+  QualityMeter::Errors rowErrors(std::int64_t y) const
   {
-    RowError error;
-    for (std::int64_t k = y * this->Volume.dims.x; k < (y + 1) * this->Volume.dims.x; ++k) {
+    QualityMeter::Errors errors;
+    const std::int64_t width = this->Piece.data.dims.x;
+    for (std::int64_t k = y * width; k < (y + 1) * width; ++k) {
       const double difference = std::abs(this->Reference[k] - this->Decoded[k]);
       if (std::isfinite(difference)) {
-        error.squared += difference * difference;
-        error.largest = std::max(error.largest, difference);
-        ++error.finite;
+        errors.squared += difference * difference;
+        errors.largest = std::max(errors.largest, difference);
+        ++errors.voxels;
       }
     }
-    return error;
+    return errors;
   }
 
   const std::vector<float>& raw() const { return this->Raw; }
@@ -79,7 +73,7 @@ public:
 private:
   std::int64_t BandSize;
   const Evaluator& Source;
-  const VolumeData& Volume;
+  const VolumePiece& Piece;
   const VolumeInfo& Info;
   const Arena& Threads;
   std::size_t SliceSize;
@@ -88,90 +82,72 @@ private:
   std::vector<double> Reference;
 };
 
-/// First and one-past-last cell whose voxels or apron hold voxel v.
-struct CellSpan
-{
-  std::int64_t begin;
-  std::int64_t end;
-};
-
-CellSpan CellsTouching(std::int64_t voxel, std::int64_t edge, std::int64_t cells)
-{
-  const std::int64_t first = std::max<std::int64_t>(voxel - MacroCellApron, 0) / edge;
-  const std::int64_t last = (voxel + MacroCellApron) / edge;
-  return {first, std::min(last + 1, cells)};
-}
-
-/// Adds slice z to every cell that it or its apron touches; rows of cells in parallel.
-void ExtendCells(MacroCells& cells, const std::vector<float>& slice, const glm::i64vec3& dims,
-                 std::int64_t edge, std::int64_t z, const Arena& arena)
-{
-  const CellSpan layers = CellsTouching(z, edge, cells.dims.z);
-  arena.forEachBlock(cells.dims.y, 1, [&](std::int64_t cellY, std::int64_t) {
-    std::vector<ValueRange> row(static_cast<std::size_t>(cells.dims.x));
-    const std::int64_t firstY = std::max<std::int64_t>(cellY * edge - MacroCellApron, 0);
-    const std::int64_t lastY = std::min((cellY + 1) * edge + MacroCellApron, dims.y);
-    for (std::int64_t y = firstY; y < lastY; ++y) {
-      for (std::int64_t x = 0; x < dims.x; ++x) {
-        const float value = slice[static_cast<std::size_t>(y * dims.x + x)];
-        const CellSpan columns = CellsTouching(x, edge, cells.dims.x);
-        for (std::int64_t cellX = columns.begin; cellX < columns.end; ++cellX) {
-          row[static_cast<std::size_t>(cellX)].extend(value);
-        }
-      }
-    }
-    for (std::int64_t cellZ = layers.begin; cellZ < layers.end; ++cellZ) {
-      for (std::int64_t cellX = 0; cellX < cells.dims.x; ++cellX) {
-        ValueRange& range =
-            cells.ranges[static_cast<std::size_t>(cells.index(cellX, cellY, cellZ))];
-        range.extend(row[static_cast<std::size_t>(cellX)].low);
-        range.extend(row[static_cast<std::size_t>(cellX)].high);
-      }
-    }
-  });
-}
-
 } // namespace
+
+void QualityMeter::Errors::add(const Errors& other)
+{
+  this->squared += other.squared;
+  this->largest = std::max(this->largest, other.largest);
+  this->voxels += other.voxels;
+}
+
+void QualityMeter::add(const VolumePiece& piece, CellRanges* decoded,
+                       const std::function<void(double)>& check)
+{
+  const glm::i64vec3 size = piece.data.dims;
+  SliceComparison slice(this->Source, piece, this->Info, this->Threads, this->BandSize);
+  SliceSsim windows(size.x, size.y, this->Threads);
+  std::vector<Errors> rows(static_cast<std::size_t>(size.y));
+  for (std::int64_t z = 0; z < size.z; ++z) {
+    slice.load(z, check);
+    this->Threads.forEachBlock(size.y, 16, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t y = begin; y < end; ++y) {
+        rows[static_cast<std::size_t>(y)] = slice.rowErrors(y);
+      }
+    });
+    for (const Errors& row : rows) { // in their order, so that threads cannot change the sum
+      this->All.add(row);
+    }
+    windows.addSlice(slice.reference().data(), slice.decoded().data());
+    if (decoded != nullptr) {
+      VolumePiece layer{{slice.raw().data(), ScalarType::Float32, {size.x, size.y, 1}},
+                        piece.first + glm::i64vec3(0, 0, z)};
+      decoded->add(layer, {layer.first, layer.data.dims}, this->Threads);
+    }
+  }
+  this->Similarity += windows.total();
+  this->Windows += windows.count();
+}
+
+Quality QualityMeter::quality() const
+{
+  Quality quality{std::numeric_limits<double>::quiet_NaN(),
+                  std::numeric_limits<double>::quiet_NaN(),
+                  std::numeric_limits<double>::quiet_NaN()};
+  if (this->All.voxels > 0) {
+    quality.psnr = -10.0 * std::log10(this->All.squared / static_cast<double>(this->All.voxels));
+    quality.maxError = this->All.largest * (this->Info.high - this->Info.low);
+  }
+  if (this->Windows > 0) {
+    quality.ssim = this->Similarity / static_cast<double>(this->Windows);
+  }
+  return quality;
+}
 
 DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volume,
                              const VolumeInfo& info, int macroCellSize, const Arena& arena,
                              const std::function<bool(double)>& keepGoing, std::int64_t bandSize)
 {
-  const glm::i64vec3 dims = volume.dims;
-  DecodedReport report;
-  report.macroCells = MakeMacroCells(dims, macroCellSize);
-  report.macroCells.provenance = MacroCellProvenance::Decoded;
-  report.macroCells.apron = static_cast<double>(MacroCellApron) / glm::dvec3(dims);
-  SliceComparison slice(evaluator, volume, info, arena, bandSize);
-  SliceSsim ssim(dims.x, dims.y, arena);
-  RowError all;
-  std::vector<RowError> rows(static_cast<std::size_t>(dims.y));
-  const auto check = [&](double fraction) {
+  VolumeInfo measured = info;
+  measured.dims = volume.dims;
+  QualityMeter meter(evaluator, measured, arena, bandSize);
+  CellRanges cells(volume.dims, macroCellSize);
+  meter.add({volume, glm::i64vec3(0)}, &cells, [&](double fraction) {
     if (keepGoing && !keepGoing(fraction)) {
       throw Error(ErrorCode::Cancelled, "stopped while measuring the quality");
     }
-  };
-  for (std::int64_t z = 0; z < dims.z; ++z) {
-    slice.load(z, check);
-    arena.forEachBlock(dims.y, 16, [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t y = begin; y < end; ++y) {
-        rows[static_cast<std::size_t>(y)] = slice.rowError(y);
-      }
-    });
-    for (const RowError& row : rows) {
-      all.squared += row.squared;
-      all.largest = std::max(all.largest, row.largest);
-      all.finite += row.finite;
-    }
-    ssim.addSlice(slice.reference().data(), slice.decoded().data());
-    ExtendCells(report.macroCells, slice.raw(), dims, macroCellSize, z, arena);
-  }
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  const double voxels = static_cast<double>(all.finite);
-  report.quality.psnr = all.finite > 0 ? -10.0 * std::log10(all.squared / voxels) : unknown;
-  report.quality.ssim = ssim.mean();
-  report.quality.maxError = all.finite > 0 ? all.largest * (info.high - info.low) : unknown;
-  return report;
+  });
+  return {meter.quality(), cells.cells(0.0, 1.0, 0.0, MacroCellProvenance::Decoded)};
 }
 
 } // namespace inr

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Inference/Evaluator.h"
+#include "Core/Training/CellRanges.h"
 #include "Core/Training/Volume.h"
 
 #include <cstdint>
@@ -9,9 +10,44 @@
 
 namespace inr {
 
-/// Voxels around a macro-cell whose values its range holds too: as far as samples of cache level 1
-/// reach, which most pictures of a volume take many of. More would make ranges looser for all.
-constexpr std::int64_t MacroCellApron = 3;
+/// Compares a volume with what an INR says of it, box by box.
+class QualityMeter
+{
+public:
+  /// `info` gives the dimensions and the value range, low < high.
+  QualityMeter(const Evaluator& evaluator, const VolumeInfo& info, const Arena& arena,
+               std::int64_t bandSize = 1 << 20)
+      : Source(evaluator), Info(info), Threads(arena), BandSize(bandSize)
+  {}
+
+  /// Decodes the voxels of a piece and compares. `decoded`, if any, takes in their normalised
+  /// values. `check` receives the fraction done of the piece, after so many voxels as `bandSize`
+  /// says, in whole rows, and throws to stop; the last bit of a position may depend on that.
+  void add(const VolumePiece& piece, CellRanges* decoded, const std::function<void(double)>& check);
+
+  /// Of all finite voxels, and of the SSIM windows that lie within one piece; see MeasureQuality.
+  Quality quality() const;
+
+  /// Sums over voxels, in normalised units.
+  struct Errors
+  {
+    double squared = 0;
+    double largest = 0;
+    std::int64_t voxels = 0; ///< that are finite
+
+    void add(const Errors& other);
+  };
+  const Errors& errors() const { return this->All; }
+
+private:
+  const Evaluator& Source;
+  VolumeInfo Info;
+  const Arena& Threads;
+  std::int64_t BandSize;
+  Errors All;
+  double Similarity = 0;
+  std::int64_t Windows = 0;
+};
 
 /// What one pass over all decoded voxels gives.
 struct DecodedReport
@@ -25,8 +61,7 @@ struct DecodedReport
 /// `structural_similarity(win_size=7, data_range=1)`); the largest difference. Windows and voxels
 /// that hold a NaN or infinity are left out; where none is left, the figure is NaN. `info` gives
 /// the value range, low < high; `keepGoing` receives the fraction done and returns false to stop
-/// (Error(Cancelled)). It is asked after so many voxels as `bandSize` says, in whole rows; the last
-/// bit of a position may depend on it.
+/// (Error(Cancelled)).
 DecodedReport MeasureQuality(const Evaluator& evaluator, const VolumeData& volume,
                              const VolumeInfo& info, int macroCellSize, const Arena& arena,
                              const std::function<bool(double)>& keepGoing,

@@ -5,6 +5,7 @@
 #include "Core/Training/Scalars.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,14 +21,30 @@ struct AxisTaps
   double weight;
 };
 
-AxisTaps TapsAt(float u, std::int64_t size, std::int64_t step)
+/// One axis of a piece: voxels of the volume, those of the piece, and elements from one to the
+/// next.
+struct Axis
 {
-  const double position = std::clamp(static_cast<double>(u) * static_cast<double>(size) - 0.5, 0.0,
-                                     static_cast<double>(size - 1));
-  const std::int64_t voxel = std::min(static_cast<std::int64_t>(position), size - 1);
-  const std::int64_t next = std::min(voxel + 1, size - 1);
-  return {voxel * step, next * step, position - static_cast<double>(voxel)};
-}
+  std::int64_t whole;
+  std::int64_t first;
+  std::int64_t size;
+  std::int64_t step;
+
+  AxisTaps taps(float u) const
+  {
+    const double last = static_cast<double>(this->whole - 1);
+    const double position =
+        std::clamp(static_cast<double>(u) * static_cast<double>(this->whole) - 0.5, 0.0, last);
+    const auto voxel = static_cast<std::int64_t>(position);
+    return {this->offset(voxel), this->offset(voxel + 1), position - static_cast<double>(voxel)};
+  }
+
+private:
+  std::int64_t offset(std::int64_t voxel) const
+  {
+    return std::clamp<std::int64_t>(voxel - this->first, 0, this->size - 1) * this->step;
+  }
+};
 
 /// Values of type T around a position, interpolated in double so that no type loses digits.
 template <class T>
@@ -66,28 +83,47 @@ glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64ve
   return position;
 }
 
+void SamplePiece(const VolumePiece& piece, const glm::i64vec3& dims, const glm::vec3* positions,
+                 std::int64_t count, double* values)
+{
+  const glm::i64vec3 size = piece.data.dims;
+  const std::int64_t stride = piece.data.stride;
+  const Axis x{dims.x, piece.first.x, size.x, stride};
+  const Axis y{dims.y, piece.first.y, size.y, stride * size.x};
+  const Axis z{dims.z, piece.first.z, size.z, stride * size.x * size.y};
+  VisitScalars(piece.data, [&](const auto* voxels) {
+    for (std::int64_t k = 0; k < count; ++k) {
+      const std::array<AxisTaps, 3> taps = {x.taps(positions[k].x), y.taps(positions[k].y),
+                                            z.taps(positions[k].z)};
+      values[k] = Trilinear(voxels, taps[0], taps[1], taps[2]);
+      if (!std::isfinite(values[k])) { // inf - inf and 0 * inf make it NaN, too
+        values[k] = Nearest(voxels, taps[0], taps[1], taps[2]);
+      }
+    }
+  });
+}
+
+float NormalisedTarget(double value, double low, double high)
+{
+  // Divided, not multiplied: the inverse of a range of denormal numbers is infinite.
+  return std::isfinite(value) ? static_cast<float>((value - low) / (high - low))
+                              : std::numeric_limits<float>::quiet_NaN();
+}
+
 InMemorySource::InMemorySource(const VolumeData& volume, double low, double high)
-    : Volume(volume), Low(low), Range(high - low)
+    : Volume{volume, glm::i64vec3(0)}, Low(low), High(high)
 {}
 
 void InMemorySource::sample(const glm::vec3* positions, std::int64_t count, float* targets) const
 {
-  const glm::i64vec3 dims = this->Volume.dims;
-  const std::int64_t stride = this->Volume.stride;
-  VisitScalars(this->Volume, [&](const auto* values) {
-    for (std::int64_t k = 0; k < count; ++k) {
-      const AxisTaps x = TapsAt(positions[k].x, dims.x, stride);
-      const AxisTaps y = TapsAt(positions[k].y, dims.y, stride * dims.x);
-      const AxisTaps z = TapsAt(positions[k].z, dims.z, stride * dims.x * dims.y);
-      double value = Trilinear(values, x, y, z); // inf - inf and 0 * inf make it NaN, too
-      if (!std::isfinite(value)) {
-        value = Nearest(values, x, y, z);
-      }
-      // Divided, not multiplied: the inverse of a range of denormal numbers is infinite.
-      targets[k] = std::isfinite(value) ? static_cast<float>((value - this->Low) / this->Range)
-                                        : std::numeric_limits<float>::quiet_NaN();
-    }
-  });
+  constexpr std::int64_t blockSize = 256;
+  std::array<double, blockSize> values{};
+  for (std::int64_t first = 0; first < count; first += blockSize) {
+    const std::int64_t size = std::min(blockSize, count - first);
+    SamplePiece(this->Volume, this->dims(), positions + first, size, values.data());
+    std::transform(values.begin(), values.begin() + size, targets + first,
+                   [this](double value) { return NormalisedTarget(value, this->Low, this->High); });
+  }
 }
 
 } // namespace inr

@@ -29,6 +29,14 @@ public:
 /// of a single voxel, where nothing changes and nothing else is ever asked for.
 glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64vec3& dims);
 
+/// What SampleSource gives of a volume of `dims` voxels before it is normalised, at positions
+/// whose voxels `piece` holds.
+void SamplePiece(const VolumePiece& piece, const glm::i64vec3& dims, const glm::vec3* positions,
+                 std::int64_t count, double* values);
+
+/// (value - low)/(high - low) as a target; NaN for one that is not finite.
+float NormalisedTarget(double value, double low, double high);
+
 /// The whole volume in memory, in its own type.
 class InMemorySource : public SampleSource
 {
@@ -36,13 +44,13 @@ public:
   /// Values are normalised to (v - low)/(high - low); low < high. `volume` must outlive this.
   InMemorySource(const VolumeData& volume, double low, double high);
 
-  const glm::i64vec3& dims() const override { return this->Volume.dims; }
+  const glm::i64vec3& dims() const override { return this->Volume.data.dims; }
   void sample(const glm::vec3* positions, std::int64_t count, float* targets) const override;
 
 private:
-  VolumeData Volume;
+  VolumePiece Volume;
   double Low;
-  double Range;
+  double High;
 };
 
 } // namespace inr

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace inr {
 
@@ -111,12 +110,6 @@ void SliceSsim::addColumnScores()
     this->Total += totals[b];
     this->Windows += counts[b];
   }
-}
-
-double SliceSsim::mean() const
-{
-  return this->Windows > 0 ? this->Total / static_cast<double>(this->Windows)
-                           : std::numeric_limits<double>::quiet_NaN();
 }
 
 } // namespace inr

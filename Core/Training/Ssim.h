@@ -9,7 +9,7 @@
 
 namespace inr {
 
-/// Mean 3D SSIM of two volumes that arrive slice by slice (see MeasureQuality for the definition).
+/// 3D SSIM of two volumes that arrive slice by slice (see MeasureQuality for the definition).
 /// Holds seven slices of window sums, whatever the volume's depth.
 class SliceSsim
 {
@@ -19,8 +19,9 @@ public:
   /// The next slice of both volumes, normalised; a non-finite reference voxel voids its windows.
   void addSlice(const double* reference, const double* decoded);
 
-  /// NaN when no window fits.
-  double mean() const;
+  /// Sum of the scores of all windows so far, and their number.
+  double total() const { return this->Total; }
+  std::int64_t count() const { return this->Windows; }
 
 private:
   /// Reference, decoded, their squares, their product, and the count of void voxels.

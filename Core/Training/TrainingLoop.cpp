@@ -33,8 +33,8 @@ void RequireFinite(bool finite, std::uint64_t steps)
 
 } // namespace
 
-void TrainingLoop::run(GradientDescent& descent, BatchSource& batches,
-                       const PsnrEstimate& estimate, const EvaluateKernel& kernel)
+void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
+                       const EvaluateKernel& kernel)
 {
   const StopCheck check([&] { return this->keepGoing(descent.steps()); });
   const bool byTheClock = this->Options.timeLimit > 0 && this->Options.maximumSteps == 0;

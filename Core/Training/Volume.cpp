@@ -11,51 +11,59 @@ namespace inr {
 
 namespace {
 
-constexpr std::int64_t BlockSize = 1 << 18;
-
-struct Extent
-{
-  double low = HUGE_VAL;
-  double high = -HUGE_VAL;
-  std::int64_t nonFinite = 0;
-};
-
 template <class T>
-Extent MeasureBlock(const T* values, std::int64_t stride, std::int64_t begin, std::int64_t end)
+void MeasureRow(const T* values, std::int64_t stride, std::int64_t count, VolumeStatistics& result)
 {
-  Extent extent;
-  for (std::int64_t k = begin; k < end; ++k) {
+  for (std::int64_t k = 0; k < count; ++k) {
     const double value = static_cast<double>(values[k * stride]);
     if (!std::isfinite(value)) {
-      ++extent.nonFinite;
+      ++result.nonFinite;
       continue;
     }
-    extent.low = std::min(extent.low, value);
-    extent.high = std::max(extent.high, value);
+    result.low = std::min(result.low, value);
+    result.high = std::max(result.high, value);
   }
-  return extent;
 }
 
 } // namespace
 
-VolumeStatistics MeasureVolume(const VolumeData& volume, const Arena& arena)
+void VolumeStatistics::add(const VolumeStatistics& other)
 {
-  const std::int64_t voxels = volume.voxels();
-  std::vector<Extent> blocks(static_cast<std::size_t>((voxels + BlockSize - 1) / BlockSize));
-  VisitScalars(volume, [&](const auto* values) {
-    arena.forEachBlock(voxels, BlockSize, [&](std::int64_t begin, std::int64_t end) {
-      blocks[static_cast<std::size_t>(begin / BlockSize)] =
-          MeasureBlock(values, volume.stride, begin, end);
+  this->low = std::min(this->low, other.low);
+  this->high = std::max(this->high, other.high);
+  this->nonFinite += other.nonFinite;
+}
+
+VolumeStatistics MeasureBox(const VolumePiece& piece, const VoxelBox& box, const Arena& arena)
+{
+  constexpr std::int64_t rowsAtATime = 64;
+  const glm::i64vec3 size = piece.data.dims;
+  const glm::i64vec3 offset = box.first - piece.first;
+  const std::int64_t rows = box.size.y * box.size.z;
+  std::vector<VolumeStatistics> parts(
+      static_cast<std::size_t>((rows + rowsAtATime - 1) / rowsAtATime));
+  VisitScalars(piece.data, [&](const auto* values) {
+    arena.forEachBlock(rows, rowsAtATime, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t row = begin; row < end; ++row) {
+        const std::int64_t y = offset.y + row % box.size.y;
+        const std::int64_t z = offset.z + row / box.size.y;
+        const std::int64_t first = offset.x + size.x * (y + size.y * z);
+        MeasureRow(values + first * piece.data.stride, piece.data.stride, box.size.x,
+                   parts[static_cast<std::size_t>(begin / rowsAtATime)]);
+      }
     });
   });
-  Extent all;
-  for (const Extent& block : blocks) {
-    all.low = std::min(all.low, block.low);
-    all.high = std::max(all.high, block.high);
-    all.nonFinite += block.nonFinite;
+  VolumeStatistics all;
+  for (const VolumeStatistics& part : parts) {
+    all.add(part);
   }
-  return all.nonFinite < voxels ? VolumeStatistics{all.low, all.high, all.nonFinite}
-                                : VolumeStatistics{0.0, 0.0, all.nonFinite};
+  return all;
+}
+
+VolumeStatistics MeasureVolume(const VolumeData& volume, const Arena& arena)
+{
+  const glm::i64vec3 origin(0);
+  return MeasureBox({volume, origin}, {origin, volume.dims}, arena);
 }
 
 } // namespace inr

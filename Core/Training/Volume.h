@@ -7,6 +7,7 @@
 #include <glm/gtc/type_precision.hpp>
 
 #include <cstdint>
+#include <limits>
 
 namespace inr {
 
@@ -21,13 +22,37 @@ struct VolumeData
   std::int64_t voxels() const { return this->dims.x * this->dims.y * this->dims.z; }
 };
 
+/// Voxels of a volume: `size` of them per axis from voxel `first` on.
+struct VoxelBox
+{
+  glm::i64vec3 first{0};
+  glm::i64vec3 size{0};
+
+  glm::i64vec3 end() const { return this->first + this->size; }
+  std::int64_t voxels() const { return this->size.x * this->size.y * this->size.z; }
+};
+
+/// Part of a volume that is in memory: the box of `data.dims` voxels from voxel `first` on.
+struct VolumePiece
+{
+  VolumeData data;
+  glm::i64vec3 first{0};
+};
+
 /// What one pass over the data tells.
 struct VolumeStatistics
 {
-  double low = 0; ///< smallest and largest finite value; 0, 0 when there is none
-  double high = 0;
+  /// Smallest and largest finite value; low > high when there is none.
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
   std::int64_t nonFinite = 0;
+
+  bool hasValues() const { return this->low <= this->high; }
+  void add(const VolumeStatistics& other);
 };
 VolumeStatistics MeasureVolume(const VolumeData& volume, const Arena& arena);
+
+/// The same of a box within a piece.
+VolumeStatistics MeasureBox(const VolumePiece& piece, const VoxelBox& box, const Arena& arena);
 
 } // namespace inr

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/TrainingRun.h"
+
+#include "Core/Error.h"
+#include "Core/Inference/EvaluateKernel.h"
+#include "Core/Model/CompactBlobs.h"
+#include "Core/Model/Compression.h"
+#include "Core/Model/ModelFile.h"
+#include "Core/Model/Quantised.h"
+#include "Core/Training/Quantise.h"
+#include "Core/Training/TrainingLoop.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace inr {
+
+namespace {
+
+/// Goes on from the start's parameters where these fit, which is then on record.
+void StartFrom(const ModelPointer& start, Model& model, GradientDescent& descent)
+{
+  if (start && start->description == model.description) {
+    descent.startFrom(start->parameters);
+    const TrainingRecord before = start->training.value_or(TrainingRecord());
+    model.training->earlierSteps = before.steps + before.earlierSteps.value_or(0);
+  }
+}
+
+/// Makes the parameters what the file gives back; keeps them as floats where a half cannot hold
+/// one.
+void RoundAsStored(Model& model)
+{
+  if (model.storedAs == ParameterType::Quantised) {
+    return;
+  }
+  const auto fits = [](float parameter) { return std::abs(parameter) <= HALF_MAX; };
+  if (!std::all_of(model.parameters.begin(), model.parameters.end(), fits)) {
+    model.storedAs = ParameterType::Float;
+  }
+  if (model.storedAs == ParameterType::Half) {
+    for (float& parameter : model.parameters) {
+      parameter = static_cast<float>(Imath::half(parameter));
+    }
+  }
+}
+
+} // namespace
+
+void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options)
+{
+  if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
+    throw Error(ErrorCode::InvalidArgument, "there are no voxels to train on");
+  }
+  const int edge = options.macroCellSize;
+  if (edge < 0 || (edge & (edge - 1)) != 0) {
+    throw Error(ErrorCode::InvalidArgument, "MacroCellSize is " + std::to_string(edge) +
+                                                "; set a power of two, or 0 for the default");
+  }
+  const bool limited = options.targetPsnr > 0 || options.maximumSteps > 0 || options.timeLimit > 0;
+  if (!limited) {
+    throw Error(ErrorCode::InvalidArgument,
+                "training would never end: set TargetPSNR, MaximumSteps or TimeLimit");
+  }
+}
+
+std::int64_t BandSize(const Description& description)
+{
+  constexpr std::uint64_t products = std::uint64_t{1} << 34;
+  const std::uint64_t weights = std::max<std::uint64_t>(1, Layout(description).gridOffset);
+  return std::clamp<std::int64_t>(static_cast<std::int64_t>(products / weights), 1024, 1 << 20);
+}
+
+TrainingRun::TrainingRun(const VolumeInfo& info, const VolumeStatistics& statistics,
+                         const TrainingOptions& options, const TrainingObserver& observer)
+    : Options(options), Observer(observer), Set(ChooseInstructionSet(options.kernel)),
+      MacroCellSize(options.macroCellSize > 0 ? options.macroCellSize
+                                              : DefaultMacroCellSize(info.dims))
+{
+  if (!statistics.hasValues()) {
+    throw Error(ErrorCode::InvalidArgument, "none of the " + std::to_string(statistics.nonFinite) +
+                                                " values of array '" + info.arrayName +
+                                                "' is finite");
+  }
+  Model& model = this->Result;
+  model.description = options.description.value_or(ChooseDescription(
+      info.dims, info.type, options.targetRatio, options.storedAs, this->MacroCellSize));
+  model.storedAs = options.storedAs;
+  model.volume = info;
+  model.volume.low = statistics.low;
+  model.volume.high = statistics.high;
+  model.training = TrainingRecord{0,
+                                  0,
+                                  options.seed,
+                                  0.0,
+                                  InstructionSetName(this->Set),
+                                  static_cast<std::uint64_t>(statistics.nonFinite),
+                                  std::nullopt};
+  model.macroCells = MakeMacroCells(info.dims, this->MacroCellSize);
+  RequireStorable(model);
+}
+
+bool TrainingRun::isConstant() const
+{
+  return !(this->Result.volume.low < this->Result.volume.high);
+}
+
+ModelPointer TrainingRun::constantModel()
+{
+  Model& model = this->Result;
+  model.parameters.assign(Layout(model.description).parameterCount, 0.0f);
+  if (model.storedAs == ParameterType::Quantised) {
+    // So many zeros that a reader refuses to unpack them have to be written out.
+    const bool packs = MayExpand(0, PlainParameterBytes(model.parameters.size()));
+    model.storedAs = packs ? ParameterType::Quantised : ParameterType::Half;
+    model.steps.assign(packs ? ParameterGroups(model.description).size() : 0, 1.0f);
+  }
+  model.macroCells.provenance = MacroCellProvenance::Decoded;
+  std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(), ValueRange{0, 0});
+  const glm::i64vec3 dims = model.volume.dims;
+  // Whether there is a window without a gap is not worth a search.
+  const bool windowFits = std::min({dims.x, dims.y, dims.z}) >= 7 && model.training->nonFinite == 0;
+  model.quality = Quality{std::numeric_limits<double>::infinity(),
+                          windowFits ? 1.0 : std::numeric_limits<double>::quiet_NaN(), 0.0};
+  return std::make_shared<const Model>(std::move(model));
+}
+
+void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena)
+{
+  Model& model = this->Result;
+  GradientDescent descent(model.description, this->Options.seed, this->Set, arena);
+  StartFrom(this->Options.start, model, descent);
+  TrainingLoop loop(this->Options, this->Observer);
+  loop.run(descent, batches, estimate, EvaluateKernelFor(this->Set));
+  model.training->steps = descent.steps();
+  model.training->plannedSteps = loop.plannedSteps();
+  model.training->seconds = loop.seconds();
+  model.parameters = std::move(descent.parameters());
+}
+
+std::shared_ptr<Model> TrainingRun::store(const PsnrEstimate& estimate)
+{
+  if (this->Options.storedAs == ParameterType::Quantised) {
+    const double ratio = this->Options.description ? 0.0 : this->Options.targetRatio;
+    Quantise(this->Result, estimate, EvaluateKernelFor(this->Set),
+             LimitsForRatio(this->Result, ratio), this->storingCheck());
+  }
+  RoundAsStored(this->Result);
+  return std::make_shared<Model>(std::move(this->Result));
+}
+
+/// Lets the observer stop what comes between training and measuring.
+StopCheck TrainingRun::storingCheck() const
+{
+  return StopCheck([this, clock = TrainingClock(), last = 0.0]() mutable {
+    constexpr double interval = 0.2; // seconds
+    if (this->Observer && clock.seconds() - last >= interval) {
+      last = clock.seconds();
+      const std::uint64_t steps = this->Result.training->steps;
+      if (!this->Observer({TrainingPhase::Measuring, TrainingShare, steps, 0})) {
+        throw Error(ErrorCode::Cancelled, "stopped while quantising the parameters");
+      }
+    }
+    return true;
+  });
+}
+
+} // namespace inr

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Training/BatchSource.h"
+#include "Core/Training/PsnrEstimate.h"
+#include "Core/Training/Trainer.h"
+
+#include <cstdint>
+#include <memory>
+
+namespace inr {
+
+/// A model from the choice of its size to its parameters as they are stored: what training is
+/// wherever the samples come from.
+class TrainingRun
+{
+public:
+  /// Throws what TrainModel says of its arguments. All of them must outlive this.
+  TrainingRun(const VolumeInfo& info, const VolumeStatistics& statistics,
+              const TrainingOptions& options, const TrainingObserver& observer);
+
+  const Description& description() const { return this->Result.description; }
+  int macroCellSize() const { return this->MacroCellSize; }
+  const VolumeInfo& volume() const { return this->Result.volume; }
+
+  /// Whether all finite voxels are equal: no step is needed to be exact.
+  bool isConstant() const;
+  ModelPointer constantModel();
+
+  /// Takes steps until a limit is reached.
+  void train(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena);
+
+  /// Makes the parameters what the file will hold; quality and macro-cells are still to be
+  /// measured. `estimate` has more voxels than that of train: a tenth of a dB is to be told.
+  std::shared_ptr<Model> store(const PsnrEstimate& estimate);
+
+private:
+  StopCheck storingCheck() const;
+
+  const TrainingOptions& Options;
+  const TrainingObserver& Observer;
+  InstructionSet Set;
+  int MacroCellSize;
+  Model Result;
+};
+
+/// Throws for options that no training can have, and where there is nothing to train on.
+void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options);
+
+/// Voxels that are decoded in about a second: the larger the network, the fewer.
+std::int64_t BandSize(const Description& description);
+
+} // namespace inr
