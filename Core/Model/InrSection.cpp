@@ -144,7 +144,12 @@ VolumeInfo ParseVolume(const JsonSection& section)
 
 Quality ParseQuality(const JsonSection& section)
 {
-  return {ParseReal(section, "psnr"), ParseReal(section, "ssim"), ParseReal(section, "max_error")};
+  Quality quality{ParseReal(section, "psnr"), ParseReal(section, "ssim"),
+                  ParseReal(section, "max_error")};
+  if (section.has("sampled_voxels")) {
+    quality.sampledVoxels = static_cast<std::uint64_t>(section.integer("sampled_voxels"));
+  }
+  return quality;
 }
 
 TrainingRecord ParseTraining(const JsonSection& section)
@@ -242,6 +247,9 @@ json InrSectionToJson(const Model& model, std::uint32_t checksum)
     section["quality"] = {{"psnr", RealToJson(model.quality->psnr)},
                           {"ssim", RealToJson(model.quality->ssim)},
                           {"max_error", RealToJson(model.quality->maxError)}};
+    if (model.quality->sampledVoxels > 0) {
+      section["quality"]["sampled_voxels"] = AsSigned(model.quality->sampledVoxels);
+    }
   }
   if (model.training) {
     section["training"] = {{"steps", AsSigned(model.training->steps)},

@@ -60,12 +60,14 @@ inline double ValueOf(const VolumeInfo& info, float y)
   return info.low + (info.high - info.low) * static_cast<double>(y);
 }
 
-/// Measured against the data when the file was written, over all finite voxels.
+/// Measured against the data when the file was written, over all finite voxels, or over some.
 struct Quality
 {
   double psnr = 0;     ///< dB, peak = high - low; infinity when every voxel is exact
   double ssim = 0;     ///< mean 3D SSIM, 7^3 window; NaN where no window of finite voxels was seen
   double maxError = 0; ///< in data units
+  /// Finite voxels that were measured, where these were not all; 0 = all.
+  std::uint64_t sampledVoxels = 0;
 };
 
 /// Enough to repeat the training.

@@ -14,20 +14,36 @@ namespace {
 constexpr std::int64_t BlockSize = 64;
 constexpr std::uint64_t EstimateStream = 3; // apart from those of GradientDescent
 
+std::vector<float> TargetsAt(const SampleSource& source, const std::vector<glm::vec3>& positions)
+{
+  std::vector<float> targets(positions.size());
+  source.sample(positions.data(), static_cast<std::int64_t>(targets.size()), targets.data());
+  return targets;
+}
+
 } // namespace
 
-PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed, std::int64_t voxels)
-    : Positions(static_cast<std::size_t>(voxels)), Targets(static_cast<std::size_t>(voxels))
+std::vector<glm::vec3> PsnrEstimate::positions(const glm::i64vec3& dims, std::uint64_t seed,
+                                               std::int64_t voxels)
 {
   const std::uint64_t stream = RandomBits(seed, EstimateStream);
-  for (std::int64_t k = 0; k < voxels; ++k) {
-    const auto drawn = static_cast<std::uint64_t>(k);
-    this->Positions[k] = VoxelCentre(RandomPosition(stream, drawn, source.dims()), source.dims());
+  std::vector<glm::vec3> positions(static_cast<std::size_t>(voxels));
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    positions[k] = VoxelCentre(RandomPosition(stream, k, dims), dims);
   }
-  source.sample(this->Positions.data(), voxels, this->Targets.data());
-  this->Known = std::count_if(this->Targets.begin(), this->Targets.end(),
-                              [](float target) { return std::isfinite(target); });
+  return positions;
 }
+
+PsnrEstimate::PsnrEstimate(std::vector<glm::vec3> positions, std::vector<float> targets)
+    : Positions(std::move(positions)), Targets(std::move(targets)),
+      Known(std::count_if(this->Targets.begin(), this->Targets.end(),
+                          [](float target) { return std::isfinite(target); }))
+{}
+
+PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed, std::int64_t voxels)
+    : PsnrEstimate(positions(source.dims(), seed, voxels),
+                   TargetsAt(source, positions(source.dims(), seed, voxels)))
+{}
 
 double PsnrEstimate::measure(const ModelView& model, const EvaluateKernel& kernel,
                              const StopCheck& check) const

@@ -21,6 +21,13 @@ public:
   /// `voxels` is a multiple of 64.
   PsnrEstimate(const SampleSource& source, std::uint64_t seed, std::int64_t voxels = UsualVoxels);
 
+  /// The same from targets at the first of positions(), a multiple of 64 of them.
+  PsnrEstimate(std::vector<glm::vec3> positions, std::vector<float> targets);
+
+  /// Centres of the random voxels: fewer are the first of more.
+  static std::vector<glm::vec3> positions(const glm::i64vec3& dims, std::uint64_t seed,
+                                          std::int64_t voxels);
+
   /// In dB, peak 1; infinity for a perfect fit, 0 when `check` stopped it or no target is finite.
   double measure(const ModelView& model, const EvaluateKernel& kernel,
                  const StopCheck& check) const;

@@ -3,6 +3,7 @@
 
 #include "Core/Model/Model.h"
 #include "Core/Training/Volume.h"
+#include "Core/Training/VolumeReader.h"
 
 #include <cstdint>
 #include <functional>
@@ -33,11 +34,15 @@ struct TrainingOptions
   /// Quantised costs 0.1 dB at most, but more where targetRatio takes it. Half instead where steps
   /// cannot be that fine, and Float where a half cannot hold a parameter.
   ParameterType storedAs = ParameterType::Quantised;
+  /// Bytes that training from a VolumeReader may take, all in all.
+  std::int64_t memoryLimit = std::int64_t{1} << 30;
+  /// Of a VolumeReader with more than four times as many voxels, the quality is measured on these.
+  std::int64_t measuredVoxels = std::int64_t{1} << 26;
   std::string kernel; ///< for tests; empty = the fastest
   int threads = 0;    ///< 0 = all
 };
 
-enum class TrainingPhase { Training, Measuring };
+enum class TrainingPhase { Reading, Training, Measuring };
 
 struct TrainingProgress
 {
@@ -72,6 +77,19 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 /// finds; when the time limit ends the first step; Error(InvalidModel) when the network's output
 /// stops being finite.
 ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
+                        const TrainingOptions& options, const TrainingObserver& observer = {});
+
+/// The same for a volume that is read in pieces, within `options.memoryLimit`.
+///
+/// One reading of the whole gives range, ranges of macro-cells and a pool of samples, the same
+/// number in every equal part of the volume. While another thread trains, this one reads blocks
+/// again in random order and draws their samples anew, as far as reading takes less than half of
+/// the time limit: no voxel is read more than three times. Without a time limit the result is
+/// repeatable. Where there are too many voxels, quality is measured in bars all over the volume,
+/// and ranges of macro-cells are those of the data, wider by the largest error
+/// that was found; otherwise as above. Throws what `reader` throws, and Error(InvalidArgument)
+/// when the limit is too low or a value leaves the range that the first reading found.
+ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 
 } // namespace inr

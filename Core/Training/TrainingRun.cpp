@@ -67,6 +67,11 @@ void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options)
   }
 }
 
+int MacroCellSizeOf(const VolumeInfo& volume, const TrainingOptions& options)
+{
+  return options.macroCellSize > 0 ? options.macroCellSize : DefaultMacroCellSize(volume.dims);
+}
+
 std::int64_t BandSize(const Description& description)
 {
   constexpr std::uint64_t products = std::uint64_t{1} << 34;
@@ -77,8 +82,7 @@ std::int64_t BandSize(const Description& description)
 TrainingRun::TrainingRun(const VolumeInfo& info, const VolumeStatistics& statistics,
                          const TrainingOptions& options, const TrainingObserver& observer)
     : Options(options), Observer(observer), Set(ChooseInstructionSet(options.kernel)),
-      MacroCellSize(options.macroCellSize > 0 ? options.macroCellSize
-                                              : DefaultMacroCellSize(info.dims))
+      MacroCellSize(MacroCellSizeOf(info, options))
 {
   if (!statistics.hasValues()) {
     throw Error(ErrorCode::InvalidArgument, "none of the " + std::to_string(statistics.nonFinite) +

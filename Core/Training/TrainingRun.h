@@ -47,6 +47,9 @@ private:
 /// Throws for options that no training can have, and where there is nothing to train on.
 void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options);
 
+/// As the options say, or the default.
+int MacroCellSizeOf(const VolumeInfo& volume, const TrainingOptions& options);
+
 /// Voxels that are decoded in about a second: the larger the network, the fewer.
 std::int64_t BandSize(const Description& description);
 

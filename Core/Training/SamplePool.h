@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Parallel.h"
+#include "Core/Training/BatchSource.h"
+#include "Core/Training/BlockGrid.h"
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+namespace inr {
+
+/// Samples of a volume that does not fit in memory: one in each of many equal boxes, the same
+/// number in every block, so that no region is ever seen more than another. While the training
+/// goes on, blocks are read again, one after the other, and their samples drawn anew.
+///
+/// Two threads share it: one reads and calls sample(), put(), wanted() and offer(); the other
+/// trains. What a mini-batch holds depends on seed, step, plan and `rereads` alone, not on how fast
+/// either is.
+class SamplePool : public BatchSource
+{
+public:
+  /// At least `blocks.count()` and BatchSize samples, of 8 bytes each, and as near to `mostSamples`
+  /// as a power of two comes. Of all blocks the share `rereads` is read again, while the learning
+  /// rate falls.
+  SamplePool(const BlockGrid& blocks, std::int64_t mostSamples, std::uint64_t seed);
+
+  std::int64_t samples() const { return static_cast<std::int64_t>(this->Values.size()); }
+
+  /// Values of a block's samples when it is read for the first time (`round` 0) or again (1), of a
+  /// piece that holds blocks.voxels(block).
+  std::vector<double> sample(std::int64_t block, std::uint32_t round, const VolumePiece& piece,
+                             const Arena& arena) const;
+
+  /// The first reading of a block, before the training.
+  void put(std::int64_t block, const std::vector<double>& values);
+
+  /// Before the training: what is target 0 and 1, and the share of blocks to read again, 0 to 1.
+  void begin(double low, double high, double rereads);
+
+  /// The next block to read again, whose samples of round 1 are to be offered; none as long as
+  /// enough of them wait to be used. Waits a moment for one to be wanted.
+  std::optional<std::int64_t> wanted();
+  void offer(std::int64_t block, std::vector<double> values);
+
+  void prepare(const TrainingStep& step, const StopCheck& check) override;
+  void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
+            glm::vec3* positions, float* targets) const override;
+
+private:
+  struct Offer
+  {
+    std::int64_t block;
+    std::vector<double> values;
+  };
+
+  glm::vec3 position(std::int64_t block, std::uint32_t round, std::int64_t sample) const;
+  std::int64_t due(const TrainingStep& step) const;
+  void use(const Offer& offer);
+
+  const BlockGrid& Blocks;
+  std::uint64_t Seed;
+  HalvedCube Boxes; ///< of a block, in units of the block
+  std::vector<double> Values;
+  std::vector<std::uint32_t> Rounds; ///< of the values of each block
+  double Low = 0;
+  double High = 1;
+
+  std::vector<std::int64_t> Order; ///< in which blocks are read again
+  std::int64_t Used = 0;           ///< of them
+
+  std::mutex Mutex;
+  std::condition_variable Changed;
+  std::deque<Offer> Waiting;
+  std::int64_t Asked = 0; ///< of Order
+  std::int64_t Due = 0;   ///< that the present step must have used
+};
+
+} // namespace inr

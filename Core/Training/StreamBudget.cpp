@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/StreamBudget.h"
+
+#include "Core/Error.h"
+#include "Core/Training/BatchSource.h"
+#include "Core/Training/BlockGrid.h"
+
+#include <algorithm>
+#include <string>
+
+namespace inr {
+
+namespace {
+
+constexpr std::int64_t MiB = std::int64_t{1} << 20;
+
+/// Threads, code, and the slices that quality is measured on.
+constexpr std::int64_t Overhead = 96 * MiB;
+
+/// Pieces smaller than this are slow to read, and a small pool repeats itself.
+constexpr std::int64_t SmallestShare = 4 * MiB;
+constexpr std::int64_t LargestBlock = 64 * MiB;
+constexpr std::int64_t LargestPool = 512 * MiB;
+
+/// A source may hold a piece twice: as it came from the disk, and as it is handed on.
+constexpr std::int64_t CopiesOfBlock = 3;
+
+std::int64_t CellBytes(const VolumeInfo& info, int macroCellSize)
+{
+  const int edge = macroCellSize > 0 ? macroCellSize : DefaultMacroCellSize(info.dims);
+  const glm::i64vec3 cells =
+      (info.dims + std::int64_t{edge} - std::int64_t{1}) / std::int64_t{edge};
+  return 24 * cells.x * cells.y * cells.z; // twice as floats, or once as doubles and once as floats
+}
+
+/// What is left for pieces and samples.
+std::int64_t FreeBytes(const VolumeInfo& info, const TrainingOptions& options,
+                       const Description& description)
+{
+  return options.memoryLimit - Overhead - CellBytes(info, options.macroCellSize) -
+         TrainingBytes(description);
+}
+
+std::int64_t LeastFreeBytes() { return (CopiesOfBlock + 1) * SmallestShare; }
+
+Description FittingDescription(const VolumeInfo& info, const TrainingOptions& options)
+{
+  const auto choose = [&](double ratio) {
+    return ChooseDescription(info.dims, info.type, ratio, options.storedAs, options.macroCellSize);
+  };
+  if (options.description || options.targetRatio > 0) {
+    return options.description.value_or(choose(options.targetRatio));
+  }
+  constexpr double largestRatio = 1e12; // by then it is the smallest model
+  Description description = choose(0);
+  for (double ratio = 16; ratio < largestRatio; ratio *= 2) {
+    if (TrainingBytes(description) <= options.memoryLimit / 2) {
+      break; // half of the memory is left to the data
+    }
+    description = choose(ratio);
+  }
+  return description;
+}
+
+} // namespace
+
+std::int64_t TrainingBytes(const Description& description)
+{
+  constexpr std::int64_t bytesPerParameter = 19; // four floats, a count of updates, marks
+  constexpr std::int64_t shards = 16;            // gradients of the network that are then summed
+  const Layout layout(description);
+  return bytesPerParameter * static_cast<std::int64_t>(layout.parameterCount) +
+         shards * 4 * static_cast<std::int64_t>(layout.gridOffset) +
+         BatchSize * std::int64_t{4 * layout.encodedWidth + 16};
+}
+
+StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options)
+{
+  StreamBudget budget{FittingDescription(info, options), 0, 0};
+  const std::int64_t left = FreeBytes(info, options, budget.description);
+  if (left < LeastFreeBytes()) {
+    const auto inMiB = [](std::int64_t bytes) { return std::to_string(bytes / MiB + 1) + " MiB"; };
+    throw Error(ErrorCode::InvalidArgument,
+                "training a model of " + std::to_string(Layout(budget.description).parameterCount) +
+                    " parameters from a volume read in pieces takes " +
+                    inMiB(options.memoryLimit - left + LeastFreeBytes()) +
+                    " and the MemoryLimit is " + inMiB(options.memoryLimit - 1) +
+                    "; raise it or ask for a smaller model (TargetRatio)");
+  }
+  const std::int64_t block = std::clamp(left / (2 * CopiesOfBlock), SmallestShare, LargestBlock);
+  const std::int64_t pool = std::min(left - CopiesOfBlock * block, LargestPool);
+  budget.blockVoxels = block / static_cast<std::int64_t>(ScalarSize(info.type));
+  budget.poolSamples = pool / static_cast<std::int64_t>(sizeof(double));
+  return budget;
+}
+
+} // namespace inr
