@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <fcntl.h>
 #include <filesystem>
@@ -41,6 +42,28 @@ int ReasonToRefuse(const std::string& target)
   return access(target.c_str(), W_OK) == 0 ? 0 : errno;
 }
 
+std::string TemporaryStem(const std::string& target, pid_t process)
+{
+  return target + "." + std::to_string(process) + ".";
+}
+
+// Whose temporary file for `target` has this name; 0 = it is none.
+pid_t WriterOf(const std::string& name, const std::string& target)
+{
+  long process = 0;
+  int attempt = 0;
+  const std::string tail =
+      name.size() > target.size() + 1 && name.compare(0, target.size(), target) == 0
+          ? name.substr(target.size())
+          : "";
+  const int read = std::sscanf(tail.c_str(), ".%ld.%d.tmp", &process, &attempt);
+  const bool whole = read == 2 && process > 0 &&
+                     tail == "." + std::to_string(process) + "." + std::to_string(attempt) + ".tmp";
+  return whole ? static_cast<pid_t>(process) : 0;
+}
+
+bool IsGone(pid_t process) { return kill(process, 0) != 0 && errno == ESRCH; }
+
 // Makes the new name itself durable. A file system that cannot do this has still renamed the file.
 void FlushFolder(const std::string& file)
 {
@@ -76,7 +99,7 @@ AtomicFile::~AtomicFile()
 void AtomicFile::create()
 {
   constexpr int Attempts = 1000;
-  const std::string stem = this->Target + "." + std::to_string(getpid()) + ".";
+  const std::string stem = TemporaryStem(this->Target, getpid());
   for (int attempt = 0; attempt < Attempts; ++attempt) {
     const std::string name = stem + std::to_string(attempt) + ".tmp";
     this->Descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -122,6 +145,20 @@ void AtomicFile::commit()
   }
   this->Temporary.clear();
   FlushFolder(this->Target);
+}
+
+void RemoveAbandonedFiles(const std::string& path)
+{
+  const fs::path target = FollowLinks(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    const pid_t process = WriterOf(name, target.filename().string());
+    if (process != 0 && (process == getpid() || IsGone(process))) {
+      fs::remove(entry.path(), ignored);
+    }
+  }
 }
 
 void AtomicFile::fail(int reason) const

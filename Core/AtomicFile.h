@@ -38,4 +38,9 @@ private:
   int Descriptor = -1;
 };
 
+/// Removes the temporary files for `path` of processes that were killed before their destructors
+/// ran: those of processes which are no longer there, or which had this one's number. So this
+/// process must not be writing the file just now.
+void RemoveAbandonedFiles(const std::string& path);
+
 } // namespace inr
