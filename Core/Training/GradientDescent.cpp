@@ -128,6 +128,16 @@ void GradientDescent::startFrom(const std::vector<float>& parameters)
   std::copy(parameters.begin(), parameters.end(), this->Parameters.begin());
 }
 
+StateArrays GradientDescent::state()
+{
+  const auto array = [](const char* name, auto& values) {
+    return StateArray{name, values.data(),
+                      static_cast<std::int64_t>(values.size() * sizeof(values[0]))};
+  };
+  return {array("values", this->Parameters), array("moment1", this->FirstMoments),
+          array("moment2", this->SecondMoments), array("updates", this->Updates)};
+}
+
 std::optional<double> GradientDescent::step(BatchSource& batches, const StopCheck& check)
 {
   batches.prepare({this->Steps, this->PlannedSteps}, check);

@@ -5,6 +5,7 @@
 #include "Core/Parallel.h"
 #include "Core/Training/BatchSource.h"
 #include "Core/Training/GridGradient.h"
+#include "Core/Training/StateArray.h"
 #include "Core/Training/StopCheck.h"
 #include "Core/Training/TrainKernel.h"
 
@@ -45,6 +46,11 @@ public:
   /// Before the first step: takes these parameters instead of random ones. The learning rate is the
   /// same: half of it gains some tenths of a dB in one time step, and may lose them after several.
   void startFrom(const std::vector<float>& parameters);
+
+  /// Where parameters, moments and counts of updates lie. With them, the number of steps and the
+  /// plan, another GradientDescent that was made alike goes on to the same parameters, bit for bit.
+  StateArrays state();
+  void goOnAfter(std::uint64_t steps) { this->Steps = steps; }
 
   /// Spreads the learning rate over so many steps (default: no end in sight, a constant rate).
   void plan(std::uint64_t steps) { this->PlannedSteps = steps; }

@@ -2,6 +2,7 @@
 #include "Core/Training/PsnrEstimate.h"
 
 #include "Core/Model/Model.h"
+#include "Core/Model/ModelBlobs.h"
 #include "Core/Random.h"
 #include "Core/Training/HalvedCube.h"
 
@@ -65,6 +66,11 @@ std::vector<float> PsnrEstimate::values(const ModelView& model, const EvaluateKe
   }
   std::transform(values.begin(), values.end(), values.begin(), NormalisedOutput);
   return values;
+}
+
+std::uint32_t PsnrEstimate::checksum() const
+{
+  return ContinueChecksum(0, this->Targets.data(), this->Targets.size() * sizeof(float));
 }
 
 double PsnrEstimate::squaredError(const std::vector<float>& values) const

@@ -36,6 +36,9 @@ public:
   std::vector<float> values(const ModelView& model, const EvaluateKernel& kernel,
                             const StopCheck& check) const;
 
+  /// CRC-32 of the voxels' values: says whether two estimates are of the same data.
+  std::uint32_t checksum() const;
+
   /// Mean squared difference of `values` from the targets, over those that are finite; 0 where none
   /// is.
   double squaredError(const std::vector<float>& values) const;

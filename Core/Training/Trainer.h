@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Model/Model.h"
+#include "Core/Training/CheckpointOptions.h"
 #include "Core/Training/Volume.h"
 #include "Core/Training/VolumeReader.h"
 
@@ -38,6 +39,9 @@ struct TrainingOptions
   std::int64_t memoryLimit = std::int64_t{1} << 30;
   /// Of a VolumeReader with more than four times as many voxels, the quality is measured on these.
   std::int64_t measuredVoxels = std::int64_t{1} << 26;
+  /// Steps and seconds of a training that goes on from its checkpoint include those before. Who
+  /// called TrainModel removes the file when the model is safe; a volume of one value has none.
+  CheckpointOptions checkpoint;
   std::string kernel; ///< for tests; empty = the fastest
   int threads = 0;    ///< 0 = all
 };

@@ -36,7 +36,27 @@ void RequireFinite(bool finite, std::uint64_t steps)
 void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
                        const EvaluateKernel& kernel)
 {
-  const StopCheck check([&] { return this->keepGoing(descent.steps()); });
+  this->planAhead(descent);
+  this->resume(descent);
+  if (this->Finished) {
+    return;
+  }
+  try {
+    this->train(descent, batches, estimate, kernel);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::InvalidModel) { // diverged: nothing to go on from
+      throw;
+    }
+    throw Error(error.code(),
+                std::string(error.what()) + "; " +
+                    this->Keeper.writeAtStop(this->state(descent, false), descent.state()));
+  }
+  this->finish(descent);
+  this->Keeper.writeAtEnd(this->state(descent, true), descent.state());
+}
+
+void TrainingLoop::planAhead(GradientDescent& descent)
+{
   const bool byTheClock = this->Options.timeLimit > 0 && this->Options.maximumSteps == 0;
   if (this->Options.plannedSteps > 0) {
     this->plan(descent, this->Options.plannedSteps);
@@ -44,6 +64,13 @@ void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const Psn
     const std::uint64_t steps = this->Options.maximumSteps;
     this->plan(descent, steps > 0 ? steps : StepsToTarget);
   }
+}
+
+/// An error in the middle of a step leaves the parameters of the steps before it.
+void TrainingLoop::train(GradientDescent& descent, BatchSource& batches,
+                         const PsnrEstimate& estimate, const EvaluateKernel& kernel)
+{
+  const StopCheck check([&] { return this->keepGoing(descent.steps()); });
   while (!this->reachedLimit(descent.steps())) {
     const std::optional<double> loss = descent.step(batches, check);
     if (!loss) { // the time is up, and the step was dropped
@@ -55,7 +82,14 @@ void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const Psn
     }
     this->planByTheClock(descent);
     this->report(descent.steps());
+    if (this->Keeper.isDue()) {
+      this->Keeper.write(this->state(descent, false), descent.state());
+    }
   }
+}
+
+void TrainingLoop::finish(GradientDescent& descent)
+{
   if (descent.steps() == 0) {
     throw Error(ErrorCode::InvalidArgument,
                 "not one step of the training was finished within the TimeLimit of " +
@@ -70,6 +104,27 @@ void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const Psn
   if (this->PlannedSteps == 0) { // the rate was constant to the end
     this->plan(descent, LearningRate::ConstantShare * descent.steps());
   }
+}
+
+void TrainingLoop::resume(GradientDescent& descent)
+{
+  const std::optional<TrainingState> before = this->Keeper.resume(descent.state());
+  if (!before) {
+    return;
+  }
+  descent.goOnAfter(before->steps);
+  if (before->plannedSteps > 0) {
+    this->plan(descent, before->plannedSteps);
+  }
+  this->Clock = TrainingClock(before->seconds);
+  this->LastReport = before->seconds;
+  this->Psnr = before->psnr;
+  this->Finished = before->finished;
+}
+
+TrainingState TrainingLoop::state(const GradientDescent& descent, bool finished) const
+{
+  return {descent.steps(), this->PlannedSteps, this->Clock.seconds(), this->Psnr, finished};
 }
 
 void TrainingLoop::plan(GradientDescent& descent, std::uint64_t steps)
@@ -155,7 +210,7 @@ void TrainingLoop::report(std::uint64_t steps)
   this->Fraction = std::max(this->Fraction, TrainingShare * this->fraction(steps));
   if (this->Observer &&
       !this->Observer({TrainingPhase::Training, this->Fraction, steps, this->Psnr})) {
-    throw Error(ErrorCode::Cancelled, "training stopped on request; nothing was kept");
+    throw Error(ErrorCode::Cancelled, "training stopped on request");
   }
 }
 

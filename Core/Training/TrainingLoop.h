@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Inference/EvaluateKernel.h"
+#include "Core/Training/CheckpointKeeper.h"
 #include "Core/Training/GradientDescent.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Trainer.h"
@@ -18,19 +19,28 @@ constexpr double TrainingShare = 0.9;
 class TrainingLoop
 {
 public:
-  TrainingLoop(const TrainingOptions& options, const TrainingObserver& observer)
-      : Options(options), Observer(observer)
+  TrainingLoop(const TrainingOptions& options, const TrainingObserver& observer,
+               CheckpointKeeper& keeper)
+      : Options(options), Observer(observer), Keeper(keeper)
   {}
 
-  /// Throws what TrainModel says of training itself.
+  /// Throws what TrainModel says of training itself. The checkpoint is written between steps and
+  /// before an error.
   void run(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
            const EvaluateKernel& kernel);
 
-  /// Of the run: wall time, and the steps that its learning rate was spread over.
+  /// Of the run, with what went before its checkpoint: wall time, and the steps that its learning
+  /// rate was spread over.
   double seconds() const { return this->Clock.seconds(); }
   std::uint64_t plannedSteps() const { return this->PlannedSteps; }
 
 private:
+  void planAhead(GradientDescent& descent);
+  void resume(GradientDescent& descent);
+  void train(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
+             const EvaluateKernel& kernel);
+  void finish(GradientDescent& descent);
+  TrainingState state(const GradientDescent& descent, bool finished) const;
   void plan(GradientDescent& descent, std::uint64_t steps);
   void planByTheClock(GradientDescent& descent);
   double storingLoss() const;
@@ -44,7 +54,9 @@ private:
 
   const TrainingOptions& Options;
   const TrainingObserver& Observer;
+  CheckpointKeeper& Keeper;
   TrainingClock Clock;
+  bool Finished = false;          ///< before it was stopped
   std::uint64_t PlannedSteps = 0; ///< 0 until there is a plan
   double Psnr = 0;
   double Fraction = 0;

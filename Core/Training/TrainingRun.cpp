@@ -8,6 +8,7 @@
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
 #include "Core/Training/Quantise.h"
+#include "Core/Training/TrainingIdentity.h"
 #include "Core/Training/TrainingLoop.h"
 
 #include <Imath/half.h>
@@ -137,7 +138,8 @@ void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, cons
   Model& model = this->Result;
   GradientDescent descent(model.description, this->Options.seed, this->Set, arena);
   StartFrom(this->Options.start, model, descent);
-  TrainingLoop loop(this->Options, this->Observer);
+  CheckpointKeeper keeper(this->Options.checkpoint, IdentityOf(model, this->Options, estimate));
+  TrainingLoop loop(this->Options, this->Observer, keeper);
   loop.run(descent, batches, estimate, EvaluateKernelFor(this->Set));
   model.training->steps = descent.steps();
   model.training->plannedSteps = loop.plannedSteps();

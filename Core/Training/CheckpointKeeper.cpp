@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/CheckpointKeeper.h"
+
+#include "Core/AtomicFile.h"
+#include "Core/Error.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace inr {
+
+namespace {
+
+/// Seconds between two checkpoints, for each that writing one takes.
+constexpr double LeastShare = 20;
+
+/// What tells two trainings apart, for the user; empty = nothing.
+std::string Difference(const TrainingIdentity& there, const TrainingIdentity& here)
+{
+  const auto valueOf = [](const TrainingIdentity& identity, const std::string& name) {
+    const auto entry = identity.find(name);
+    return entry == identity.end() ? std::string("not told") : entry->second;
+  };
+  TrainingIdentity all = here;
+  all.insert(there.begin(), there.end());
+  for (const auto& [name, unused] : all) {
+    const std::string was = valueOf(there, name);
+    const std::string is = valueOf(here, name);
+    if (was != is) {
+      return name + " is " + was + " there and " + is + " here";
+    }
+  }
+  return "";
+}
+
+bool Exists(const std::string& path)
+{
+  std::error_code unknown;
+  return std::filesystem::exists(path, unknown) || unknown;
+}
+
+} // namespace
+
+CheckpointKeeper::CheckpointKeeper(CheckpointOptions options, TrainingIdentity identity)
+    : Options(std::move(options)), Identity(std::move(identity))
+{
+  if (!this->Options.path.empty()) {
+    RemoveAbandonedFiles(this->Options.path);
+  }
+}
+
+std::optional<TrainingState> CheckpointKeeper::resume(const StateArrays& arrays)
+{
+  const std::string& path = this->Options.path;
+  if (path.empty() || !this->Options.resume || !Exists(path)) {
+    return std::nullopt;
+  }
+  try {
+    const CheckpointFile file(path);
+    const std::string difference = Difference(file.identity(), this->Identity);
+    if (!difference.empty()) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "'" + path + "' is of another training: " + difference);
+    }
+    file.load(arrays);
+    this->HasWritten = true;
+    this->tell(CheckpointEvent::Resumed, "the training goes on after " +
+                                             std::to_string(file.state().steps) + " steps from '" +
+                                             path + "'");
+    return file.state();
+  } catch (const Error& error) {
+    this->tell(CheckpointEvent::Ignored,
+               std::string(error.what()) +
+                   "; the training begins anew, and its first checkpoint will replace the file");
+    return std::nullopt;
+  }
+}
+
+bool CheckpointKeeper::isDue() const
+{
+  return !this->Options.path.empty() &&
+         this->SinceWritten.seconds() >=
+             std::max(this->Options.interval, LeastShare * this->WriteSeconds);
+}
+
+/// Replaces the checkpoint; says why it cannot, and otherwise nothing.
+std::string CheckpointKeeper::replace(const TrainingState& state, const StateArrays& arrays)
+{
+  const TrainingClock clock;
+  std::string problem;
+  try {
+    WriteCheckpoint(this->Options.path, this->Identity, state, arrays);
+    this->HasWritten = true;
+    this->tell(CheckpointEvent::Written,
+               "'" + this->Options.path + "' holds " + std::to_string(state.steps) + " steps");
+  } catch (const Error& error) {
+    problem = error.what();
+  }
+  this->WriteSeconds = clock.seconds();
+  this->SinceWritten = TrainingClock();
+  return problem;
+}
+
+void CheckpointKeeper::write(const TrainingState& state, const StateArrays& arrays)
+{
+  const std::string problem = this->replace(state, arrays);
+  if (!problem.empty() && !std::exchange(this->HasFailed, true)) {
+    this->tell(CheckpointEvent::Failed, problem + "; the training goes on, " +
+                                            (this->HasWritten ? "the checkpoint of before is kept"
+                                                              : "without a checkpoint"));
+  }
+}
+
+void CheckpointKeeper::writeAtEnd(const TrainingState& state, const StateArrays& arrays)
+{
+  if (!this->Options.path.empty() && state.seconds >= this->Options.interval) {
+    this->write(state, arrays);
+  }
+}
+
+std::string CheckpointKeeper::writeAtStop(const TrainingState& state, const StateArrays& arrays)
+{
+  if (this->Options.path.empty() || state.steps == 0) {
+    return "nothing was kept";
+  }
+  const std::string problem = this->replace(state, arrays);
+  if (problem.empty()) {
+    return "its " + std::to_string(state.steps) + " steps are kept in '" + this->Options.path +
+           "', from where the same training goes on";
+  }
+  return problem + (this->HasWritten ? "; the checkpoint of before is kept" : "; nothing was kept");
+}
+
+void CheckpointKeeper::tell(CheckpointEvent event, const std::string& text) const
+{
+  if (this->Options.tell) {
+    this->Options.tell(event, text);
+  }
+}
+
+} // namespace inr

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Training/Checkpoint.h"
+#include "Core/Training/CheckpointOptions.h"
+#include "Core/Training/TrainingClock.h"
+
+#include <optional>
+#include <string>
+
+namespace inr {
+
+/// Keeps one training on disk while it runs, as its options say, and takes it up again. Without a
+/// path it does nothing.
+class CheckpointKeeper
+{
+public:
+  /// Removes what processes that were killed while they wrote this checkpoint have left.
+  CheckpointKeeper(CheckpointOptions options, TrainingIdentity identity);
+
+  /// Fills the arrays from the checkpoint and says how far the training was; nothing where it
+  /// begins anew, for want of a checkpoint or of a fitting one.
+  std::optional<TrainingState> resume(const StateArrays& arrays);
+
+  /// Whether it is time to write again.
+  bool isDue() const;
+
+  /// Replaces the checkpoint. Where that fails, the one of before stays, and the user is told once.
+  void write(const TrainingState& state, const StateArrays& arrays);
+
+  /// The same when all steps are done, for what comes after them may take long, too; not of a
+  /// training so short that it needed none.
+  void writeAtEnd(const TrainingState& state, const StateArrays& arrays);
+
+  /// For a training that stops before its end: writes and says, for the user, what is kept.
+  std::string writeAtStop(const TrainingState& state, const StateArrays& arrays);
+
+private:
+  std::string replace(const TrainingState& state, const StateArrays& arrays);
+  void tell(CheckpointEvent event, const std::string& text) const;
+
+  CheckpointOptions Options;
+  TrainingIdentity Identity;
+  TrainingClock SinceWritten;
+  double WriteSeconds = 0; ///< that the last took
+  bool HasWritten = false; ///< or gone on from
+  bool HasFailed = false;
+};
+
+} // namespace inr

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Training/Checkpoint.h"
+#include "Core/Training/PsnrEstimate.h"
+#include "Core/Training/Trainer.h"
+
+namespace inr {
+
+/// Names all that decides which parameters a training comes to: the options; of `model` the
+/// description, the volume and, in the record, what the training works with; and of the data also
+/// the values at the estimate's voxels. Its texts are ASCII. Empty when the options ask for no
+/// checkpoint.
+TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
+                            const PsnrEstimate& estimate);
+
+} // namespace inr

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Trainings that are stopped and go on from their checkpoint.
+#include "Core/Error.h"
+#include "Core/Training/Checkpoint.h"
+#include "Core/Training/GradientDescent.h"
+#include "Testing/Core/Model/TemporaryFolder.h"
+#include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Training/Fields.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace {
+
+using inr::CheckpointEvent;
+
+class Resume : public testing::Test
+{
+protected:
+  inr::TrainingOptions options(std::uint64_t steps)
+  {
+    inr::TrainingOptions options = Steps(steps);
+    options.description = SmallDescription();
+    options.storedAs = inr::ParameterType::Half; // packing takes longer than these trainings
+    options.checkpoint.path = this->Path;
+    options.checkpoint.tell = [this](CheckpointEvent event, const std::string& text) {
+      this->Events.push_back(event);
+      this->Texts.push_back(text);
+    };
+    return options;
+  }
+
+  inr::ModelPointer train(const inr::TrainingOptions& options)
+  {
+    this->Events.clear();
+    this->Texts.clear();
+    return inr::TrainModel(this->Data.data(), {}, options);
+  }
+
+  inr::ModelPointer withoutCheckpoint(inr::TrainingOptions options)
+  {
+    options.checkpoint.path.clear();
+    return this->train(options);
+  }
+
+  /// Trains until it has taken so many steps, then stops it; returns what it is told.
+  std::string stopAfter(std::uint64_t steps, const inr::TrainingOptions& options)
+  {
+    try {
+      inr::TrainModel(this->Data.data(), {}, options,
+                      [&](const inr::TrainingProgress& now) { return now.steps < steps; });
+      ADD_FAILURE() << "went on";
+    } catch (const inr::Error& error) {
+      EXPECT_EQ(error.code(), inr::ErrorCode::Cancelled);
+      return error.what();
+    }
+    return "";
+  }
+
+  long count(CheckpointEvent event) const
+  {
+    return std::count(this->Events.begin(), this->Events.end(), event);
+  }
+
+  /// Writes the checkpoint again, with another state.
+  template <typename Change> void change(const inr::Description& description, const Change& change)
+  {
+    const inr::CheckpointFile file(this->Path);
+    const inr::Arena threads(1);
+    inr::GradientDescent descent(description, 1, inr::ChooseInstructionSet(""), threads);
+    file.load(descent.state());
+    inr::TrainingState state = file.state();
+    change(state);
+    inr::WriteCheckpoint(this->Path, file.identity(), state, descent.state());
+  }
+
+  bool exists() const { return std::filesystem::exists(this->Path); }
+
+  TemporaryFolder Folder;
+  std::string Path = Folder.file("a.inr.checkpoint");
+  Field<float> Data = Waves();
+  std::vector<CheckpointEvent> Events;
+  std::vector<std::string> Texts;
+};
+
+TEST_F(Resume, GivesTheModelThatItWouldHaveGiven)
+{
+  const inr::ModelPointer whole = this->withoutCheckpoint(this->options(12));
+  const std::string told = this->stopAfter(5, this->options(12));
+  EXPECT_NE(told.find("5 steps are kept in '" + this->Path), std::string::npos) << told;
+  EXPECT_EQ(this->count(CheckpointEvent::Written), 1);
+  this->stopAfter(9, this->options(12));
+  const inr::ModelPointer resumed = this->train(this->options(12));
+  ASSERT_EQ(this->count(CheckpointEvent::Resumed), 1);
+  EXPECT_NE(this->Texts[0].find("9 steps"), std::string::npos) << this->Texts[0];
+  EXPECT_EQ(resumed->parameters, whole->parameters);
+  EXPECT_EQ(resumed->training->steps, 12u);
+  EXPECT_EQ(resumed->training->plannedSteps, whole->training->plannedSteps);
+  EXPECT_EQ(resumed->quality->psnr, whole->quality->psnr);
+}
+
+TEST_F(Resume, LeavesNothingWhereNothingIsWorthKeeping)
+{
+  inr::TrainingOptions options = this->options(1000);
+  options.checkpoint.path.clear();
+  EXPECT_NE(this->stopAfter(1, options).find("nothing was kept"), std::string::npos);
+  this->train(this->options(3)); // done long before the first checkpoint is due
+  EXPECT_FALSE(this->exists());
+  EXPECT_TRUE(this->Events.empty());
+}
+
+TEST_F(Resume, WritesInIntervals)
+{
+  inr::TrainingOptions options = this->options(400);
+  options.checkpoint.interval = 0.01;
+  const inr::ModelPointer whole = this->train(options);
+  EXPECT_GT(this->count(CheckpointEvent::Written), 2);
+  EXPECT_EQ(this->count(CheckpointEvent::Failed), 0);
+  // The last one is of all steps: what is left is to measure.
+  const inr::CheckpointFile file(this->Path);
+  EXPECT_TRUE(file.state().finished);
+  EXPECT_EQ(file.state().steps, 400u);
+  const inr::ModelPointer again = this->train(options);
+  EXPECT_EQ(again->parameters, whole->parameters);
+  EXPECT_EQ(this->count(CheckpointEvent::Resumed), 1);
+  EXPECT_EQ(this->count(CheckpointEvent::Written), 0);
+}
+
+TEST_F(Resume, EndsAtTheSameStepByQuality)
+{
+  inr::TrainingOptions options = this->options(5000);
+  options.targetPsnr = 24;
+  const inr::ModelPointer whole = this->withoutCheckpoint(options);
+  EXPECT_LT(whole->training->steps, 5000u);
+  options.checkpoint.interval = 0;
+  this->stopAfter(150, options);
+  const inr::ModelPointer resumed = this->train(options);
+  EXPECT_EQ(resumed->training->steps, whole->training->steps);
+  EXPECT_EQ(resumed->parameters, whole->parameters);
+  EXPECT_EQ(this->train(options)->training->steps, whole->training->steps);
+}
+
+TEST_F(Resume, CountsTheTimeBefore)
+{
+  inr::TrainingOptions options = this->options(0);
+  options.timeLimit = 5;
+  this->stopAfter(5, options);
+  this->change(*options.description, [](inr::TrainingState& state) { state.seconds = 4.9; });
+  double first = -1;
+  inr::TrainModel(this->Data.data(), {}, options, [&](const inr::TrainingProgress& now) {
+    first = first < 0 ? now.fraction : first;
+    return true;
+  });
+  EXPECT_GT(first, 0.85);
+  const inr::ModelPointer model = this->train(options);
+  EXPECT_GE(model->training->seconds, 5);
+  EXPECT_LT(model->training->seconds, 15);
+  EXPECT_GE(model->training->steps, 5u);
+  // Five steps in 4.9 s: the plan is made by that.
+  EXPECT_LT(model->training->plannedSteps, 10 * model->training->steps + 10);
+}
+
+TEST_F(Resume, IgnoresWhatIsOfAnotherTrainingAndSaysWhy)
+{
+  this->stopAfter(3, this->options(6));
+  const std::string kept = ReadBytes(this->Path);
+  const auto expectIgnored = [&](const inr::TrainingOptions& options, const std::string& words) {
+    const inr::ModelPointer model = this->train(options);
+    ASSERT_EQ(this->count(CheckpointEvent::Ignored), 1) << words;
+    EXPECT_NE(this->Texts[0].find(words), std::string::npos) << this->Texts[0];
+    EXPECT_NE(this->Texts[0].find(this->Path), std::string::npos) << this->Texts[0];
+    EXPECT_EQ(model->parameters, this->withoutCheckpoint(options)->parameters)
+        << "was used: " << words;
+  };
+  inr::TrainingOptions other = this->options(6);
+  other.seed = 2;
+  expectIgnored(other, "Seed is 1 there and 2 here");
+  expectIgnored(this->options(7), "MaximumSteps is 6 there and 7 here");
+  other = this->options(6);
+  other.description->network.neurons = 32;
+  expectIgnored(other, "the model is");
+  other = this->options(6);
+  other.start = this->withoutCheckpoint(this->options(1));
+  expectIgnored(other, "the parameters to start from");
+  const float before = this->Data.values[1234];
+  this->Data.values[1234] = 7;
+  expectIgnored(this->options(6), "the range of values");
+  this->Data.values[1234] = before;
+  std::reverse(this->Data.values.begin(), this->Data.values.end()); // the same range
+  expectIgnored(this->options(6), "random voxels");
+  EXPECT_EQ(ReadBytes(this->Path), kept);
+}
+
+TEST_F(Resume, IgnoresABrokenFile)
+{
+  this->stopAfter(3, this->options(6));
+  std::string bytes = ReadBytes(this->Path);
+  bytes[bytes.size() - 9] ^= 4;
+  WriteBytes(this->Path, bytes);
+  const inr::ModelPointer model = this->train(this->options(6));
+  ASSERT_EQ(this->count(CheckpointEvent::Ignored), 1);
+  EXPECT_NE(this->Texts[0].find("checksum"), std::string::npos) << this->Texts[0];
+  EXPECT_EQ(model->parameters, this->withoutCheckpoint(this->options(6))->parameters);
+}
+
+TEST_F(Resume, BeginsAnewWhenToldTo)
+{
+  this->stopAfter(3, this->options(6));
+  inr::TrainingOptions options = this->options(6);
+  options.checkpoint.resume = false;
+  double seconds = this->train(options)->training->seconds;
+  EXPECT_TRUE(this->Events.empty());
+  EXPECT_GT(seconds, 0);
+}
+
+TEST_F(Resume, GoesOnWithoutACheckpointWhereNoneCanBeWritten)
+{
+  inr::TrainingOptions options = this->options(300);
+  options.checkpoint.path = this->Folder.file("no/such/folder");
+  options.checkpoint.interval = 0.01;
+  EXPECT_EQ(this->train(options)->training->steps, 300u);
+  EXPECT_EQ(this->count(CheckpointEvent::Failed), 1);
+  EXPECT_EQ(this->Events.size(), 1u);
+  EXPECT_NE(this->Texts[0].find("the training goes on"), std::string::npos) << this->Texts[0];
+  EXPECT_NE(this->stopAfter(2, options).find("No such file"), std::string::npos);
+}
+
+TEST_F(Resume, ClearsAwayWhatAKilledProcessLeft)
+{
+  const std::string abandoned = this->Path + ".4194305.0.tmp"; // above the largest process number
+  const std::string alive = this->Path + ".1.0.tmp";
+  const std::string others = this->Path + ".my.tmp";
+  for (const std::string& name : {abandoned, alive, others}) {
+    WriteBytes(name, "half");
+  }
+  this->train(this->options(1));
+  EXPECT_FALSE(std::filesystem::exists(abandoned));
+  EXPECT_TRUE(std::filesystem::exists(alive));
+  EXPECT_TRUE(std::filesystem::exists(others));
+}
+
+} // namespace
