@@ -8,6 +8,7 @@
 #include "Core/Training/Trainer.h"
 #include "StepSequence.h"
 #include "StopSignals.h"
+#include "TrainingCheckpoint.h"
 #include "TrainingInput.h"
 #include "VTKCompat.h"
 
@@ -197,15 +198,27 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
   }
   options.start = this->FindStart(input.info);
   this->Internal->Previous = nullptr;
+  TrainingCheckpoint checkpoint(this, this->Internal->Target, this->CheckpointInterval,
+                                this->Resume);
+  options.checkpoint = checkpoint.options();
 
   const auto observe = [&](const inr::TrainingProgress& progress) {
     const bool training = progress.phase == inr::TrainingPhase::Training;
     this->SetProgressText(training ? "Training INR" : "Measuring INR quality");
     this->UpdateProgress(this->Internal->Steps.progress(progress.fraction));
+    checkpoint.tell();
     return !signals.Received() && !IsAborted(*this);
   };
-  const inr::ModelPointer model = inr::TrainModel(input.data, input.info, options, observe);
-  this->KeepResult(*model, inr::WriteModel(*model, this->Internal->Target));
+  inr::ModelPointer model;
+  try {
+    model = inr::TrainModel(input.data, input.info, options, observe);
+    this->KeepResult(*model, inr::WriteModel(*model, this->Internal->Target));
+  } catch (const inr::Error& error) {
+    checkpoint.tell();
+    throw checkpoint.complete(error);
+  }
+  checkpoint.tell();
+  checkpoint.remove();
   this->UpdateProgress(this->Internal->Steps.progress(1.0));
   this->Internal->Previous = model->volume.time ? model : nullptr;
   if (model->training->nonFinite > 0) {
@@ -244,6 +257,8 @@ void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "TargetRatio: " << this->TargetRatio << "\n"
      << indent << "MaximumSteps: " << this->MaximumSteps << "\n"
      << indent << "TimeLimit: " << this->TimeLimit << "\n"
+     << indent << "CheckpointInterval: " << this->CheckpointInterval << "\n"
+     << indent << "Resume: " << (this->Resume ? "on" : "off") << "\n"
      << indent << "MacroCellSize: " << this->MacroCellSize << "\n"
      << indent << "PlannedSteps: " << this->PlannedSteps << "\n"
      << indent << "Seed: " << this->Seed << "\n"

@@ -203,10 +203,12 @@ with Messages() as messages:
 print(len(steps), "reports of progress", flush=True)
 check(len(steps) >= 9, "training reports no progress:", len(steps))
 check(messages.errors() <= 1, "meddling with training gave", messages.text)
-check(not [name for name in os.listdir(os.path.dirname(target)) if name.startswith(
-    "bad-use-training.inr.")], "a temporary file is left")
-if os.path.exists(target):
-    os.remove(target)
+left = [name for name in os.listdir(os.path.dirname(target)) if name.startswith(
+    "bad-use-training.inr.")]
+check(left in ([], ["bad-use-training.inr.checkpoint"]), "a temporary file is left:", left)
+for path in (target, target + ".checkpoint"):
+    if os.path.exists(path):
+        os.remove(path)
 
 # The session goes on.
 with Messages() as messages:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Ctrl-C during a long training, decoding or contouring ends it with KeyboardInterrupt; a training
-leaves no file behind."""
+leaves its checkpoint behind, or, when told to keep none, nothing."""
 import os
 import signal
 import subprocess
@@ -13,7 +13,7 @@ import sys
 from inrvolume import vtkINRContour, vtkINRDecode, vtkINRReader, vtkINRWriter
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
-def train(path, steps):
+def train(path, steps, interval=0):
     image = vtkImageData()
     image.SetDimensions(40, 40, 40)
     image.AllocateScalars(11, 1)
@@ -24,6 +24,7 @@ def train(path, steps):
     writer.SetInputData(image)
     writer.SetFileName(path)
     writer.SetMaximumSteps(steps)
+    writer.SetCheckpointInterval(interval)
     return writer
 
 def interrupt(algorithm, start):
@@ -53,6 +54,8 @@ TRAINING = """
 writer = train(sys.argv[1], 0)
 interrupt(writer, writer.Write)
 """
+
+TRAINING_WITH_CHECKPOINT = TRAINING.replace("0)", "0, 60)")
 
 DECODING = """
 reader = read_large(sys.argv[1])
@@ -95,5 +98,8 @@ def interrupted(what, folder):
 with tempfile.TemporaryDirectory() as folder:
     assert "stopped" in interrupted(TRAINING, folder)
     assert os.listdir(folder) == [], os.listdir(folder)
+    for expected in ("steps are kept in", "goes on after"):  # the second goes on from the first
+        assert expected in interrupted(TRAINING_WITH_CHECKPOINT, folder)
+        assert os.listdir(folder) == ["model.inr.checkpoint"], os.listdir(folder)
     for what in (DECODING, CONTOURING):
         interrupted(what, folder)

@@ -408,6 +408,7 @@ TEST_F(Writer, ReportsProgressAndStopsWhenAsked)
 
   watcher = ProgressWatcher();
   watcher.stopAfter = 2;
+  this->Algorithm->SetCheckpointInterval(0);
   this->Algorithm->SetMaximumSteps(0); // five minutes
   this->expectRefusal(image, "stopped");
 
@@ -415,6 +416,96 @@ TEST_F(Writer, ReportsProgressAndStopsWhenAsked)
   this->Algorithm->SetAbortExecute(0); // VTK 9.1 does it by itself, 9.2 leaves it to the caller
   this->Algorithm->SetMaximumSteps(80);
   this->write(image);
+  EXPECT_EQ(this->Folder.entries(), 1);
+}
+
+namespace {
+
+/// Stops a writer once its progress is beyond `limit`.
+struct Stopper
+{
+  explicit Stopper(vtkAlgorithm* writer) : Writer(writer)
+  {
+    this->Command->SetClientData(this);
+    this->Command->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+      auto* algorithm = vtkAlgorithm::SafeDownCast(caller);
+      if (algorithm->GetProgress() > static_cast<Stopper*>(data)->limit) {
+        algorithm->SetAbortExecute(1);
+      }
+    });
+    writer->AddObserver(vtkCommand::ProgressEvent, this->Command);
+  }
+  ~Stopper()
+  {
+    this->Writer->RemoveObserver(this->Command);
+    this->Writer->SetAbortExecute(0);
+  }
+  Stopper(const Stopper&) = delete;
+  Stopper& operator=(const Stopper&) = delete;
+
+  double limit = 0.4;
+  vtkAlgorithm* Writer;
+  vtkNew<vtkCallbackCommand> Command;
+};
+
+} // namespace
+
+TEST_F(Writer, GoesOnFromTheCheckpointOfAStoppedTraining)
+{
+  const auto image = MakeImage({20, 20, 20}, VTK_FLOAT, 0, 1);
+  this->write(image);
+  const inr::ModelPointer whole = inr::ReadModel(this->path());
+  std::filesystem::remove(this->path());
+
+  const std::string checkpoint = this->path() + ".checkpoint";
+  {
+    const MessageCapture messages;
+    const Stopper stopper(this->Algorithm);
+    this->write(image);
+    EXPECT_TRUE(messages.onlyError("steps are kept in '" + checkpoint)) << messages.text();
+  }
+  EXPECT_EQ(this->Folder.entries(), 1);
+  EXPECT_TRUE(std::filesystem::exists(checkpoint));
+  {
+    const MessageCapture messages;
+    this->Algorithm->SetSeed(2);
+    this->write(image);
+    EXPECT_TRUE(messages.errors().empty()) << messages.text();
+    ASSERT_EQ(messages.warnings().size(), 1u);
+    EXPECT_NE(messages.warnings()[0].find("Seed is 1 there and 2 here"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(checkpoint)); // it may still be wanted
+  }
+  const MessageCapture messages;
+  this->Algorithm->SetSeed(1);
+  this->write(image);
+  EXPECT_TRUE(messages.errors().empty() && messages.warnings().empty()) << messages.text();
+  EXPECT_EQ(this->Algorithm->GetSteps(), 80);
+  EXPECT_EQ(inr::ReadModel(this->path())->parameters, whole->parameters);
+  EXPECT_EQ(this->Folder.entries(), 1);
+}
+
+TEST_F(Writer, GoesOnWithMeasuringWhenItWasStoppedThere)
+{
+  const auto image = MakeImage({20, 20, 20}, VTK_FLOAT, 0, 1);
+  this->Algorithm->SetCheckpointInterval(1e-3);
+  {
+    const MessageCapture messages;
+    Stopper stopper(this->Algorithm);
+    stopper.limit = 0.9;
+    this->write(image);
+    EXPECT_TRUE(messages.onlyError(".checkpoint' is kept")) << messages.text();
+  }
+  vtkIdType trained = 0;
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(&trained);
+  command->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    const char* text = vtkAlgorithm::SafeDownCast(caller)->GetProgressText();
+    *static_cast<vtkIdType*>(data) += text && std::string(text) == "Training INR" ? 1 : 0;
+  });
+  this->Algorithm->AddObserver(vtkCommand::ProgressEvent, command);
+  this->write(image);
+  EXPECT_LE(trained, 1); // the pipeline's own report keeps the text
+  EXPECT_EQ(this->Algorithm->GetSteps(), 80);
   EXPECT_EQ(this->Folder.entries(), 1);
 }
 
@@ -452,6 +543,7 @@ TEST_F(Writer, StopsOnASignalAndHandsItOn)
     }
   });
   const unsigned long tag = this->Algorithm->AddObserver(vtkCommand::ProgressEvent, command);
+  this->Algorithm->SetCheckpointInterval(0);
   this->Algorithm->SetMaximumSteps(0);
   this->expectRefusal(MakeImage({20, 20, 20}, VTK_FLOAT, 0, 1), "stopped");
   EXPECT_EQ(SignalsSeen, 1);
