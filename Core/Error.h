@@ -16,7 +16,8 @@ enum class ErrorCode {
   InvalidModel,    ///< a description or parameter vector that contradicts itself
   InvalidArgument, ///< a value outside its documented range
   TooLarge,        ///< beyond a documented limit
-  Cancelled        ///< stopped on the user's request
+  Cancelled,       ///< stopped on the user's request
+  Device           ///< no GPU that can be used, its memory is short, or it failed
 };
 
 /// The only exception type that Core throws. `what()` says what, where and, where possible, what to

@@ -22,7 +22,8 @@ public:
   virtual void inferLayer(BrickKey key, std::int64_t z, float* values) const = 0;
 
   /// All layers of `count` bricks, one brick after the other.
-  void infer(const BrickKey* keys, std::int64_t count, float* values, const Arena& arena) const;
+  virtual void infer(const BrickKey* keys, std::int64_t count, float* values,
+                     const Arena& arena) const;
 
 private:
   Hierarchy Levels;
