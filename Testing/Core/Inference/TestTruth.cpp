@@ -2,8 +2,8 @@
 //
 // Every kernel against truth.py, an independent float64 evaluation.
 #include "Core/Inference/Evaluator.h"
-#include "Core/Model/DescriptionJson.h"
 #include "Core/Random.h"
+#include "Testing/Core/Inference/TruthCase.h"
 #include "Testing/Core/Kernels.h"
 
 #include <Imath/half.h>
@@ -11,58 +11,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 namespace {
 
-template <class T> std::vector<T> ReadArray(const std::string& path)
+/// Largest difference to the truth, relative to the truth's range.
+double Error(const TruthCase& truth, const std::string& kernel)
 {
-  std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
-  std::vector<T> values(bytes.size() / sizeof(T));
-  std::copy_n(bytes.data(), values.size() * sizeof(T), reinterpret_cast<char*>(values.data()));
-  return values;
-}
-
-std::vector<std::string> CaseNames()
-{
-  std::ifstream file(INR_TRUTH_DIR "/cases.txt");
-  return {std::istream_iterator<std::string>(file), {}};
-}
-
-struct TruthCase
-{
-  explicit TruthCase(const std::string& name)
-      : Positions(ReadArray<glm::vec3>(INR_TRUTH_DIR "/" + name + ".xyz")),
-        Values(ReadArray<double>(INR_TRUTH_DIR "/" + name + ".truth"))
-  {
-    std::ifstream file(INR_TRUTH_DIR "/" + name + ".json");
-    const std::string text((std::istreambuf_iterator<char>(file)), {});
-    this->Source.description = inr::ParseDescription(text);
-    this->Source.parameters = ReadArray<float>(INR_TRUTH_DIR "/" + name + ".params");
+  const auto evaluator =
+      inr::MakeEvaluator(std::make_shared<const inr::Model>(truth.Source), kernel);
+  std::vector<float> values(truth.Positions.size());
+  evaluator->evaluate(truth.Positions.data(), static_cast<std::int64_t>(values.size()),
+                      values.data());
+  double largest = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    largest = std::max(largest, std::abs(values[k] - truth.Values[k]));
   }
-
-  /// Largest difference to the truth, relative to the truth's range.
-  double error(const std::string& kernel) const
-  {
-    const auto evaluator =
-        inr::MakeEvaluator(std::make_shared<const inr::Model>(this->Source), kernel);
-    std::vector<float> values(this->Positions.size());
-    evaluator->evaluate(this->Positions.data(), static_cast<std::int64_t>(values.size()),
-                        values.data());
-    double largest = 0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      largest = std::max(largest, std::abs(values[k] - this->Values[k]));
-    }
-    const auto range = std::minmax_element(this->Values.begin(), this->Values.end());
-    return largest / (*range.second - *range.first);
-  }
-
-  std::vector<glm::vec3> Positions;
-  std::vector<double> Values;
-  inr::Model Source;
-};
+  const auto range = std::minmax_element(truth.Values.begin(), truth.Values.end());
+  return largest / (*range.second - *range.first);
+}
 
 TEST(Truth, CoversEveryKindOfModel) { EXPECT_GE(CaseNames().size(), 20u); }
 
@@ -72,7 +38,7 @@ TEST(Truth, FloatParametersAgreeTo1e5OfTheRange)
     const TruthCase truth(name);
     ASSERT_GE(truth.Values.size(), 500u) << name;
     for (const std::string& kernel : UsableKernels()) {
-      EXPECT_LT(truth.error(kernel), 1e-5) << name << " with " << kernel;
+      EXPECT_LT(Error(truth, kernel), 1e-5) << name << " with " << kernel;
     }
   }
 }
@@ -128,7 +94,7 @@ TEST(Truth, HalfParametersAgreeTo2e3OfTheRange)
       parameter = static_cast<float>(Imath::half(parameter));
     }
     for (const std::string& kernel : UsableKernels()) {
-      EXPECT_LT(truth.error(kernel), 2e-3) << name << " with " << kernel;
+      EXPECT_LT(Error(truth, kernel), 2e-3) << name << " with " << kernel;
     }
   }
 }

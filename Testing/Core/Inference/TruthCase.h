@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What truth.py wrote; INR_TRUTH_DIR names the folder.
+#pragma once
+
+#include "Core/Model/DescriptionJson.h"
+#include "Core/Model/Model.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+template <class T> inline std::vector<T> ReadArray(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
+  std::vector<T> values(bytes.size() / sizeof(T));
+  std::copy_n(bytes.data(), values.size() * sizeof(T), reinterpret_cast<char*>(values.data()));
+  return values;
+}
+
+/// Names of all models.
+inline std::vector<std::string> CaseNames()
+{
+  std::ifstream file(INR_TRUTH_DIR "/cases.txt");
+  return {std::istream_iterator<std::string>(file), {}};
+}
+
+/// A model, positions and float64 values there.
+struct TruthCase
+{
+  explicit TruthCase(const std::string& name)
+      : Positions(ReadArray<glm::vec3>(INR_TRUTH_DIR "/" + name + ".xyz")),
+        Values(ReadArray<double>(INR_TRUTH_DIR "/" + name + ".truth"))
+  {
+    std::ifstream file(INR_TRUTH_DIR "/" + name + ".json");
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    this->Source.description = inr::ParseDescription(text);
+    this->Source.parameters = ReadArray<float>(INR_TRUTH_DIR "/" + name + ".params");
+  }
+
+  std::vector<glm::vec3> Positions;
+  std::vector<double> Values;
+  inr::Model Source;
+};
