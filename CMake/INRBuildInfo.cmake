@@ -11,13 +11,5 @@ if (Git_FOUND)
   endif ()
 endif ()
 
-# Looked for so that the build says what it found; a machine without it is normal.
-find_package(CUDAToolkit QUIET)
-if (CUDAToolkit_FOUND)
-  message(STATUS "CUDA toolkit ${CUDAToolkit_VERSION} found; this version of INRVolume computes on the CPU")
-else ()
-  message(STATUS "No CUDA toolkit; INRVolume computes on the CPU")
-endif ()
-
 configure_file("${CMAKE_CURRENT_SOURCE_DIR}/Core/BuildInfo.h.in"
   "${CMAKE_CURRENT_BINARY_DIR}/Generated/Core/BuildInfo.h" @ONLY)

@@ -14,10 +14,12 @@ endif ()
 
 # Carried by every target of ours, never by generated (wrapping) code.
 add_library(inr_options INTERFACE)
+# Results that are compared must not depend on where a compiler fuses multiplications and additions.
 target_compile_options(inr_options INTERFACE
-  -Wall -Wextra
-  -ffp-contract=off # results that are compared must not depend on where a compiler fuses
-  $<$<BOOL:${INR_WERROR}>:-Werror>)
+  "$<$<COMPILE_LANGUAGE:C,CXX>:-Wall;-Wextra;-ffp-contract=off>"
+  "$<$<AND:$<COMPILE_LANGUAGE:C,CXX>,$<BOOL:${INR_WERROR}>>:-Werror>"
+  "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-ffp-contract=off;--fmad=false>"
+  "$<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${INR_WERROR}>>:-Xcompiler=-Werror;--Werror=all-warnings>")
 if (INR_SANITIZE)
   target_compile_options(inr_options INTERFACE
     -fsanitize=${INR_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Device.h"
+
+#include "CUDA/Launch.h"
+#include "CUDA/Runtime.h"
+#include "Core/Error.h"
+
+namespace inr {
+namespace cuda {
+
+namespace {
+
+std::string VersionText(int version)
+{
+  return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
+}
+
+int Attribute(cudaDeviceAttr attribute, int ordinal)
+{
+  int value = 0;
+  INR_CUDA(cudaDeviceGetAttribute(&value, attribute, ordinal));
+  return value;
+}
+
+std::string RuntimeText()
+{
+  int driver = 0;
+  int runtime = 0;
+  INR_CUDA(cudaDriverGetVersion(&driver));
+  INR_CUDA(cudaRuntimeGetVersion(&runtime));
+  return "CUDA " + VersionText(runtime) + ", driver for " + VersionText(driver);
+}
+
+Device Describe(int ordinal)
+{
+  cudaDeviceProp properties{};
+  INR_CUDA(cudaGetDeviceProperties(&properties, ordinal));
+  Device device;
+  device.ordinal = ordinal;
+  device.name = properties.name;
+  device.major = properties.major;
+  device.minor = properties.minor;
+  device.memory = static_cast<std::int64_t>(properties.totalGlobalMem);
+  device.multiprocessors = properties.multiProcessorCount;
+  device.sharedPerBlock = static_cast<std::int64_t>(properties.sharedMemPerBlockOptin);
+  device.sharedPerMultiprocessor = static_cast<std::int64_t>(properties.sharedMemPerMultiprocessor);
+  device.clock = Attribute(cudaDevAttrClockRate, ordinal);
+  device.memoryClock = Attribute(cudaDevAttrMemoryClockRate, ordinal);
+  device.memoryBusWidth = Attribute(cudaDevAttrGlobalMemoryBusWidth, ordinal);
+  device.l2Cache = properties.l2CacheSize;
+  device.runtime = RuntimeText();
+  return device;
+}
+
+std::string TextOf(const Device& device)
+{
+  return device.name + " (compute capability " + std::to_string(device.major) + "." +
+         std::to_string(device.minor) + ")";
+}
+
+/// Nothing where its kernels run.
+std::string WhyNot(const Device& device)
+{
+  if (Attribute(cudaDevAttrComputeMode, device.ordinal) == cudaComputeModeProhibited) {
+    return TextOf(device) + " is closed to computation";
+  }
+  const CurrentDevice current(device.ordinal);
+  return HasKernels() ? "" : TextOf(device) + " runs none of the kernels of this build";
+}
+
+void AppendReason(Devices& devices, const std::string& reason)
+{
+  devices.reason += (devices.reason.empty() ? "" : "; ") + reason;
+}
+
+/// One that fails is left out, like one without kernels.
+void Consider(int ordinal, Devices& devices)
+{
+  try {
+    const Device device = Describe(ordinal);
+    const std::string reason = WhyNot(device);
+    if (reason.empty()) {
+      devices.usable.push_back(device);
+    } else {
+      AppendReason(devices, reason);
+    }
+  } catch (const Error& error) {
+    AppendReason(devices, error.what());
+  }
+}
+
+} // namespace
+
+Devices FindDevices()
+{
+  Devices devices;
+  int count = 0;
+  const cudaError_t status = cudaGetDeviceCount(&count);
+  if (status != cudaSuccess) {
+    cudaGetLastError();
+    AppendReason(devices, std::string("no CUDA device: ") + cudaGetErrorString(status) + " (" +
+                              cudaGetErrorName(status) + ")");
+    return devices;
+  }
+  for (int ordinal = 0; ordinal < count; ++ordinal) {
+    Consider(ordinal, devices);
+  }
+  if (count == 0) {
+    AppendReason(devices, "no CUDA device: the driver reports none");
+  }
+  return devices;
+}
+
+Device ChooseDevice(int localRank)
+{
+  const Devices devices = FindDevices();
+  if (devices.usable.empty()) {
+    throw Error(ErrorCode::Device, devices.reason);
+  }
+  return devices.usable[static_cast<std::size_t>(localRank) % devices.usable.size()];
+}
+
+} // namespace cuda
+} // namespace inr

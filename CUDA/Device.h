@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace inr {
+namespace cuda {
+
+/// A GPU that this build has kernels for.
+struct Device
+{
+  int ordinal = 0;
+  std::string name; ///< "NVIDIA A100-SXM4-40GB"
+  int major = 0;    ///< of the compute capability
+  int minor = 0;
+  std::int64_t memory = 0; ///< bytes
+  int multiprocessors = 0;
+  std::int64_t sharedPerBlock = 0; ///< bytes a block may ask for
+  std::int64_t sharedPerMultiprocessor = 0;
+  int clock = 0;            ///< of the multiprocessors, kHz
+  int memoryClock = 0;      ///< kHz
+  int memoryBusWidth = 0;   ///< bits
+  std::int64_t l2Cache = 0; ///< bytes
+  std::string runtime;      ///< versions of driver and runtime
+};
+
+/// What there is on this machine, and for whatever is not used why not: no driver, no GPU, one that
+/// is too old, or a build without CUDA. Never throws for such reasons.
+struct Devices
+{
+  std::vector<Device> usable;
+  std::string reason; ///< empty where all can be used
+};
+Devices FindDevices();
+
+/// The device of the `localRank`-th process on this machine. Throws Error(Device) with the reason
+/// where there is none.
+Device ChooseDevice(int localRank = 0);
+
+} // namespace cuda
+} // namespace inr

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Launch.h"
+#include "CUDA/Runtime.h"
+
+namespace inr {
+namespace cuda {
+
+namespace {
+
+template <class Kernel>
+__global__ void __launch_bounds__(Kernel::Threads) Run(const __grid_constant__ Kernel kernel)
+{
+  DeviceBlock block;
+  kernel(block);
+}
+
+} // namespace
+
+bool HasKernels()
+{
+  cudaFuncAttributes attributes{};
+  const bool has = cudaFuncGetAttributes(&attributes, Run<FloatPoints>) == cudaSuccess;
+  cudaGetLastError(); // that it has none is an answer
+  return has;
+}
+
+template <class Kernel> std::int64_t PrepareKernel(std::int64_t sharedBytes)
+{
+  INR_CUDA(cudaFuncSetAttribute(Run<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                static_cast<int>(sharedBytes)));
+  int device = 0;
+  int multiprocessors = 0;
+  int blocks = 0;
+  INR_CUDA(cudaGetDevice(&device));
+  INR_CUDA(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device));
+  INR_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, Run<Kernel>, Kernel::Threads,
+                                                         static_cast<std::size_t>(sharedBytes)));
+  return std::int64_t{multiprocessors} * (blocks > 0 ? blocks : 1);
+}
+
+template <class Kernel>
+void LaunchKernel(const Kernel& kernel, std::int64_t blocks, std::int64_t sharedBytes,
+                  cudaStream_t stream)
+{
+  Run<Kernel><<<static_cast<unsigned>(blocks), Kernel::Threads,
+                static_cast<std::size_t>(sharedBytes), stream>>>(kernel);
+  Check(cudaGetLastError(), "kernel launch");
+}
+
+#define INR_INSTANTIATE(Kernel)                                                                    \
+  template std::int64_t PrepareKernel<Kernel>(std::int64_t);                                       \
+  template void LaunchKernel<Kernel>(const Kernel&, std::int64_t, std::int64_t, cudaStream_t)
+INR_INSTANTIATE(FloatPoints);
+INR_INSTANTIATE(FloatBricks);
+INR_INSTANTIATE(FusedPoints<1>);
+INR_INSTANTIATE(FusedPoints<2>);
+INR_INSTANTIATE(FusedPoints<4>);
+INR_INSTANTIATE(FusedPoints<8>);
+INR_INSTANTIATE(FusedBricks<1>);
+INR_INSTANTIATE(FusedBricks<2>);
+INR_INSTANTIATE(FusedBricks<4>);
+INR_INSTANTIATE(FusedBricks<8>);
+
+} // namespace cuda
+} // namespace inr

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The only door between the host's code and that of nvcc.
+#pragma once
+
+#include "CUDA/Kernels/BrickKernels.h"
+
+#include <cstdint>
+#include <cuda_runtime_api.h>
+
+namespace inr {
+namespace cuda {
+
+/// Whether the calling thread's device runs this build's kernels.
+bool HasKernels();
+
+/// Lets a kernel use so many bytes of shared memory per block; returns how many of its blocks are
+/// in work at once on the calling thread's device.
+template <class Kernel> std::int64_t PrepareKernel(std::int64_t sharedBytes);
+
+/// Begins a kernel, behind what is in the stream. `blocks`: at least 1.
+template <class Kernel>
+void LaunchKernel(const Kernel& kernel, std::int64_t blocks, std::int64_t sharedBytes,
+                  cudaStream_t stream);
+
+} // namespace cuda
+} // namespace inr

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What takes the place of the GPU's part in a build without a CUDA compiler.
+#include "CUDA/Engine.h"
+#include "Core/Error.h"
+
+namespace inr {
+namespace cuda {
+
+namespace {
+
+constexpr const char* Reason = "this build has no CUDA part: there was no CUDA compiler (nvcc)";
+
+[[noreturn]] void Refuse() { throw Error(ErrorCode::Device, Reason); }
+
+} // namespace
+
+Devices FindDevices() { return {{}, Reason}; }
+
+Device ChooseDevice(int) { Refuse(); }
+
+std::shared_ptr<const DeviceModel> UploadModel(ModelPointer, const Device&, Precision) { Refuse(); }
+
+std::shared_ptr<const Evaluator> MakeEvaluator(std::shared_ptr<const DeviceModel>) { Refuse(); }
+
+std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const DeviceModel>,
+                                                   const Hierarchy&)
+{
+  Refuse();
+}
+
+} // namespace cuda
+} // namespace inr

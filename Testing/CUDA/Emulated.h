@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The kernels of the GPU, run on the host: the same source, with loops in place of threads.
+#pragma once
+
+#include "CUDA/BrickBatch.h"
+#include "CUDA/Kernels/BrickKernels.h"
+#include "CUDA/Overflow.h"
+#include "CUDA/PackedModel.h"
+
+#include <cstring>
+#include <memory>
+#include <utility>
+#include <vector>
+
+/// How a launch is imitated.
+struct HostLaunch
+{
+  int blocks = 3;
+  bool backward = false;          ///< threads take turns from the last one on
+  std::int64_t shared = 96 << 10; ///< bytes that a block may have
+
+  /// Shared memory begins as NaNs, and its end is that of the allocation: a sanitizer sees beyond.
+  template <class Kernel> void run(const Kernel& kernel, std::int64_t sharedBytes) const
+  {
+    for (int block = 0; block < this->blocks; ++block) {
+      struct alignas(16) Line
+      {
+        unsigned char bytes[16];
+      };
+      const auto lines = static_cast<std::size_t>((sharedBytes + 15) / 16);
+      const std::unique_ptr<Line[]> memory(new Line[lines]);
+      std::memset(memory.get(), 0xff, lines * sizeof(Line));
+      const int index = this->backward ? this->blocks - 1 - block : block;
+      inr::cuda::HostBlock<Kernel::Threads> place(
+          index, this->blocks, reinterpret_cast<unsigned char*>(memory.get()), this->backward);
+      kernel(place);
+    }
+  }
+};
+
+/// A model's tables and how they are run, as DeviceModel has them on a GPU.
+class EmulatedModel
+{
+public:
+  EmulatedModel(inr::ModelPointer model, inr::cuda::Precision precision, HostLaunch launch)
+      : Source(std::move(model)), Launch(launch)
+  {
+    if (precision == inr::cuda::Precision::Half) {
+      this->Half = std::make_unique<inr::cuda::PackedModel>(*this->Source);
+      return;
+    }
+    inr::cuda::RequireValid(*this->Source);
+    const inr::Layout layout(this->Source->description);
+    const std::vector<float>& parameters = this->Source->parameters;
+    this->Features.assign(parameters.begin() + static_cast<std::ptrdiff_t>(layout.gridOffset),
+                          parameters.end());
+    this->Float = std::make_unique<inr::cuda::FloatTables>(*this->Source, parameters.data(),
+                                                           this->Features.data());
+  }
+
+  const inr::ModelPointer& source() const { return this->Source; }
+
+  void inferPoints(const float* positions, std::int64_t count, float* values) const
+  {
+    if (this->Float) {
+      std::vector<float> scratch = this->scratch();
+      const inr::cuda::FloatPoints kernel{this->floatView(), positions, count, values,
+                                          scratch.data()};
+      this->Launch.run(kernel, 0);
+      return;
+    }
+    const inr::cuda::FusedShared shared = this->plan(false);
+    inr::cuda::WithTiles(this->Half->neuronTiles, [&](auto tiles) {
+      const inr::cuda::FusedPoints<decltype(tiles)::value> kernel{this->Half->view(), shared,
+                                                                  positions, count, values};
+      this->Launch.run(kernel, shared.latticeEnd);
+    });
+  }
+
+  void inferBricks(const inr::cuda::BrickBatch& batch, float* values) const
+  {
+    const auto count = static_cast<std::int64_t>(batch.jobs.size());
+    if (this->Float) {
+      std::vector<float> scratch = this->scratch();
+      const inr::cuda::FloatBricks kernel{this->floatView(), batch.jobs.data(), count, values,
+                                          scratch.data()};
+      this->Launch.run(kernel, 0);
+      return;
+    }
+    const inr::cuda::FusedShared shared = this->plan(true);
+    inr::cuda::WithTiles(this->Half->neuronTiles, [&](auto tiles) {
+      const inr::cuda::FusedBricks<decltype(tiles)::value> kernel{
+          this->Half->view(), shared, batch.jobs.data(), count, batch.items, values};
+      this->Launch.run(kernel, shared.latticeEnd);
+    });
+  }
+
+private:
+  inr::cuda::FusedShared plan(bool bricks) const
+  {
+    return inr::cuda::PlanShared(*this->Half, bricks, this->Launch.shared, 227 << 10);
+  }
+  inr::cuda::FloatModel floatView() const
+  {
+    return this->Float->view(this->Float->levels.data(), this->Float->layers.data());
+  }
+  std::vector<float> scratch() const
+  {
+    const std::int64_t threads = std::int64_t{this->Launch.blocks} * inr::cuda::ThreadsPerBlock;
+    return std::vector<float>(
+        static_cast<std::size_t>(threads * inr::cuda::ScratchPerThread(this->floatView())));
+  }
+
+  inr::ModelPointer Source;
+  HostLaunch Launch;
+  std::unique_ptr<inr::cuda::PackedModel> Half; ///< one of the two
+  std::vector<float> Features;
+  std::unique_ptr<inr::cuda::FloatTables> Float;
+};
+
+class EmulatedEvaluator : public inr::Evaluator
+{
+public:
+  explicit EmulatedEvaluator(std::shared_ptr<const EmulatedModel> model)
+      : Model(std::move(model)), Core(inr::MakeEvaluator(this->Model->source()))
+  {}
+
+  void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const override
+  {
+    if (count > 0) {
+      this->Model->inferPoints(&positions->x, count, values);
+      inr::cuda::RepairPoints(*this->Core, positions, count, values);
+    }
+  }
+  std::string kernel() const override { return "emulated"; }
+
+private:
+  std::shared_ptr<const EmulatedModel> Model;
+  std::shared_ptr<const Evaluator> Core;
+};
+
+class EmulatedBricks : public inr::BrickSource
+{
+public:
+  EmulatedBricks(std::shared_ptr<const EmulatedModel> model, const inr::Hierarchy& levels)
+      : BrickSource(levels), Model(std::move(model)),
+        Core(inr::MakeBrickSource(inr::MakeEvaluator(this->Model->source()), levels))
+  {}
+
+  void inferLayer(inr::BrickKey key, std::int64_t z, float* values) const override
+  {
+    this->inferLayers(&key, 1, z, 1, values);
+  }
+  void infer(const inr::BrickKey* keys, std::int64_t count, float* values,
+             const inr::Arena&) const override
+  {
+    this->inferLayers(keys, count, 0, this->hierarchy().brickDims().z, values);
+  }
+
+private:
+  void inferLayers(const inr::BrickKey* keys, std::int64_t count, std::int64_t z,
+                   std::int64_t layers, float* values) const
+  {
+    inr::cuda::BrickBatch batch;
+    for (std::int64_t k = 0; k < count; ++k) {
+      batch.append(this->hierarchy(), keys[k], z, layers);
+    }
+    this->Model->inferBricks(batch, values);
+    for (std::int64_t k = 0; k < count; ++k) {
+      inr::cuda::RepairLayers(*this->Core, keys[k], z, layers, values + batch.values / count * k);
+    }
+  }
+
+  std::shared_ptr<const EmulatedModel> Model;
+  std::shared_ptr<const BrickSource> Core;
+};

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is said of GPUs and of models that they cannot have.
+#include "CUDA/Engine.h"
+#include "CUDA/Kernels/LatticeShare.h"
+#include "Core/Error.h"
+#include "Testing/Core/RandomModel.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace inr::cuda;
+
+/// The message of what `call` throws with this code.
+template <class Call> std::string Refusal(inr::ErrorCode code, const Call& call)
+{
+  try {
+    call();
+  } catch (const inr::Error& error) {
+    EXPECT_EQ(error.code(), code) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Device, WhatIsNotUsedHasAReason)
+{
+  const Devices devices = FindDevices();
+  EXPECT_FALSE(devices.usable.empty() && devices.reason.empty());
+  for (const Device& device : devices.usable) {
+    EXPECT_FALSE(device.name.empty());
+    EXPECT_GE(10 * device.major + device.minor, 75);
+    EXPECT_GT(device.multiprocessors, 0);
+    EXPECT_GE(device.sharedPerBlock, 48 << 10);
+    EXPECT_GT(device.memory, 1 << 28);
+  }
+}
+
+TEST(Device, WithoutOneTheReasonIsThrown)
+{
+  const Devices devices = FindDevices();
+  if (!devices.usable.empty()) {
+    GTEST_SKIP() << "there is a GPU";
+  }
+  EXPECT_EQ(Refusal(inr::ErrorCode::Device, [] { ChooseDevice(); }), devices.reason);
+  EXPECT_NE(Refusal(inr::ErrorCode::Device,
+                    [] { UploadModel(RandomModel(SmallDescription()), {}, Precision::Half); }),
+            "");
+}
+
+TEST(Device, ProcessesOfAMachineShareItsGpus)
+{
+  const Devices devices = FindDevices();
+  if (devices.usable.empty()) {
+    GTEST_SKIP() << devices.reason;
+  }
+  const auto count = static_cast<int>(devices.usable.size());
+  for (int rank = 0; rank < 2 * count; ++rank) {
+    EXPECT_EQ(ChooseDevice(rank).ordinal,
+              devices.usable[static_cast<std::size_t>(rank % count)].ordinal);
+  }
+}
+
+TEST(HalfPrecision, IsRefusedForWhatItCannotHold)
+{
+  auto model = RandomModel(SmallDescription());
+  EXPECT_EQ(WhyNotHalf(*model), "");
+  model->parameters[5] = -65505.0f;
+  EXPECT_NE(WhyNotHalf(*model).find("parameter 5 is -65505"), std::string::npos);
+  inr::Description wide = SmallDescription();
+  wide.network.neurons = 129;
+  EXPECT_NE(WhyNotHalf(*RandomModel(wide)).find("129 neurons"), std::string::npos);
+  EXPECT_NE(Refusal(inr::ErrorCode::Unsupported, [&] { PackedModel{*RandomModel(wide)}; }), "");
+  wide.network.hiddenLayers = 0; // and so none of them
+  EXPECT_EQ(WhyNotHalf(*RandomModel(wide)), "");
+}
+
+/// Parts follow each other, aligned, and end where the plan says.
+TEST(SharedMemory, IsSharedOutWithinItsLimits)
+{
+  const PackedModel model(*RandomModel(SmallDescription()));
+  const auto weights = static_cast<std::int32_t>(model.weights.size() * sizeof(WeightShare));
+  for (const bool bricks : {false, true}) {
+    for (const std::int64_t roomy : {4 << 10, 16 << 10, 28 << 10, 48 << 10, 100 << 10}) {
+      const FusedShared plan = PlanShared(model, bricks, roomy, 100 << 10);
+      EXPECT_EQ(plan.rows, plan.keepsWeights ? weights : 0);
+      EXPECT_EQ(plan.results, plan.rows + 128 * 24 * 2);
+      EXPECT_EQ(plan.cells, plan.results + 4 * (bricks ? 512 : 128));
+      EXPECT_GE(plan.plans, plan.cells + (bricks ? 4 * 3 * 8 * 8 : 0));
+      EXPECT_GE(plan.lattice, plan.plans + (bricks ? 4 * 28 : 0));
+      EXPECT_EQ(plan.lattice % 16, 0);
+      EXPECT_GE(plan.latticeEnd, plan.lattice);
+      EXPECT_TRUE(plan.latticeEnd <= roomy || !plan.keepsWeights);
+    }
+    EXPECT_TRUE(PlanShared(model, bricks, 100 << 10, 100 << 10).keepsWeights);
+    EXPECT_FALSE(PlanShared(model, bricks, 7 << 10, 100 << 10).keepsWeights);
+  }
+  EXPECT_EQ(PlanShared(model, true, 100 << 10, 100 << 10).latticeEnd -
+                PlanShared(model, true, 100 << 10, 100 << 10).lattice,
+            24 << 10);
+}
+
+TEST(SharedMemory, IsNotEnoughForAnyNumberOfLevels)
+{
+  inr::Description description = SmallDescription();
+  description.grid.levels = 64;
+  description.grid.features = 8;
+  description.grid.perLevelScale = 1.1f;
+  const PackedModel model(*RandomModel(description));
+  const std::string refusal =
+      Refusal(inr::ErrorCode::Unsupported, [&] { PlanShared(model, true, 48 << 10, 64 << 10); });
+  EXPECT_NE(refusal.find("64 grid levels"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("65536"), std::string::npos) << refusal;
+}
+
+/// Cells that are very far apart are not taken for few.
+TEST(Lattice, OfFarCellsIsNotKept)
+{
+  LevelCells cells{};
+  for (auto& axis : cells.axes) {
+    axis[ItemSize - 1].cell = (1u << 30) - 2;
+  }
+  EXPECT_GT(LatticePoints(cells), MostLatticePoints);
+  EXPECT_LT(PlanLattice(&cells, 0, std::int64_t{1} << 40).first, 0);
+}
+
+} // namespace
