@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What Catalyst does with the simulation's grid: a model file every so many steps.
+
+INR_PLUGIN tells where INRVolume.so is, INR_EVERY the steps between two files (500), INR_STEPS the
+steps of training for each (1000), INR_OUTPUT the folder (here)."""
+import os
+
+from paraview import catalyst
+from paraview.simple import CreateExtractor, LoadPlugin, TrivialProducer
+from paraview.vtk.vtkParallelCore import vtkMultiProcessController
+
+LoadPlugin(
+    os.environ.get("INR_PLUGIN", "build/lib/paraview-5.11/plugins/INRVolume/INRVolume.so"),
+    remote=False, ns=globals(),
+)
+
+# Each process saves the part of the grid that it has, in a file of its own: nothing is sent around.
+controller = vtkMultiProcessController.GetGlobalController()
+parallel = controller.GetNumberOfProcesses() > 1
+part = f"_part{controller.GetLocalProcessId()}" if parallel else ""
+
+grid = TrivialProducer(registrationName="grid")
+model = CreateExtractor("INR", grid, registrationName="model")
+model.Trigger = "TimeStep"
+model.Trigger.Frequency = int(os.environ.get("INR_EVERY", 500))
+model.Writer.FileName = f"grid_{{timestep:06d}}{part}.inr"
+model.Writer.Scalars = ["POINTS", "V"]
+model.Writer.MaximumSteps = int(os.environ.get("INR_STEPS", 1000))
+
+options = catalyst.Options()
+options.ExtractsOutputDirectory = os.environ.get("INR_OUTPUT", ".")
