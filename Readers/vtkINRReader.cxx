@@ -80,6 +80,16 @@ bool IsEmpty(const int extent[6])
 }
 
 /// What the user knows better than the file.
+// Whether an upstream file may have been made of more voxels than it tells: training out of core
+// stores at most 1,024 along an axis.
+bool MayHideVoxels(const inr::Model& header)
+{
+  const glm::i64vec3& dims = header.volume.dims;
+  const bool upstream = !header.training && !header.quality &&
+                        header.macroCells.provenance == inr::MacroCellProvenance::File;
+  return upstream && (dims.x == 1024 || dims.y == 1024 || dims.z == 1024);
+}
+
 inr::ModelOverrides OverridesOf(const int dims[3], const double range[2])
 {
   inr::ModelOverrides overrides;
@@ -347,7 +357,11 @@ std::string vtkINRReader::Summary() const
   for (const vtkIdType voxels : this->NativeDimensions) {
     text += (text.empty() ? "" : " x ") + std::to_string(voxels);
   }
-  text += " voxels, " + Rounded(this->Ratio) + ":1";
+  text += " voxels";
+  if (MayHideVoxels(this->Internal->Source->Header()) && this->Dimensions[0] == 0) {
+    text += " (of more, if it was trained out of core: set Dimensions)";
+  }
+  text += ", " + Rounded(this->Ratio) + ":1";
   const auto add = [&text](const char* what, double value, const char* unit) {
     text += std::isnan(value) ? "" : std::string(", ") + what + " " + Rounded(value) + unit;
   };

@@ -176,12 +176,30 @@ void ReadOwnSection(const JsonSection& root, ModelHeader& header)
   header.checksum = own.checksum;
 }
 
-// Upstream's files know nothing of a volume but its dimensions.
-void ReadVolumeSection(const JsonSection& root, const ModelOverrides& overrides, Model& model)
+// Upstream stores no more than 1,024 voxels along an axis of what it trained out of core. Where the
+// macro-cells, whose edge is 16 voxels in all its files, tell of more, that is how many there were.
+std::int64_t TrueDimension(std::int64_t stored, std::int64_t cells, double spacing)
 {
+  constexpr std::int64_t mostStored = 1024;
+  constexpr double edge = 16;
+  const double told = std::round(edge / spacing);
+  const bool fits = std::ceil(told / edge) == static_cast<double>(cells);
+  return stored == mostStored && told > mostStored && fits ? static_cast<std::int64_t>(told)
+                                                           : stored;
+}
+
+// Upstream's files know nothing of a volume but its dimensions.
+void ReadVolumeSection(const JsonSection& root, const ModelOverrides& overrides,
+                       ModelHeader& header)
+{
+  Model& model = header.model;
   const JsonSection dims = root.section("volume").section("dims");
   if (dims.present()) {
     model.volume.dims = ParseDims(dims);
+    for (int axis = 0; axis < 3 && header.ranges != nullptr; ++axis) {
+      model.volume.dims[axis] = TrueDimension(model.volume.dims[axis], model.macroCells.dims[axis],
+                                              model.macroCells.spacing[axis]);
+    }
     RequireValidVolume(model.volume, ErrorCode::InvalidModel);
   } else if (!overrides.dims) {
     throw Error(ErrorCode::InvalidModel,
@@ -217,7 +235,7 @@ ModelHeader ParseModelHeader(const Document& document, const ModelOverrides& ove
     throw Error(ErrorCode::InvalidModel,
                 "the parameters are quantised, but section 'inr' is missing");
   } else {
-    ReadVolumeSection(root, overrides, header.model);
+    ReadVolumeSection(root, overrides, header);
   }
   ApplyOverrides(overrides, header.model.volume);
   return header;

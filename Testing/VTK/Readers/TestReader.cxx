@@ -10,6 +10,7 @@
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkStringArray.h>
 
 #include <fstream>
 
@@ -254,6 +255,39 @@ TEST_F(Reader, TakesNameRangeAndDimensionsFromTheUser)
   EXPECT_EQ(this->scalars()->GetRange()[0], -1.0);
   EXPECT_EQ(this->scalars()->GetRange()[1], 3.0);
   EXPECT_EQ(image->GetNumberOfPoints(), 10 * 11 * 12);
+}
+
+// A file of upstream, trained out of core, stores no more than 1,024 voxels along an axis.
+TEST_F(Reader, SaysWhereTheFileMayHideVoxelsAndTakesTheirNumber)
+{
+  const auto summary = [](vtkImageData* image) {
+    return std::string(
+        vtkStringArray::SafeDownCast(image->GetFieldData()->GetAbstractArray("INRSummary"))
+            ->GetValue(0));
+  };
+  auto model = MakeModel({1024, 9, 8});
+  model->volume.direction = glm::dmat3(1.0);
+  const std::string path = this->write(*model);
+  EXPECT_NE(summary(this->open(path)).find("Dimensions"), std::string::npos);
+
+  this->Algorithm->SetDimensions(3001, 17, 8);
+  vtkImageData* const image = this->open(path);
+  EXPECT_EQ(summary(image).find("Dimensions"), std::string::npos) << summary(image);
+  EXPECT_EQ(summary(image).find("3001 x 17 x 8 voxels"), 0u) << summary(image);
+  const glm::dvec3 first = model->volume.origin;
+  const glm::dvec3 last = first + model->volume.spacing * glm::dvec3(3000, 16, 7);
+  const double* bounds = image->GetBounds();
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_DOUBLE_EQ(bounds[2 * axis], first[axis]);
+    EXPECT_DOUBLE_EQ(bounds[2 * axis + 1], last[axis]);
+  }
+  const glm::dvec3 u = (glm::dvec3(2000, 4, 5) + 0.5) / glm::dvec3(3001, 17, 8);
+  EXPECT_NEAR(this->scalars()->GetTuple1(2000 + 3001 * (4 + 17 * 5)), Truth(model)(u),
+              70 * PositionTolerance);
+
+  model->quality = inr::Quality{40, 0.9, 1}; // one of ours
+  this->Algorithm->SetDimensions(0, 0, 0);
+  EXPECT_EQ(summary(this->open(this->write(*model))).find("Dimensions"), std::string::npos);
 }
 
 TEST_F(Reader, OpensFarMoreThanMemoryHoldsWithoutEvaluating)
