@@ -13,7 +13,15 @@ namespace inr {
 namespace {
 
 constexpr std::int64_t LargestAxis = std::int64_t{1} << 20;
-constexpr std::int64_t RowBlock = 64; // rows that a thread takes at once: most share a plane
+constexpr std::int64_t MostPlanes = 4096; // kept, of 8 KiB each
+
+// Rows that a thread takes at once: all of a plane, where there are planes enough to share.
+std::int64_t RowBlock(const glm::i64vec3& size)
+{
+  constexpr std::int64_t enough = 8;
+  constexpr std::int64_t few = 64;
+  return size.z < enough ? few : size.y;
+}
 
 const glm::i64vec3& CheckDims(const glm::i64vec3& dims)
 {
@@ -66,9 +74,23 @@ ChannelGrid::ChannelGrid(const TurbulentChannel& field, const glm::i64vec3& dims
       this->WaveSines[at] = this->Streamwise.fine(offset).sines[wave];
     }
   }
+  for (std::int64_t k = 0; k < dims.z && dims.z <= MostPlanes; ++k) {
+    this->Planes.push_back(this->makePlane(k));
+  }
 }
 
-ChannelGrid::Plane ChannelGrid::plane(std::int64_t k) const
+const ChannelGrid::Plane& ChannelGrid::plane(std::int64_t k, Plane& scratch) const
+{
+  if (!this->Planes.empty()) {
+    return this->Planes[static_cast<std::size_t>(k)];
+  }
+  if (scratch.k != k) {
+    scratch = this->makePlane(k);
+  }
+  return scratch;
+}
+
+ChannelGrid::Plane ChannelGrid::makePlane(std::int64_t k) const
 {
   const double z = Centre(k, this->Dims.z);
   Plane plane{k, TurbulentChannel::mean(z), {}, {}};
@@ -106,12 +128,9 @@ template <class T>
 void ChannelGrid::rows(const glm::i64vec3& begin, const glm::i64vec3& size, std::int64_t firstRow,
                        std::int64_t endRow, T* values) const
 {
-  Plane plane{-1, 0, {}, {}};
+  Plane scratch;
   for (std::int64_t number = firstRow; number < endRow; ++number) {
-    const std::int64_t k = begin.z + number / size.y;
-    if (plane.k != k) {
-      plane = this->plane(k);
-    }
+    const Plane& plane = this->plane(begin.z + number / size.y, scratch);
     this->row(plane, begin.y + number % size.y, begin.x, size.x, values + number * size.x);
   }
 }
@@ -120,7 +139,7 @@ template <class T>
 void ChannelGrid::box(const Arena& arena, const glm::i64vec3& begin, const glm::i64vec3& size,
                       T* values) const
 {
-  arena.forEachBlock(size.y * size.z, RowBlock, [&](std::int64_t first, std::int64_t end) {
+  arena.forEachBlock(size.y * size.z, RowBlock(size), [&](std::int64_t first, std::int64_t end) {
     this->rows(begin, size, first, end, values);
   });
 }

@@ -31,15 +31,17 @@ public:
 
   const glm::i64vec3& dims() const { return this->Dims; }
 
-  /// What the rows at one z share; some microseconds to make.
+  /// What the rows at one z share.
   struct Plane
   {
-    std::int64_t k;
-    double mean;
+    std::int64_t k = -1;
+    double mean = 0;
     std::vector<double> cosines;
     std::vector<double> sines;
   };
-  Plane plane(std::int64_t k) const;
+  /// That at `k`: out of a table or, for grids of many planes, made in `scratch`, which takes some
+  /// ten microseconds unless it is there already.
+  const Plane& plane(std::int64_t k, Plane& scratch) const;
 
   /// Values of the voxels [first, first + count) of row `j` of `plane`, rounded to T: float or
   /// double. A row costs what 100 voxels do, on top.
@@ -53,6 +55,7 @@ public:
            T* values) const;
 
 private:
+  Plane makePlane(std::int64_t k) const;
   template <class T>
   void rows(const glm::i64vec3& begin, const glm::i64vec3& size, std::int64_t firstRow,
             std::int64_t endRow, T* values) const;
@@ -62,6 +65,7 @@ private:
   const ChannelKernel& Kernel;
   PhaseTable Streamwise;
   PhaseTable Spanwise;
+  std::vector<Plane> Planes; ///< all, or none where they are many
   /// From a tile's first voxel to its others, by wave; aligned as vectors are.
   using WaveTable = std::array<double, ChannelWaves * ChannelTile>;
   alignas(64) WaveTable WaveCosines;

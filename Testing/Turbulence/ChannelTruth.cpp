@@ -52,13 +52,10 @@ public:
   {
     std::vector<glm::vec3> positions;
     std::vector<double> truth;
-    ChannelGrid::Plane plane{-1, 0, {}, {}};
+    ChannelGrid::Plane scratch;
     for (std::int64_t number = begin; number < end; ++number) {
       const glm::i64vec3 voxel = this->draw(number);
-      if (plane.k != voxel.z) {
-        plane = this->Grid.plane(voxel.z);
-      }
-      truth.push_back(this->value(plane, voxel));
+      truth.push_back(this->value(this->Grid.plane(voxel.z, scratch), voxel));
       positions.emplace_back((glm::dvec3(voxel) + 0.5) / glm::dvec3(this->Volume.dims));
     }
     return this->compare(positions, truth);

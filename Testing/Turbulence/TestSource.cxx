@@ -98,6 +98,7 @@ TEST(TurbulentChannelSource, StepsInTime)
   source->SetTimeStepSize(0.25);
   source->UpdateInformation();
   ASSERT_EQ(source->GetOutputInformation(0)->Length(Pipeline::TIME_STEPS()), 4);
+  source->UpdateTimeStep(0.25);
   source->UpdateTimeStep(0.5);
   vtkImageData* const image = source->GetOutput();
   EXPECT_EQ(image->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), 0.5);
@@ -110,4 +111,18 @@ TEST(TurbulentChannelSource, StepsInTime)
   EXPECT_NEAR(Values(image)->GetTuple1(4321), inr::TurbulentChannel(parameters).at(u), 1e-12);
   source->UpdateTimeStep(0.6); // between two steps: the one before
   EXPECT_NEAR(Values(image)->GetTuple1(4321), inr::TurbulentChannel(parameters).at(u), 1e-12);
+}
+
+TEST(TurbulentChannelSource, FollowsItsProperties)
+{
+  const auto source = MakeSource();
+  source->Update();
+  const double before = Values(source->GetOutput())->GetTuple1(4321);
+  source->SetSeed(6);
+  source->Update();
+  const double other = Values(source->GetOutput())->GetTuple1(4321);
+  EXPECT_NE(other, before);
+  source->SetOctaves(2);
+  source->Update();
+  EXPECT_NE(Values(source->GetOutput())->GetTuple1(4321), other);
 }

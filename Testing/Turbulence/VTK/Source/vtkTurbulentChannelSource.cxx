@@ -26,6 +26,7 @@ constexpr const char* ArrayName = "velocity";
 } // namespace
 
 vtkTurbulentChannelSource::vtkTurbulentChannelSource() { this->SetNumberOfInputPorts(0); }
+vtkTurbulentChannelSource::~vtkTurbulentChannelSource() = default;
 
 int vtkTurbulentChannelSource::RequestInformation(vtkInformation*, vtkInformationVector**,
                                                   vtkInformationVector* outputs)
@@ -90,17 +91,28 @@ double vtkTurbulentChannelSource::TimeAsked(vtkInformation* output) const
   return time;
 }
 
-void vtkTurbulentChannelSource::Compute(vtkInformation* output)
+// Its tables are as much work as a small extent.
+void vtkTurbulentChannelSource::PrepareGrid(double time)
 {
+  if (this->Grid && this->GridMade == this->GetMTime() && this->GridTime == time) {
+    return;
+  }
   inr::TurbulentChannel::Parameters parameters;
   parameters.seed = static_cast<std::uint64_t>(this->Seed);
   parameters.octaves = this->Octaves;
   parameters.intensity = this->Intensity;
-  parameters.time = this->TimeAsked(output);
-  const inr::ChannelGrid grid(
+  parameters.time = time;
+  this->Grid = std::make_unique<const inr::ChannelGrid>(
       inr::TurbulentChannel(parameters),
       glm::i64vec3(this->Dimensions[0], this->Dimensions[1], this->Dimensions[2]));
+  this->GridMade = this->GetMTime();
+  this->GridTime = time;
+}
 
+void vtkTurbulentChannelSource::Compute(vtkInformation* output)
+{
+  const double time = this->TimeAsked(output);
+  this->PrepareGrid(time);
   int extent[6];
   output->Get(Pipeline::UPDATE_EXTENT(), extent);
   vtkImageData* const image = vtkImageData::GetData(output);
@@ -108,7 +120,7 @@ void vtkTurbulentChannelSource::Compute(vtkInformation* output)
   image->AllocateScalars(output);
   vtkDataArray* const array = image->GetPointData()->GetScalars();
   array->SetName(ArrayName);
-  image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), parameters.time);
+  image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
   this->Count(array->GetNumberOfTuples() * array->GetDataTypeSize());
 
   const inr::Arena arena(this->NumberOfThreads);
@@ -116,9 +128,9 @@ void vtkTurbulentChannelSource::Compute(vtkInformation* output)
   const glm::i64vec3 size = glm::i64vec3(extent[1], extent[3], extent[5]) - begin + std::int64_t{1};
   void* const values = array->GetVoidPointer(0);
   if (this->OutputScalarType == VTK_DOUBLE) {
-    grid.box(arena, begin, size, static_cast<double*>(values));
+    this->Grid->box(arena, begin, size, static_cast<double*>(values));
   } else {
-    grid.box(arena, begin, size, static_cast<float*>(values));
+    this->Grid->box(arena, begin, size, static_cast<float*>(values));
   }
 }
 

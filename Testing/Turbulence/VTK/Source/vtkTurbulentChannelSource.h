@@ -15,6 +15,12 @@
 
 #include <vtkImageAlgorithm.h>
 
+#include <memory> // for Grid
+
+namespace inr {
+class ChannelGrid;
+}
+
 class VTKINRTURBULENCE_EXPORT vtkTurbulentChannelSource : public vtkImageAlgorithm
 {
 public:
@@ -77,7 +83,7 @@ public:
 
 protected:
   vtkTurbulentChannelSource();
-  ~vtkTurbulentChannelSource() override = default;
+  ~vtkTurbulentChannelSource() override;
 
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -87,6 +93,7 @@ private:
   void operator=(const vtkTurbulentChannelSource&) = delete;
 
   double TimeAsked(vtkInformation* output) const;
+  void PrepareGrid(double time);
   void Compute(vtkInformation* output);
   void Count(vtkIdType bytes);
 
@@ -101,6 +108,10 @@ private:
   vtkIdType NumberOfRequests = 0;
   vtkIdType LargestRequest = 0;
   vtkIdType BytesRequested = 0;
+
+  std::unique_ptr<const inr::ChannelGrid> Grid; ///< of the last request
+  vtkMTimeType GridMade = 0;
+  double GridTime = 0;
 };
 
 #endif
