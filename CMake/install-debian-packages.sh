@@ -1,21 +1,26 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# install-debian-packages.sh [test]: installs on Debian 12 what building and running INRVolume takes;
-# with `test`, also what its tests take. Does nothing, and needs no rights, when all is there.
+# install-debian-packages.sh [test|core]: installs on Debian 12 what building and running INRVolume
+# takes; with `test`, also what its tests take; with `core`, what Core, CUDA and their tests take,
+# without ParaView and the CUDA toolkit. Does nothing, and needs no rights, when all is there.
 set -euo pipefail
 
+# our own libraries and tools
+own=(
+  g++ cmake ninja-build ccache git libtbb-dev libglm-dev libopenexr-dev nlohmann-json3-dev libzstd-dev
+  python3-numpy
+)
 packages=(
   # ParaView with its development files, and what those need but do not ask for
   paraview paraview-dev python3-paraview libdouble-conversion-dev liblz4-dev libopenmpi-dev
   libglew-dev libfreetype-dev libx11-dev libgl-dev libexpat1-dev zlib1g-dev libpng-dev python3-dev
   openmpi-bin libgl1-mesa-dri
-  # our own libraries and tools
-  g++ cmake ninja-build ccache git libtbb-dev libglm-dev libopenexr-dev nlohmann-json3-dev libzstd-dev
-  python3-numpy xvfb xauth
+  "${own[@]}" xvfb xauth
 )
-if [ "${1:-}" = test ]; then
-  packages+=(libgtest-dev libbenchmark-dev python3-pil)
-fi
+case ${1:-} in
+  test) packages+=(libgtest-dev libbenchmark-dev python3-pil) ;;
+  core) packages=("${own[@]}" libgtest-dev) ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -31,6 +31,21 @@ std::string RuntimeText()
   return "CUDA " + VersionText(runtime) + ", driver for " + VersionText(driver);
 }
 
+/// Why the driver counts no devices. What the runtime says of a driver that is not there is that it
+/// is too old.
+std::string WhyNoCount(cudaError_t status)
+{
+  int driver = 0;
+  int runtime = 0;
+  if (status == cudaErrorInsufficientDriver && cudaDriverGetVersion(&driver) == cudaSuccess &&
+      cudaRuntimeGetVersion(&runtime) == cudaSuccess) {
+    return driver == 0 ? "there is no NVIDIA driver"
+                       : "the NVIDIA driver is for CUDA " + VersionText(driver) +
+                             ", and this build for " + VersionText(runtime) + "; update the driver";
+  }
+  return std::string(cudaGetErrorString(status)) + " (" + cudaGetErrorName(status) + ")";
+}
+
 Device Describe(int ordinal)
 {
   cudaDeviceProp properties{};
@@ -98,15 +113,14 @@ Devices FindDevices()
   const cudaError_t status = cudaGetDeviceCount(&count);
   if (status != cudaSuccess) {
     cudaGetLastError();
-    AppendReason(devices, std::string("no CUDA device: ") + cudaGetErrorString(status) + " (" +
-                              cudaGetErrorName(status) + ")");
+    AppendReason(devices, "no CUDA device: " + WhyNoCount(status));
     return devices;
   }
   for (int ordinal = 0; ordinal < count; ++ordinal) {
     Consider(ordinal, devices);
   }
   if (count == 0) {
-    AppendReason(devices, "no CUDA device: the driver reports none");
+    AppendReason(devices, "no CUDA device: the NVIDIA driver reports none");
   }
   return devices;
 }

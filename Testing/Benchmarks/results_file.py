@@ -47,10 +47,12 @@ def result(name, value, unit, better, note="", **more):
     return {"name": name, "value": value, "unit": unit, "better": better, "note": note, **more}
 
 
-def write(topic, results):
-    """Writes and returns the path; the machine's folder is its CPU and number of cores."""
-    about = context()
-    machine = re.sub(r"[^a-z0-9]+", "-", f"{about['cpu']} {about['cores']} cores".lower()).strip("-")
+def write(topic, results, **more):
+    """Writes and returns the path; the machine's folder is its CPU and number of cores or, where
+    `more` for the context names a `gpu`, that."""
+    about = {**context(), **more}
+    name = about.get("gpu") or f"{about['cpu']} {about['cores']} cores"
+    machine = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
     path = FOLDER / machine / f"{topic}.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps({"context": about, "results": results}, indent=1) + "\n")

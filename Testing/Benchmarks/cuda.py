@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs bench_cuda on this machine's GPU and writes cuda.json; see Testing/run_cuda.sh.
+
+    Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA/bench_cuda FAILED_CONFORMANCE_TESTS
+"""
+import json
+import subprocess
+import sys
+
+import results_file
+
+HALF = "cuda half"
+
+
+def floor_rate(floors, ceilings):
+    """Samples a second that neither bytes nor products of the network allow to exceed, and which."""
+    bounds = {what: ceilings[what] / floors[what] for what in ("bytes", "products")}
+    what = min(bounds, key=bounds.get)
+    return bounds[what], what
+
+
+def results_of(measured, failed):
+    ceilings = measured["ceilings"]
+    yield results_file.result("conformance failed", failed, "", "lower", "tests", target=0)
+    yield results_file.result("ceiling, tensor cores", round(ceilings["products"] / 1e12, 2),
+                              "T products/s", "higher", "16 x 16 tiles from registers")
+    yield results_file.result("ceiling, memory", round(ceilings["bytes"] / 1e9, 1), "GB/s", "higher",
+                              "bytes read and written by a copy of 1 GiB")
+    for run in measured["results"]:
+        rate = run["samples"] / run["seconds"]
+        yield results_file.result(run["name"], round(rate / 1e6, 2), "M samples/s", "higher",
+                                  "default model, random parameters; median of 15")
+        if "floors" in run and HALF in run["name"]:
+            bound, what = floor_rate(run["floors"], ceilings)
+            more = {"target": 0.5} if run["name"] == f"bricks of level 0, {HALF}" else {}
+            yield results_file.result(f"{run['name']} of floor", round(rate / bound, 4), "",
+                                      "higher", f"{bound / 1e6:.1f} M samples/s by {what}",
+                                      baseline=f"ceiling, {what}", **more)
+
+
+def main():
+    program, failed = sys.argv[1:]
+    output = subprocess.run([program], check=True, stdout=subprocess.PIPE).stdout
+    measured = json.loads(output)
+    results = list(results_of(measured, int(failed)))
+    for result in results:
+        print(f"{result['name']}: {result['value']} {result['unit']}")
+    device = measured["device"]
+    results_file.write("cuda", results, gpu=device["name"],
+                       compute_capability=device["compute_capability"], cuda=device["runtime"])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,99 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Builds Core and CUDA on a machine with the CUDA toolkit, without VTK, and proves them on its GPU:
+# the conformance tests, small ones of them under compute-sanitizer, and the benchmark, which writes
+# Testing/Benchmarks/results/<gpu>/cuda.json. On Debian it installs what else is missing.
+#
+#   Testing/run_cuda.sh
+#
+# Ends with "N passed, N failed, N skipped". Its status is 0 when nothing failed, 1 when something
+# did, and 77 when nothing failed but there is no GPU: then the kernels have run on the host only.
+set -uo pipefail
+
+cd "$(dirname "$0")/.."
+build=build-cuda
+tests=$build/Testing/CUDA/test_cuda
+benchmark=$build/Testing/CUDA/bench_cuda
+passed=0
+failed=0
+skipped=0
+
+finish() {
+  echo "$passed passed, $failed failed, $skipped skipped"
+  [ "$failed" -gt 0 ] && exit 1
+  [ -n "$gpu" ] || exit 77
+  exit 0
+}
+
+# count STATUS: one check more.
+count() {
+  if [ "$1" -eq 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
+}
+
+# Code for this machine's GPU alone, where nvidia-smi can say which that is.
+capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2> /dev/null | head -n 1 | tr -d '. ')
+gpu=
+
+echo "== Building"
+if command -v apt-get > /dev/null; then
+  bash CMake/install-debian-packages.sh core || exit 1
+fi
+if ! { cmake --preset cuda ${capability:+-DINR_CUDA_ARCHITECTURES="$capability"} &&
+       cmake --build --preset cuda --target test_cuda bench_cuda; } > "$build.log" 2>&1; then
+  tail -n 60 "$build.log"
+  echo "== Preset cuda does not build ($build.log)"
+  failed=1
+  finish
+fi
+rm -f "$build.log"
+passed=1
+
+if gpu=$("$benchmark" --device 2> "$build/no-gpu.txt"); then
+  echo "== GPU: $gpu"
+else
+  gpu=
+  echo "== No GPU is used: $(cat "$build/no-gpu.txt")"
+fi
+
+echo "== Conformance"
+"$tests" > "$build/conformance.log" 2>&1
+status=$?
+ok=$(grep -c '^\[       OK \]' "$build/conformance.log")
+bad=$(grep -cE '^\[  FAILED  \] .* \([0-9]+ ms\)$' "$build/conformance.log")
+skipped=$(grep -cE '^\[  SKIPPED \] .* \([0-9]+ ms\)$' "$build/conformance.log")
+if [ "$status" -ne 0 ]; then
+  grep -vE '^\[( RUN|       OK|-----)' "$build/conformance.log"
+  [ "$bad" -gt 0 ] || bad=1 # it did not come to its end
+fi
+passed=$((passed + ok))
+failed=$((failed + bad))
+conformance_failed=$bad
+echo "   $ok passed, $bad failed, $skipped skipped ($build/conformance.log)"
+
+# Few points and small bricks: under the sanitizers everything takes a hundred times longer.
+small='Kernels/Bricks.LayersAreThoseOfTheWhole/Gpu*:Kernels/Conformance.ValueDoesNotDependOnTheBatch/Gpu*'
+small+=':Kernels/Conformance.EveryWidthAgreesWithCore/Gpu*'
+for tool in memcheck racecheck; do
+  echo "== compute-sanitizer $tool"
+  sanitizer=$(command -v compute-sanitizer || ls /usr/local/cuda/bin/compute-sanitizer 2> /dev/null)
+  if [ -z "$gpu" ] || [ -z "$sanitizer" ]; then
+    echo "   skipped: $([ -z "$gpu" ] && echo "no GPU" || echo "there is no compute-sanitizer")"
+    skipped=$((skipped + 1))
+    continue
+  fi
+  "$sanitizer" --tool "$tool" --error-exitcode 1 "$tests" --gtest_filter="$small" \
+    > "$build/$tool.log" 2>&1
+  status=$?
+  [ "$status" -eq 0 ] || tail -n 40 "$build/$tool.log"
+  count "$status"
+done
+
+echo "== Benchmark"
+if [ -z "$gpu" ]; then
+  echo "   skipped: no GPU"
+  skipped=$((skipped + 1))
+else
+  python3 Testing/Benchmarks/cuda.py "$benchmark" "$conformance_failed"
+  count $?
+fi
+finish
