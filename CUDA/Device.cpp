@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/Device.h"
 
-#include "CUDA/Launch.h"
 #include "CUDA/Runtime.h"
 #include "Core/Error.h"
 
@@ -10,16 +9,11 @@ namespace cuda {
 
 namespace {
 
+constexpr int Oldest = 75; // the first with the tensor cores' instructions
+
 std::string VersionText(int version)
 {
   return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
-}
-
-int Attribute(cudaDeviceAttr attribute, int ordinal)
-{
-  int value = 0;
-  INR_CUDA(cudaDeviceGetAttribute(&value, attribute, ordinal));
-  return value;
 }
 
 std::string RuntimeText()
@@ -59,9 +53,6 @@ Device Describe(int ordinal)
   device.multiprocessors = properties.multiProcessorCount;
   device.sharedPerBlock = static_cast<std::int64_t>(properties.sharedMemPerBlockOptin);
   device.sharedPerMultiprocessor = static_cast<std::int64_t>(properties.sharedMemPerMultiprocessor);
-  device.clock = Attribute(cudaDevAttrClockRate, ordinal);
-  device.memoryClock = Attribute(cudaDevAttrMemoryClockRate, ordinal);
-  device.memoryBusWidth = Attribute(cudaDevAttrGlobalMemoryBusWidth, ordinal);
   device.l2Cache = properties.l2CacheSize;
   device.runtime = RuntimeText();
   return device;
@@ -73,14 +64,22 @@ std::string TextOf(const Device& device)
          std::to_string(device.minor) + ")";
 }
 
-/// Nothing where its kernels run.
+/// Nothing where its kernels run. Asks no context of it: another process may be the one to use it.
 std::string WhyNot(const Device& device)
 {
-  if (Attribute(cudaDevAttrComputeMode, device.ordinal) == cudaComputeModeProhibited) {
+  int mode = 0;
+  INR_CUDA(cudaDeviceGetAttribute(&mode, cudaDevAttrComputeMode, device.ordinal));
+  if (mode == cudaComputeModeProhibited) {
     return TextOf(device) + " is closed to computation";
   }
-  const CurrentDevice current(device.ordinal);
-  return HasKernels() ? "" : TextOf(device) + " runs none of the kernels of this build";
+  const int capability = 10 * device.major + device.minor;
+  if (capability < Oldest) {
+    return TextOf(device) + " is too old: 7.5 is the least";
+  }
+  return HasCode(INR_CUDA_TARGETS, capability)
+             ? ""
+             : TextOf(device) + " runs none of this build's kernels, which are for " +
+                   INR_CUDA_TARGETS + "; configure with -DINR_CUDA_ARCHITECTURES=all";
 }
 
 void AppendReason(Devices& devices, const std::string& reason)

@@ -19,9 +19,6 @@ struct Device
   int multiprocessors = 0;
   std::int64_t sharedPerBlock = 0; ///< bytes a block may ask for
   std::int64_t sharedPerMultiprocessor = 0;
-  int clock = 0;            ///< of the multiprocessors, kHz
-  int memoryClock = 0;      ///< kHz
-  int memoryBusWidth = 0;   ///< bits
   std::int64_t l2Cache = 0; ///< bytes
   std::string runtime;      ///< versions of driver and runtime
 };
@@ -34,6 +31,11 @@ struct Devices
   std::string reason; ///< empty where all can be used
 };
 Devices FindDevices();
+
+/// Whether code for `targets` ("80-real 90-real 90-virtual", in CMake's words) runs on a device
+/// of a compute capability, 86 for 8.6: code for a real one on the same generation from there on,
+/// and code for a virtual one, which the driver translates, on all that are no older.
+bool HasCode(const std::string& targets, int capability);
 
 /// The device of the `localRank`-th process on this machine. Throws Error(Device) with the reason
 /// where there is none.

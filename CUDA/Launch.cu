@@ -16,14 +16,6 @@ __global__ void __launch_bounds__(Kernel::Threads) Run(const __grid_constant__ K
 
 } // namespace
 
-bool HasKernels()
-{
-  cudaFuncAttributes attributes{};
-  const bool has = cudaFuncGetAttributes(&attributes, Run<FloatPoints>) == cudaSuccess;
-  cudaGetLastError(); // that it has none is an answer
-  return has;
-}
-
 template <class Kernel> std::int64_t PrepareKernel(std::int64_t sharedBytes)
 {
   INR_CUDA(cudaFuncSetAttribute(Run<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize,

@@ -11,9 +11,6 @@
 namespace inr {
 namespace cuda {
 
-/// Whether the calling thread's device runs this build's kernels.
-bool HasKernels();
-
 /// Lets a kernel use so many bytes of shared memory per block; returns how many of its blocks are
 /// in work at once on the calling thread's device.
 template <class Kernel> std::int64_t PrepareKernel(std::int64_t sharedBytes);

@@ -37,10 +37,18 @@ void Check(cudaError_t status, const char* call)
 CurrentDevice::CurrentDevice(int ordinal)
 {
   INR_CUDA(cudaGetDevice(&this->Before));
-  INR_CUDA(cudaSetDevice(ordinal));
+  this->Changed = this->Before != ordinal;
+  if (this->Changed) {
+    INR_CUDA(cudaSetDevice(ordinal));
+  }
 }
 
-CurrentDevice::~CurrentDevice() { cudaSetDevice(this->Before); }
+CurrentDevice::~CurrentDevice()
+{
+  if (this->Changed) {
+    cudaSetDevice(this->Before);
+  }
+}
 
 Stream::Stream(int device) : Device(device)
 {

@@ -28,6 +28,7 @@ public:
 
 private:
   int Before = -1;
+  bool Changed = false;
 };
 
 /// A queue of work that waits for none but its own.

@@ -37,6 +37,16 @@ TEST(Device, WhatIsNotUsedHasAReason)
   }
 }
 
+TEST(Device, RunsCodeForItsGenerationAndWhatTheDriverTranslates)
+{
+  const std::string one = "80-real 80-virtual";
+  EXPECT_FALSE(HasCode(one, 75));
+  EXPECT_TRUE(HasCode(one, 80) && HasCode(one, 86) && HasCode(one, 90) && HasCode(one, 121));
+  const std::string two = "75-real 86-real 90-real";
+  EXPECT_TRUE(HasCode(two, 75) && HasCode(two, 86) && HasCode(two, 89) && HasCode(two, 90));
+  EXPECT_FALSE(HasCode(two, 80) || HasCode(two, 100) || HasCode(two, 120) || HasCode(two, 70));
+}
+
 TEST(Device, WithoutOneTheReasonIsThrown)
 {
   const Devices devices = FindDevices();
