@@ -31,6 +31,9 @@ public:
                                   this->Piece * levels.voxelsPerBrick(), this->Plan.scratch))
   {}
 
+  /// As many as give each of a large GPU's multiprocessors something to do several times over.
+  std::int64_t bricksAtOnce() const override { return std::min<std::int64_t>(this->Piece, 16); }
+
   void inferLayer(BrickKey key, std::int64_t z, float* values) const override
   {
     this->inferLayers(&key, 1, z, 1, values);

@@ -101,6 +101,9 @@ void BrickLoader::work()
 /// False when there is nothing to begin.
 bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
 {
+  if (this->Source->bricksAtOnce() > 0) {
+    return this->inferTogether(lock);
+  }
   Brick* brick = this->claim();
   if (brick == nullptr) {
     return false;
@@ -123,6 +126,12 @@ BrickLoader::Brick* BrickLoader::claim()
       return brick.get();
     }
   }
+  return this->begin();
+}
+
+/// The next brick that is wanted, where there is room for it.
+BrickLoader::Brick* BrickLoader::begin()
+{
   if (this->Wanted.empty() || this->holding() >= this->Room) {
     return nullptr;
   }
@@ -135,6 +144,57 @@ BrickLoader::Brick* BrickLoader::claim()
   }
   this->InWork.push_back(std::move(brick));
   return this->InWork.back().get();
+}
+
+/// As many bricks as the source infers at once; false when there is none.
+bool BrickLoader::inferTogether(std::unique_lock<std::mutex>& lock)
+{
+  std::vector<Brick*> bricks;
+  for (std::int64_t k = 0; k < this->Source->bricksAtOnce(); ++k) {
+    Brick* const brick = this->begin();
+    if (brick == nullptr) {
+      break;
+    }
+    brick->begun = this->Layers; // none is left for other threads
+    this->LayersBegun += this->Layers;
+    bricks.push_back(brick);
+  }
+  if (bricks.empty()) {
+    return false;
+  }
+  this->Ready.notify_all();
+  this->inferBricks(bricks, lock);
+  for (Brick* const brick : bricks) {
+    this->finish(*brick);
+  }
+  return true;
+}
+
+void BrickLoader::inferBricks(const std::vector<Brick*>& bricks, std::unique_lock<std::mutex>& lock)
+{
+  const std::int64_t voxels = this->Source->hierarchy().voxelsPerBrick();
+  const auto count = static_cast<std::int64_t>(bricks.size());
+  try {
+    std::vector<BrickKey> keys(bricks.size());
+    std::transform(bricks.begin(), bricks.end(), keys.begin(),
+                   [](const Brick* brick) { return brick->key; });
+    Values values(static_cast<std::size_t>(count * voxels));
+    lock.unlock();
+    this->Source->infer(keys.data(), count, values.data(), Arena(1));
+    for (std::int64_t k = 0; k < count; ++k) { // nobody else looks at them before they are finished
+      const auto from = values.begin() + k * voxels;
+      bricks[static_cast<std::size_t>(k)]->values.assign(from, from + voxels);
+    }
+    lock.lock();
+  } catch (...) {
+    if (!lock.owns_lock()) {
+      lock.lock();
+    }
+    for (Brick* const brick : bricks) {
+      brick->failed = true;
+    }
+    this->Failure = std::current_exception();
+  }
 }
 
 void BrickLoader::inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock)

@@ -20,7 +20,9 @@ namespace inr {
 ///
 /// Its threads work layer by layer, all of them on the first bricks that were asked for, at a low
 /// priority, and not at all while it is paused: so pausing and ending it take the time of one layer
-/// at most. It is made paused. Its functions are for one thread at a time.
+/// at most. Bricks of a source that infers several at once are begun together, and one call of that
+/// source takes the place of the layer. It is made paused. Its functions are for one thread at a
+/// time.
 class BrickLoader
 {
 public:
@@ -73,8 +75,11 @@ private:
   void waitFor(Clock::time_point deadline, std::unique_lock<std::mutex>& lock);
   bool hasWork() const;
   bool inferOne(std::unique_lock<std::mutex>& lock);
+  bool inferTogether(std::unique_lock<std::mutex>& lock);
   Brick* claim();
+  Brick* begin();
   void inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock);
+  void inferBricks(const std::vector<Brick*>& bricks, std::unique_lock<std::mutex>& lock);
   void finish(Brick& brick);
   bool isAtHand(BrickKey key) const;
   std::int64_t holding() const;

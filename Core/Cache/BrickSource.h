@@ -21,6 +21,10 @@ public:
   /// fastest. Voxels beyond the level's last one repeat it.
   virtual void inferLayer(BrickKey key, std::int64_t z, float* values) const = 0;
 
+  /// Bricks that are best inferred together, by one call of infer; 0: layers, on any number of
+  /// threads at once.
+  virtual std::int64_t bricksAtOnce() const { return 0; }
+
   /// All layers of `count` bricks, one brick after the other.
   virtual void infer(const BrickKey* keys, std::int64_t count, float* values,
                      const Arena& arena) const;

@@ -13,10 +13,11 @@ namespace {
 
 /// Bricks inferred in one go, outside of the memory of caches; time and abort are looked at in
 /// between. Large ones have layers enough for all threads.
-std::int64_t BricksAtOnce(const Hierarchy& hierarchy)
+std::int64_t BricksAtOnce(const BrickSource& source)
 {
   constexpr std::int64_t large = std::int64_t{1} << 18; // voxels
-  return hierarchy.voxelsPerBrick() < large ? 2 : 1;
+  const std::int64_t enough = source.hierarchy().voxelsPerBrick() < large ? 2 : 1;
+  return std::max(source.bricksAtOnce(), enough);
 }
 
 /// Bricks in the loader's queue at most, 0 where there is no room for more than one.
@@ -90,7 +91,7 @@ BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Are
   }
   const std::int64_t voxels = this->Cache.hierarchy().voxelsPerBrick();
   const auto count = static_cast<std::int64_t>(keys.size());
-  const std::int64_t atOnce = BricksAtOnce(this->Cache.hierarchy());
+  const std::int64_t atOnce = BricksAtOnce(*this->Source);
   std::vector<float> values(static_cast<std::size_t>(atOnce * voxels));
   for (std::int64_t first = 0; first < count; first += atOnce) {
     if (first > 0 && keepGoing && !keepGoing()) { // never without progress

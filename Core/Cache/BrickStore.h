@@ -22,7 +22,7 @@ class BrickStore
 public:
   /// Cache, tables and the loader's queue stay within `bytes` together and share them with the
   /// other stores of `budget`; what is being inferred for who waits, two bricks of floats or a
-  /// single large one, comes on top. Without `background`, and where the queue would need more than
+  /// single large one, and what the source infers at once where it does so, comes on top. Without `background`, and where the queue would need more than
   /// an eighth of that, there is no loader, and bricks come in only while somebody waits.
   /// `threads`: of the loader. Throws what BrickCache throws.
   BrickStore(std::shared_ptr<CacheBudget> budget, std::shared_ptr<const BrickSource> source,

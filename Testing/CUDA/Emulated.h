@@ -148,6 +148,8 @@ public:
         Core(inr::MakeBrickSource(inr::MakeEvaluator(this->Model->source()), levels))
   {}
 
+  std::int64_t bricksAtOnce() const override { return 4; }
+
   void inferLayer(inr::BrickKey key, std::int64_t z, float* values) const override
   {
     this->inferLayers(&key, 1, z, 1, values);

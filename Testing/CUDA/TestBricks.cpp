@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The kernels at bricks against Core's and against the kernels at points.
+#include "Core/Cache/BrickStore.h"
 #include "Testing/CUDA/Places.h"
 #include "Testing/Core/RandomModel.h"
 
@@ -148,6 +149,33 @@ TEST_P(Bricks, CoreComputesWhatOverflows)
   for (int level = 0; level < 2; ++level) {
     const std::vector<inr::BrickKey> keys = {inr::KeyOf({level, {0, 0, 0}})};
     EXPECT_LT(RelativeError(Infer(*bricks(model, levels), keys), Infer(*core, keys)), tolerance());
+  }
+}
+
+/// The cache that the renderer on the CPU draws from: by who waits, and by the loader.
+TEST_P(Bricks, FillACache)
+{
+  const inr::Hierarchy levels({40, 30, 17}, 12);
+  const auto source = bricks(BrickModel(), levels);
+  const std::vector<inr::BrickKey> keys = BricksOf(levels, 0);
+  const std::vector<float> expected = Infer(*source, keys);
+  const inr::Arena arena(2);
+  for (const bool background : {false, true}) {
+    inr::BrickStore store(std::make_shared<inr::CacheBudget>(), source,
+                          inr::CachePrecision::Float32, 8 << 20, background, 2);
+    const inr::BrickStore::Call call(store, arena);
+    store.beginFrame();
+    for (int round = 0; round < 100 && store.mapped() <= static_cast<std::int64_t>(keys.size());
+         ++round) {
+      store.loadFor(10, keys, arena);
+    }
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const std::int32_t slot = store.cache().find(keys[k]);
+      ASSERT_NE(slot, inr::PageTable::Unmapped) << k;
+      const auto* const voxels = static_cast<const float*>(store.cache().view(slot).voxels);
+      const auto size = static_cast<std::size_t>(levels.voxelsPerBrick());
+      EXPECT_TRUE(std::equal(voxels, voxels + size, &expected[k * size])) << k;
+    }
   }
 }
 

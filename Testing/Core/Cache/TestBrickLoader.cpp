@@ -50,6 +50,24 @@ std::vector<inr::BrickKey> Bricks(std::int64_t first, std::int64_t count)
   return keys;
 }
 
+/// The same, three bricks at once.
+class TogetherSource : public CountingSource
+{
+public:
+  std::int64_t bricksAtOnce() const override { return 3; }
+
+  void infer(const inr::BrickKey* keys, std::int64_t count, float* values,
+             const inr::Arena& arena) const override
+  {
+    this->largest = std::max<std::int64_t>(this->largest, count);
+    ++this->calls;
+    CountingSource::infer(keys, count, values, arena);
+  }
+
+  mutable std::atomic<std::int64_t> largest{0};
+  mutable std::atomic<int> calls{0};
+};
+
 /// What comes in, in that order; every value is checked.
 std::vector<inr::BrickKey> Receive(inr::BrickLoader& loader)
 {
@@ -160,6 +178,38 @@ TEST_P(BrickLoaderTest, SaysWhatWentWrongAndGoesOn)
   loader.request(Bricks(0, 3));
   loader.loadFor(Forever);
   EXPECT_EQ(Receive(loader).size(), 3U);
+}
+
+TEST_P(BrickLoaderTest, BeginsTogetherWhatIsBestInferredTogether)
+{
+  const auto source = std::make_shared<TogetherSource>();
+  inr::BrickLoader loader(source, GetParam(), 5);
+  loader.request(Bricks(5, 11));
+  std::vector<inr::BrickKey> keys;
+  for (int round = 0; round < 3; ++round) { // of 5, 5 and 1, for which there is room
+    loader.loadFor(Forever);
+    const std::vector<inr::BrickKey> some = Receive(loader);
+    keys.insert(keys.end(), some.begin(), some.end());
+  }
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(keys, Bricks(5, 11));
+  EXPECT_EQ(source->largest, 3);
+  EXPECT_EQ(source->calls, 5); // 3 and 2, twice, and 1
+}
+
+TEST_P(BrickLoaderTest, OfBricksThatFailTogetherNoneComes)
+{
+  const auto source = std::make_shared<TogetherSource>();
+  inr::BrickLoader loader(source, GetParam(), 100);
+  source->failing = true;
+  loader.request(Bricks(0, 2));
+  loader.loadFor(Forever);
+  EXPECT_THROW(Receive(loader), std::runtime_error);
+  EXPECT_EQ(loader.held(), 0);
+  source->failing = false;
+  loader.request(Bricks(0, 2));
+  loader.loadFor(Forever);
+  EXPECT_EQ(Receive(loader).size(), 2U);
 }
 
 TEST_F(BrickLoaderTest, WorksOnlyBetweenResumeAndPause)
