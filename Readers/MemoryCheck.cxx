@@ -5,10 +5,15 @@
 
 #include <vtksys/SystemInformation.hxx>
 
-void RequireMemory(double bytes, const std::string& what, const std::string& advice)
+std::int64_t PhysicalMemory()
 {
   vtksys::SystemInformation system;
-  const double memory = 1024.0 * static_cast<double>(system.GetHostMemoryTotal());
+  return std::int64_t{1024} * static_cast<std::int64_t>(system.GetHostMemoryTotal());
+}
+
+void RequireMemory(double bytes, const std::string& what, const std::string& advice)
+{
+  const auto memory = static_cast<double>(PhysicalMemory());
   if (bytes > memory) {
     constexpr double mib = 1024.0 * 1024.0;
     throw inr::Error(inr::ErrorCode::TooLarge,

@@ -6,11 +6,15 @@
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Training/Trainer.h"
+#include "MemoryCheck.h"
+#include "PipelineReader.h"
 #include "StepSequence.h"
 #include "StopSignals.h"
 #include "TrainingCheckpoint.h"
 #include "TrainingInput.h"
+#include "TrainingReport.h"
 #include "VTKCompat.h"
+#include "WholeFileReaders.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
@@ -21,8 +25,10 @@
 #include <vtkInformationVector.h>
 #include <vtkLogger.h>
 #include <vtkObjectFactory.h>
+#include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
+#include <algorithm>
 #include <exception>
 #include <vector>
 
@@ -30,12 +36,19 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 vtkStandardNewMacro(vtkINRWriter);
 
+namespace {
+constexpr std::int64_t MiB = std::int64_t{1} << 20;
+} // namespace
+
 class vtkINRWriter::Internals
 {
 public:
   StepSequence Steps;         ///< those of WriteTimeSteps
   std::string Problem;        ///< why there are none
   std::string Target;         ///< the file that is being written
+  WholeImage Whole;           ///< the input
+  bool InPieces = false;      ///< whether it is read so
+  std::string WholeReader;    ///< the class of a reader that must not be asked for pieces
   inr::ModelPointer Previous; ///< what was written last, if it is of a time step
 };
 
@@ -68,10 +81,13 @@ vtkTypeBool vtkINRWriter::ProcessRequest(vtkInformation* request, vtkInformation
   if (input && request->Has(Pipeline::REQUEST_INFORMATION())) {
     this->PlanSteps(input);
   }
-  if (input && request->Has(Pipeline::REQUEST_UPDATE_EXTENT()) && !steps.isEmpty()) {
-    input->Set(Pipeline::UPDATE_TIME_STEP(), steps.time());
-  }
   const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
+  if (input && request->Has(Pipeline::REQUEST_UPDATE_EXTENT())) {
+    this->PlanReading(input);
+    if (!steps.isEmpty()) {
+      input->Set(Pipeline::UPDATE_TIME_STEP(), steps.time());
+    }
+  }
   if (request->Has(Pipeline::REQUEST_DATA()) && !steps.isEmpty()) {
     if (this->GetErrorCode() == vtkErrorCode::NoError && steps.advance()) {
       request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
@@ -100,6 +116,32 @@ void vtkINRWriter::PlanSteps(vtkInformation* input)
   } catch (const inr::Error& error) {
     this->Internal->Problem = error.what(); // to be told when it is to be written
   }
+}
+
+std::int64_t vtkINRWriter::MemoryLimitInBytes() const
+{
+  return this->MemoryLimit > 0 ? MiB * this->MemoryLimit : PhysicalMemory() / 2;
+}
+
+/// Asks for the whole input, or for one voxel of it where the rest is going to be read in pieces.
+void vtkINRWriter::PlanReading(vtkInformation* input)
+{
+  const WholeImage whole = WholeImage::Of(input);
+  this->Internal->Whole = whole;
+  this->Internal->InPieces = false;
+  if (whole.dims.x * whole.dims.y * whole.dims.z == 0) {
+    return;
+  }
+  const auto limit = static_cast<double>(this->MemoryLimitInBytes());
+  const bool isLarge = whole.bytes > limit / 2 && !whole.isInMemory;
+  this->Internal->WholeReader = isLarge ? FindWholeFileReader(this) : std::string();
+  this->Internal->InPieces = isLarge && this->Internal->WholeReader.empty();
+  int extent[6];
+  std::copy_n(whole.extent, 6, extent);
+  for (int axis = 0; axis < 3 && this->Internal->InPieces; ++axis) {
+    extent[2 * axis + 1] = extent[2 * axis];
+  }
+  input->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
 }
 
 void vtkINRWriter::WriteData()
@@ -131,7 +173,7 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
     const std::string suffix = this->FileNameSuffix ? this->FileNameSuffix : "";
     fileName = StepFileName(fileName, suffix, steps.number());
   }
-  TrainingInput input = this->FindInput();
+  TrainingInput input = this->FindInput(this->GetInput());
   if (!steps.isEmpty()) {
     input.info.time = steps.time();
   }
@@ -142,9 +184,8 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
   this->Train(input, signals);
 }
 
-TrainingInput vtkINRWriter::FindInput()
+TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
 {
-  vtkDataObject* data = this->GetInput();
   auto* image = vtkImageData::SafeDownCast(data);
   if (!image) {
     throw inr::Error(inr::ErrorCode::InvalidArgument,
@@ -153,6 +194,11 @@ TrainingInput vtkINRWriter::FindInput()
   }
   int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   vtkAbstractArray* array = this->GetInputAbstractArrayToProcess(0, image, association);
+  // Where nobody has seen the data, nobody could choose.
+  const char* chosen = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+  if (!array && !(chosen && *chosen) && image->GetPointData()->GetNumberOfArrays() == 1) {
+    array = image->GetPointData()->GetAbstractArray(0);
+  }
   if (!array) {
     throw inr::Error(inr::ErrorCode::InvalidArgument,
                      "the image has no such point array, or none is chosen");
@@ -181,7 +227,7 @@ inr::ModelPointer vtkINRWriter::FindStart(const inr::VolumeInfo& volume) const
   return this->StartFromPrevious && follows ? previous : nullptr;
 }
 
-void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
+inr::TrainingOptions vtkINRWriter::MakeOptions() const
 {
   inr::TrainingOptions options;
   options.targetPsnr = this->TargetPSNR;
@@ -196,22 +242,59 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
   if (this->ModelConfig && *this->ModelConfig) {
     options.description = inr::ParseDescription(std::string(this->ModelConfig));
   }
+  options.memoryLimit = this->MemoryLimitInBytes();
+  return options;
+}
+
+void vtkINRWriter::WarnOfWhole(const std::string& source)
+{
+  vtkWarningMacro(<< source << " of '" << this->Internal->Target
+                  << "' cannot give parts of its data: all of them, "
+                  << this->Internal->Whole.bytes / MiB
+                  << " MiB, are in memory, more than half of the MemoryLimit of "
+                  << this->MemoryLimitInBytes() / MiB << " MiB.");
+}
+
+inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
+                                              const inr::TrainingOptions& options,
+                                              const inr::TrainingObserver& observe)
+{
+  const WholeImage& whole = this->Internal->Whole;
+  auto* image = vtkImageData::SafeDownCast(this->GetInput());
+  if (std::equal(whole.extent, whole.extent + 6, image->GetExtent())) {
+    this->WarnOfWhole("The source");
+    return inr::TrainModel(first.data, first.info, options, observe);
+  }
+  vtkLog(INFO, << this->Internal->Target << ": the data take " << whole.bytes / MiB
+               << " MiB and are read in pieces, within " << options.memoryLimit / MiB << " MiB");
+  PipelineReader reader(*this, whole, first.data.type,
+                        [this](vtkImageData* piece) { return this->FindInput(piece); });
+  return inr::TrainModel(reader, first.info, options, observe);
+}
+
+void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
+{
+  inr::TrainingOptions options = this->MakeOptions();
   options.start = this->FindStart(input.info);
   this->Internal->Previous = nullptr;
   TrainingCheckpoint checkpoint(this, this->Internal->Target, this->CheckpointInterval,
                                 this->Resume);
   options.checkpoint = checkpoint.options();
 
+  if (!this->Internal->WholeReader.empty()) {
+    this->WarnOfWhole(this->Internal->WholeReader + ", the source");
+  }
+  TrainingReport report;
   const auto observe = [&](const inr::TrainingProgress& progress) {
-    const bool training = progress.phase == inr::TrainingPhase::Training;
-    this->SetProgressText(training ? "Training INR" : "Measuring INR quality");
+    this->SetProgressText(report.text(progress).c_str());
     this->UpdateProgress(this->Internal->Steps.progress(progress.fraction));
     checkpoint.tell();
     return !signals.Received() && !IsAborted(*this);
   };
   inr::ModelPointer model;
   try {
-    model = inr::TrainModel(input.data, input.info, options, observe);
+    model = this->Internal->InPieces ? this->TrainInPieces(input, options, observe)
+                                     : inr::TrainModel(input.data, input.info, options, observe);
     this->KeepResult(*model, inr::WriteModel(*model, this->Internal->Target));
   } catch (const inr::Error& error) {
     checkpoint.tell();
@@ -259,6 +342,7 @@ void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "TimeLimit: " << this->TimeLimit << "\n"
      << indent << "CheckpointInterval: " << this->CheckpointInterval << "\n"
      << indent << "Resume: " << (this->Resume ? "on" : "off") << "\n"
+     << indent << "MemoryLimit: " << this->MemoryLimit << "\n"
      << indent << "MacroCellSize: " << this->MacroCellSize << "\n"
      << indent << "PlannedSteps: " << this->PlannedSteps << "\n"
      << indent << "Seed: " << this->Seed << "\n"

@@ -3,7 +3,8 @@
  * @class vtkINRWriter
  * @brief trains an implicit neural representation of image data and saves it as a model file
  *
- * The point array to save is chosen with SetInputArrayToProcess (default: the active scalars); it
+ * The point array to save is chosen with SetInputArrayToProcess (default: the active scalars, or
+ * the only array); it
  * has one component of any number type. Training ends when TargetPSNR is reached, after
  * MaximumSteps or after TimeLimit, whichever comes first. With the same seed, steps and kernel
  * family the result is the same on any number of threads; where TimeLimit ended it, with the same
@@ -28,12 +29,17 @@
 
 #include <vtkWriter.h>
 
-#include <memory> // for Internals
+#include <cstdint>    // for byte counts
+#include <functional> // for observers
+#include <memory>     // for Internals
+#include <string>     // for messages
 
 class StopSignals;
 struct TrainingInput;
 namespace inr {
 struct Model;
+struct TrainingOptions;
+struct TrainingProgress;
 struct VolumeInfo;
 } // namespace inr
 
@@ -91,6 +97,21 @@ public:
   vtkSetMacro(Resume, bool);
   vtkGetMacro(Resume, bool);
   vtkBooleanMacro(Resume, bool);
+  ///@}
+
+  ///@{
+  /// MiB that training may take. An input that is not in memory yet and would fill more than half
+  /// of it is never read as a whole but in pieces, two or three times; the default model is made to
+  /// fit. 0 (default) = half of the machine's memory.
+  ///
+  ///     writer = servermanager.writers.INRWriter(Input=source, FileName="model.inr",
+  ///                                              MemoryLimit=1024)
+  ///     writer.UpdatePipeline()
+  ///
+  /// takes data of any size in pvpython or pvbatch, as long as nothing updates or shows `source`;
+  /// SaveData would, before it came to the writer.
+  vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryLimit, int);
   ///@}
 
   ///@{
@@ -194,8 +215,15 @@ private:
   class Internals;
 
   void PlanSteps(vtkInformation* input);
+  void PlanReading(vtkInformation* input);
   void WriteInput(const StopSignals& signals);
-  TrainingInput FindInput();
+  TrainingInput FindInput(vtkDataObject* data);
+  std::int64_t MemoryLimitInBytes() const;
+  inr::TrainingOptions MakeOptions() const;
+  void WarnOfWhole(const std::string& source);
+  std::shared_ptr<const inr::Model>
+  TrainInPieces(const TrainingInput& first, const inr::TrainingOptions& options,
+                const std::function<bool(const inr::TrainingProgress&)>& observe);
   std::shared_ptr<const inr::Model> FindStart(const inr::VolumeInfo& volume) const;
   void Train(const TrainingInput& input, const StopSignals& signals);
   void ForgetResult();
@@ -209,6 +237,7 @@ private:
   double TimeLimit = 300;
   double CheckpointInterval = 60;
   bool Resume = true;
+  int MemoryLimit = 0;
   int MacroCellSize = 0;
   int Seed = 1;
   char* ModelConfig = nullptr;

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PipelineReader.h"
+
+#include "Core/Error.h"
+
+#include <vtkAbstractArray.h>
+#include <vtkAlgorithm.h>
+#include <vtkAlgorithmOutput.h>
+#include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace {
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+using Extent = std::array<int, 6>;
+
+Extent ExtentOf(const inr::VoxelBox& box, const int* whole)
+{
+  Extent extent{};
+  for (int axis = 0; axis < 3; ++axis) {
+    extent[2 * axis] = whole[2 * axis] + static_cast<int>(box.first[axis]);
+    extent[2 * axis + 1] = extent[2 * axis] + static_cast<int>(box.size[axis]) - 1;
+  }
+  return extent;
+}
+
+std::string ToText(const Extent& extent)
+{
+  std::string text;
+  for (const int limit : extent) {
+    text += (text.empty() ? "" : " ") + std::to_string(limit);
+  }
+  return text;
+}
+
+bool Contains(const int* outer, const Extent& inner)
+{
+  return outer[0] <= inner[0] && outer[1] >= inner[1] && outer[2] <= inner[2] &&
+         outer[3] >= inner[3] && outer[4] <= inner[4] && outer[5] >= inner[5];
+}
+
+} // namespace
+
+WholeImage WholeImage::Of(vtkInformation* input)
+{
+  WholeImage image;
+  auto* data = vtkImageData::SafeDownCast(input->Get(vtkDataObject::DATA_OBJECT()));
+  if (!data || !input->Has(Pipeline::WHOLE_EXTENT())) {
+    return image;
+  }
+  input->Get(Pipeline::WHOLE_EXTENT(), image.extent);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t first = image.extent[2 * axis];
+    image.dims[axis] = std::max<std::int64_t>(0, image.extent[2 * axis + 1] - first + 1);
+  }
+  image.isInMemory = std::equal(image.extent, image.extent + 6, data->GetExtent()) &&
+                     data->GetPointData()->GetNumberOfArrays() > 0;
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+      input, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  const bool known = scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE());
+  const int type = known ? scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) : VTK_DOUBLE;
+  const glm::dvec3 dims(image.dims);
+  image.bytes = dims.x * dims.y * dims.z * vtkAbstractArray::GetDataTypeSize(type);
+  return image;
+}
+
+vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) const
+{
+  const Extent extent = ExtentOf(box, this->Whole.extent);
+  vtkInformation* input = this->Consumer.GetInputInformation();
+  input->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+  auto* producer = Pipeline::SafeDownCast(this->Consumer.GetInputExecutive());
+  const int port = this->Consumer.GetInputConnection(0, 0)->GetIndex();
+  const bool updated = producer && producer->Update(port) != 0;
+  auto* image = vtkImageData::SafeDownCast(this->Consumer.GetInputDataObject(0, 0));
+  const unsigned long problem = producer ? producer->GetAlgorithm()->GetErrorCode() : 0;
+  if (!updated || problem != 0 || !image || !Contains(image->GetExtent(), extent)) {
+    throw inr::Error(inr::ErrorCode::CannotRead, "the source did not give the voxels of extent " +
+                                                     ToText(extent) +
+                                                     "; what it reported, if anything, says why");
+  }
+  auto piece = vtkSmartPointer<vtkImageData>::New();
+  piece->ShallowCopy(image);
+  piece->Crop(extent.data()); // nothing is copied where the extents are the same
+  return piece;
+}
+
+inr::VolumePiece PipelineReader::read(const inr::VoxelBox& box)
+{
+  this->Piece = TrainingInput(); // two pieces need not be in memory
+  const vtkSmartPointer<vtkImageData> image = this->request(box);
+  this->Piece = this->Find(image);
+  return {this->Piece.data, box.first};
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Training/VolumeReader.h"
+#include "TrainingInput.h"
+
+#include <vtkSmartPointer.h>
+
+#include <functional>
+
+class vtkAlgorithm;
+class vtkImageData;
+class vtkInformation;
+
+/// An image as an algorithm's input tells of it before it is asked for.
+struct WholeImage
+{
+  int extent[6] = {0, -1, 0, -1, 0, -1};
+  glm::i64vec3 dims{0};
+  bool isInMemory = false;
+  double bytes = 0; ///< of its active scalars; of doubles where these are not known
+
+  /// Of what is connected to an algorithm. No dims where that is no image.
+  static WholeImage Of(vtkInformation* input);
+};
+
+/// Reads boxes of an algorithm's first input by asking the pipeline for them, from within the
+/// algorithm's own request for data.
+class PipelineReader : public inr::VolumeReader
+{
+public:
+  /// Finds what is to be trained on in an image, or throws.
+  using Finder = std::function<TrainingInput(vtkImageData*)>;
+
+  PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, inr::ScalarType type,
+                 Finder finder)
+      : Consumer(consumer), Whole(whole), Type(type), Find(std::move(finder))
+  {}
+
+  const glm::i64vec3& dims() const override { return this->Whole.dims; }
+  inr::ScalarType type() const override { return this->Type; }
+
+  /// Throws inr::Error(CannotRead) when the pipeline fails.
+  inr::VolumePiece read(const inr::VoxelBox& box) override;
+
+private:
+  vtkSmartPointer<vtkImageData> request(const inr::VoxelBox& box) const;
+
+  vtkAlgorithm& Consumer;
+  WholeImage Whole;
+  inr::ScalarType Type;
+  Finder Find;
+  TrainingInput Piece; ///< keeps the values alive
+};

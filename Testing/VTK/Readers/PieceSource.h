@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vtkDataArray.h>
+#include <vtkDataObject.h>
+#include <vtkImageAlgorithm.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// A smooth field that is computed where it is asked for, and keeps account of that.
+class PieceSource : public vtkImageAlgorithm
+{
+public:
+  static PieceSource* New() { VTK_STANDARD_NEW_BODY(PieceSource); }
+  vtkTypeMacro(PieceSource, vtkImageAlgorithm);
+
+  int Extent[6] = {10, 329, -5, 314, 0, 159};
+  int Type = VTK_FLOAT;
+  bool GivesParts = true;
+  int FailingRequest = 0; ///< by number from 1; 0 = none
+  double Time = 0;        ///< of the last request
+
+  int Requests = 0;
+  vtkIdType LargestRequest = 0; ///< points
+
+  static double Value(int x, int y, int z)
+  {
+    return 100.0 + 40.0 * std::sin(0.02 * x) * std::cos(0.03 * y) + 0.2 * z;
+  }
+
+protected:
+  PieceSource() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(vtkInformation*, vtkInformationVector**,
+                         vtkInformationVector* outputs) override
+  {
+    vtkInformation* info = outputs->GetInformationObject(0);
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->Extent, 6);
+    info->Set(vtkDataObject::SPACING(), 0.5, 1.5, 2.5);
+    info->Set(vtkDataObject::ORIGIN(), 1.0, 2.0, 3.0);
+    info->Set(CAN_PRODUCE_SUB_EXTENT(), 1);
+    vtkDataObject::SetPointDataActiveScalarInfo(info, this->Type, 1);
+    const double times[] = {0.5, 1.5};
+    info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), times, 2);
+    return 1;
+  }
+
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkInformation* info = outputs->GetInformationObject(0);
+    if (++this->Requests == this->FailingRequest) {
+      vtkErrorMacro("the tape is torn");
+      return 0;
+    }
+    this->Time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+    int extent[6];
+    std::copy_n(this->Extent, 6, extent);
+    if (this->GivesParts) {
+      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
+    }
+    auto* image = vtkImageData::GetData(outputs);
+    image->SetExtent(extent);
+    image->AllocateScalars(this->Type, 1);
+    vtkDataArray* values = image->GetPointData()->GetScalars();
+    values->SetName("field");
+    this->LargestRequest = std::max(this->LargestRequest, values->GetNumberOfTuples());
+    vtkIdType point = 0;
+    for (int z = extent[4]; z <= extent[5]; ++z) {
+      for (int y = extent[2]; y <= extent[3]; ++y) {
+        for (int x = extent[0]; x <= extent[1]; ++x) {
+          values->SetTuple1(point++, Value(x, y, z));
+        }
+      }
+    }
+    return 1;
+  }
+};

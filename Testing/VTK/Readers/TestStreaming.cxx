@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Saving what is never in memory as a whole.
+#include "MessageCapture.h"
+#include "PieceSource.h"
+#include "TestModels.h"
+#include "vtkINRReader.h"
+#include "vtkINRWriter.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkImageShiftScale.h>
+#include <vtkNew.h>
+
+#include <filesystem>
+
+namespace {
+
+constexpr vtkIdType MiB = 1 << 20;
+
+class Streaming : public testing::Test
+{
+protected:
+  Streaming()
+  {
+    this->Writer->SetFileName(this->path().c_str());
+    this->Writer->SetInputConnection(this->Source->GetOutputPort());
+    this->Writer->SetModelConfig(
+        R"({"encoding": {"otype": "HashGrid", "n_levels": 4, "n_features_per_level": 4,
+                         "log2_hashmap_size": 12, "base_resolution": 4, "per_level_scale": 1.6},
+            "network": {"otype": "FullyFusedMLP", "n_neurons": 16, "n_hidden_layers": 2,
+                        "activation": "ReLU", "output_activation": "None"}})");
+    this->Writer->SetMaximumSteps(150);
+    this->Writer->SetTimeLimit(0);
+    this->Writer->SetMemoryLimit(120); // the field takes 62.5 MiB as floats
+  }
+
+  std::string path() const { return this->Folder / "saved.inr"; }
+
+  TemporaryFolder Folder;
+  vtkNew<PieceSource> Source;
+  vtkNew<vtkINRWriter> Writer;
+};
+
+} // namespace
+
+TEST_F(Streaming, NeverAsksForMoreThanTheLimit)
+{
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  EXPECT_TRUE(messages.warnings().empty()) << messages.text();
+  EXPECT_GT(this->Source->Requests, 20);
+  EXPECT_LE(4 * this->Source->LargestRequest, 8 * MiB);
+  EXPECT_GT(this->Writer->GetPSNR(), 30);
+
+  vtkNew<vtkINRReader> reader;
+  reader->SetFileName(this->path().c_str());
+  reader->Update();
+  vtkIdType dims[3];
+  reader->GetNativeDimensions(dims);
+  EXPECT_EQ(dims[0], 320);
+  EXPECT_EQ(dims[1], 320);
+  EXPECT_EQ(dims[2], 160);
+  const double bounds[] = {6, 165.5, -5.5, 473, 3, 400.5};
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_DOUBLE_EQ(reader->GetOutput()->GetBounds()[k], bounds[k]) << k;
+  }
+}
+
+TEST_F(Streaming, GoesThroughFilters)
+{
+  vtkNew<vtkImageShiftScale> scale;
+  scale->SetInputConnection(this->Source->GetOutputPort());
+  scale->SetShift(-100);
+  scale->SetOutputScalarTypeToDouble();
+  this->Writer->SetInputConnection(scale->GetOutputPort());
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  EXPECT_LE(8 * this->Source->LargestRequest, 8 * MiB);
+  EXPECT_GT(this->Writer->GetPSNR(), 30);
+}
+
+TEST_F(Streaming, OfEveryTimeStep)
+{
+  this->Writer->WriteTimeStepsOn();
+  this->Writer->SetMaximumSteps(5);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  EXPECT_EQ(this->Folder.entries(), 2);
+  EXPECT_EQ(this->Source->Time, 1.5);
+  EXPECT_LE(4 * this->Source->LargestRequest, 8 * MiB);
+}
+
+// What is in memory already, or fits, is not read in pieces.
+TEST_F(Streaming, OnlyWhereItIsNeeded)
+{
+  this->Writer->SetMaximumSteps(2);
+  this->Writer->SetMemoryLimit(126);
+  this->Writer->Write();
+  EXPECT_EQ(this->Source->Requests, 1);
+  EXPECT_EQ(this->Source->LargestRequest, vtkIdType{320} * 320 * 160);
+  this->Writer->SetMemoryLimit(64);
+  this->Writer->Write();
+  EXPECT_EQ(this->Source->Requests, 1);
+  EXPECT_EQ(this->Writer->GetErrorCode(), 0u);
+}
+
+TEST_F(Streaming, TellsOfASourceThatFails)
+{
+  for (const int failing : {1, 2, 14, 40}) { // at once, while reading, training, measuring
+    this->Source->Requests = 0;
+    this->Source->FailingRequest = failing;
+    this->Source->Modified();
+    const MessageCapture messages;
+    this->Writer->Write();
+    EXPECT_NE(messages.text().find("the tape is torn"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(this->path()));
+    std::filesystem::remove(this->path() + ".checkpoint");
+    if (failing > 1) { // else there is nothing to be written, and nobody to say so
+      EXPECT_NE(messages.text().find("Cannot save"), std::string::npos) << messages.text();
+      EXPECT_NE(messages.text().find("did not give the voxels"), std::string::npos);
+      EXPECT_NE(this->Writer->GetErrorCode(), 0u);
+    }
+  }
+}
+
+TEST_F(Streaming, WarnsOfASourceThatGivesNoParts)
+{
+  this->Source->GivesParts = false;
+  this->Writer->SetMaximumSteps(2);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  ASSERT_EQ(messages.warnings().size(), 1u);
+  EXPECT_NE(messages.warnings()[0].find("cannot give parts"), std::string::npos);
+  EXPECT_EQ(this->Folder.entries(), 1);
+}
+
+TEST_F(Streaming, CanBeAborted)
+{
+  vtkNew<vtkCallbackCommand> abort;
+  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    auto* writer = vtkINRWriter::SafeDownCast(caller);
+    if (writer->GetProgress() > 0.101) {
+      writer->SetAbortExecute(1);
+    }
+  });
+  this->Writer->AddObserver(vtkCommand::ProgressEvent, abort);
+  this->Writer->SetMaximumSteps(100000);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_NE(messages.text().find("stopped"), std::string::npos) << messages.text();
+  EXPECT_FALSE(std::filesystem::exists(this->path()));
+}
