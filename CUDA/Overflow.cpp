@@ -14,8 +14,8 @@ bool IsMarked(float value) { return std::isnan(value); }
 
 } // namespace
 
-void RepairPoints(const Evaluator& core, const glm::vec3* positions, std::int64_t count,
-                  float* values)
+std::int64_t RepairPoints(const Evaluator& core, const glm::vec3* positions, std::int64_t count,
+                          float* values)
 {
   std::vector<std::int64_t> marked;
   std::vector<glm::vec3> places;
@@ -30,24 +30,29 @@ void RepairPoints(const Evaluator& core, const glm::vec3* positions, std::int64_
   for (std::size_t k = 0; k < marked.size(); ++k) {
     values[marked[k]] = repaired[k];
   }
+  return static_cast<std::int64_t>(marked.size());
 }
 
-void RepairLayers(const BrickSource& core, BrickKey key, std::int64_t z, std::int64_t layers,
-                  float* values)
+std::int64_t RepairLayers(const BrickSource& core, BrickKey key, std::int64_t z,
+                          std::int64_t layers, float* values)
 {
   const glm::ivec3& dims = core.hierarchy().brickDims();
   const std::int64_t size = std::int64_t{dims.x} * dims.y;
   std::vector<float> repaired;
+  std::int64_t all = 0;
   for (std::int64_t k = 0; k < layers; ++k) {
     float* const layer = values + k * size;
-    if (std::none_of(layer, layer + size, IsMarked)) {
+    const std::int64_t marked = std::count_if(layer, layer + size, IsMarked);
+    if (marked == 0) {
       continue;
     }
+    all += marked;
     repaired.resize(static_cast<std::size_t>(size));
     core.inferLayer(key, z + k, repaired.data());
     std::transform(layer, layer + size, repaired.begin(), layer,
                    [](float value, float again) { return IsMarked(value) ? again : value; });
   }
+  return all;
 }
 
 } // namespace cuda

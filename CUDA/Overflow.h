@@ -8,13 +8,13 @@ namespace cuda {
 
 /// Kernels mark a sample as NaN where a number left the range of what they compute with: finite
 /// parameters give no other. These values are computed again by Core, for which nothing is too
-/// large.
-void RepairPoints(const Evaluator& core, const glm::vec3* positions, std::int64_t count,
-                  float* values);
+/// large. Returns how many there were.
+std::int64_t RepairPoints(const Evaluator& core, const glm::vec3* positions, std::int64_t count,
+                          float* values);
 
 /// The same for `layers` layers of a brick, from the `z`-th on.
-void RepairLayers(const BrickSource& core, BrickKey key, std::int64_t z, std::int64_t layers,
-                  float* values);
+std::int64_t RepairLayers(const BrickSource& core, BrickKey key, std::int64_t z,
+                          std::int64_t layers, float* values);
 
 } // namespace cuda
 } // namespace inr

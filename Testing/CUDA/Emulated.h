@@ -8,6 +8,8 @@
 #include "CUDA/Overflow.h"
 #include "CUDA/PackedModel.h"
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -19,6 +21,7 @@ struct HostLaunch
   int blocks = 3;
   bool backward = false;          ///< threads take turns from the last one on
   std::int64_t shared = 96 << 10; ///< bytes that a block may have
+  bool overflows = false;         ///< else Core has nothing to repair
 
   /// Shared memory begins as NaNs, and its end is that of the allocation: a sanitizer sees beyond.
   template <class Kernel> void run(const Kernel& kernel, std::int64_t sharedBytes) const
@@ -60,6 +63,7 @@ public:
   }
 
   const inr::ModelPointer& source() const { return this->Source; }
+  const HostLaunch& launch() const { return this->Launch; }
 
   void inferPoints(const float* positions, std::int64_t count, float* values) const
   {
@@ -130,7 +134,8 @@ public:
   {
     if (count > 0) {
       this->Model->inferPoints(&positions->x, count, values);
-      inr::cuda::RepairPoints(*this->Core, positions, count, values);
+      const std::int64_t repaired = inr::cuda::RepairPoints(*this->Core, positions, count, values);
+      EXPECT_EQ(repaired > 0, this->Model->launch().overflows) << repaired;
     }
   }
   std::string kernel() const override { return "emulated"; }
@@ -169,9 +174,12 @@ private:
       batch.append(this->hierarchy(), keys[k], z, layers);
     }
     this->Model->inferBricks(batch, values);
+    std::int64_t repaired = 0;
     for (std::int64_t k = 0; k < count; ++k) {
-      inr::cuda::RepairLayers(*this->Core, keys[k], z, layers, values + batch.values / count * k);
+      repaired += inr::cuda::RepairLayers(*this->Core, keys[k], z, layers,
+                                          values + batch.values / count * k);
     }
+    EXPECT_EQ(repaired > 0, this->Model->launch().overflows) << repaired;
   }
 
   std::shared_ptr<const EmulatedModel> Model;

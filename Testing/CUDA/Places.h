@@ -50,6 +50,14 @@ protected:
     }
   }
 
+  /// Where some samples are Core's to compute.
+  static HostLaunch Overflowing()
+  {
+    HostLaunch launch;
+    launch.overflows = true;
+    return launch;
+  }
+
   static std::shared_ptr<const inr::Evaluator> evaluator(const inr::ModelPointer& model,
                                                          HostLaunch launch = {})
   {

@@ -6,6 +6,7 @@
 #include "Testing/Core/Inference/LongDoubleTruth.h"
 #include "Testing/Core/Inference/TruthCase.h"
 #include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Training/Fields.h"
 
 #include <utility>
 
@@ -17,7 +18,7 @@ protected:
   static std::vector<float> values(const inr::ModelPointer& model,
                                    const std::vector<glm::vec3>& positions, HostLaunch launch = {})
   {
-    std::vector<float> values(positions.size(), NAN);
+    std::vector<float> values(positions.size(), 1e30f); // unwritten
     evaluator(model, launch)
         ->evaluate(positions.data(), static_cast<std::int64_t>(values.size()), values.data());
     return values;
@@ -68,6 +69,20 @@ TEST_P(Conformance, EveryKindOfModelAgreesWithLongDouble)
               GetParam().half() ? 5e-3 : 1e-5)
         << name;
   }
+}
+
+/// And a trained one, whose parameters are halves and whose terms cancel less, to 1e-3.
+TEST_P(Conformance, ATrainedModelAgreesWithCore)
+{
+  const Field<float> field = Waves();
+  inr::TrainingOptions options = Steps(200);
+  options.storedAs = inr::ParameterType::Half;
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
+  ASSERT_EQ(model->storedAs, inr::ParameterType::Half);
+  ASSERT_GT(model->quality->psnr, 25);
+  const std::vector<glm::vec3> positions = RandomPositions(5000);
+  EXPECT_LT(RelativeError(values(model, positions), valuesOfCore(model, positions)),
+            GetParam().half() ? 1e-3 : 1e-5);
 }
 
 /// The tensor cores' sums are not rounded where the host's are; apart from that it is the same.
@@ -173,13 +188,34 @@ TEST_P(Conformance, CoreComputesWhatOverflows)
   EmulatedModel(rounded, GetParam().precision, {})
       .inferPoints(&positions[0].x, static_cast<std::int64_t>(positions.size()), marked.data());
   EXPECT_TRUE(std::any_of(marked.begin(), marked.end(), [](float v) { return std::isnan(v); }));
-  const std::vector<float> results = values(rounded, positions);
+  const std::vector<float> results = values(rounded, positions, Overflowing());
   const std::vector<float> expected = valuesOfCore(rounded, positions);
   EXPECT_LT(RelativeError(results, expected), GetParam().half() ? 5e-3 : 1e-5);
   for (std::size_t k = 0; k < results.size(); ++k) {
     if (std::isnan(marked[k])) {
       ASSERT_EQ(results[k], expected[k]) << k;
     }
+  }
+}
+
+/// A sum that leaves float's range on its way and would come back, as -infinity that ReLU cuts off.
+TEST_P(Conformance, NoOverflowHidesBehindAnActivation)
+{
+  if (GetParam().half()) {
+    GTEST_SKIP() << "halves do not hold such parameters";
+  }
+  inr::Description description = SmallDescription();
+  description.network.hiddenLayers = 1;
+  auto model = RandomModel(description);
+  const inr::Layout layout(description);
+  std::fill(model->parameters.begin(), model->parameters.end(), 0.0f);
+  std::fill(model->parameters.begin() + static_cast<std::ptrdiff_t>(layout.gridOffset),
+            model->parameters.end(), 1e19f);
+  const float weights[4] = {-2e19f, -2e19f, 3e19f, 3e19f};
+  std::copy(std::begin(weights), std::end(weights), model->parameters.begin());
+  model->parameters[layout.layers[1].offset] = 1e-38f;
+  for (const float value : values(model, RandomPositions(50), Overflowing())) {
+    EXPECT_NEAR(value, 2.0f, 1e-4f);
   }
 }
 
