@@ -18,13 +18,16 @@ __global__ void __launch_bounds__(Kernel::Threads) Run(const __grid_constant__ K
 
 template <class Kernel> std::int64_t PrepareKernel(std::int64_t sharedBytes)
 {
-  INR_CUDA(cudaFuncSetAttribute(Run<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                static_cast<int>(sharedBytes)));
   int device = 0;
   int multiprocessors = 0;
+  int mostShared = 0;
   int blocks = 0;
   INR_CUDA(cudaGetDevice(&device));
   INR_CUDA(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device));
+  INR_CUDA(cudaDeviceGetAttribute(&mostShared, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+  // As much as there is, whoever asks: it is the kernel's, and other models run it, too.
+  INR_CUDA(
+      cudaFuncSetAttribute(Run<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, mostShared));
   INR_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, Run<Kernel>, Kernel::Threads,
                                                          static_cast<std::size_t>(sharedBytes)));
   return std::int64_t{multiprocessors} * (blocks > 0 ? blocks : 1);

@@ -11,8 +11,8 @@
 namespace inr {
 namespace cuda {
 
-/// Lets a kernel use so many bytes of shared memory per block; returns how many of its blocks are
-/// in work at once on the calling thread's device.
+/// Lets a kernel use all shared memory that a block may have; returns how many of its blocks are in
+/// work at once on the calling thread's device where each takes so much.
 template <class Kernel> std::int64_t PrepareKernel(std::int64_t sharedBytes);
 
 /// Begins a kernel, behind what is in the stream. `blocks`: at least 1.

@@ -9,7 +9,7 @@ namespace cuda {
 
 namespace {
 
-constexpr const char* Reason = "this build has no CUDA part: there was no CUDA compiler (nvcc)";
+constexpr const char* Reason = "this build has no CUDA part: it was configured without nvcc";
 
 [[noreturn]] void Refuse() { throw Error(ErrorCode::Device, Reason); }
 

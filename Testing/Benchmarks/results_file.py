@@ -27,7 +27,10 @@ def output(*command):
 
 
 def commit():
-    """What was measured; "-dirty" where anything but these files differs from the commit."""
+    """What was measured; "-dirty" where anything but these files differs from the commit. A copy of
+    the sources without their history has it from INR_COMMIT."""
+    if "INR_COMMIT" in os.environ:
+        return os.environ["INR_COMMIT"]
     changes = output("git", "status", "--porcelain", "--untracked-files=no", "--", ":/",
                      ":(exclude)results")
     return output("git", "rev-parse", "--short", "HEAD") + ("-dirty" if changes else "")
