@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Kills trainings twenty times and lets them go on from their checkpoint; adds to terascale.json.
+"""Kills trainings twenty times and lets them go on from their checkpoint; writes kill-resume.json.
 
     PYTHONPATH=build/lib/python /usr/bin/python3 Testing/Benchmarks/kill_resume.py
 
@@ -30,7 +30,7 @@ def main():
     note = (f"of {KILLS} kills of trainings of 96^3 voxels, {training.steps} steps, by MaximumSteps; "
             f"{differing} bytes of the finished models' voxels differ, {len(left)} files are left")
     good = good if differing == 0 and not left else 0
-    results_file.write("terascale", [results_file.result(
+    results_file.write("kill-resume", [results_file.result(
         "kill resume OK", good, "kills", "higher", note, target=KILLS)])
 
 

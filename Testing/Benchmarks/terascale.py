@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trains volumes that fit no memory, from a raw file and from a source that stores nothing; writes
+terascale.json.
+
+    cmake --preset release && cmake --build --preset release
+    Testing/with-display.sh Testing/Benchmarks/terascale.py build FOLDER [raw] [channel]
+
+"raw": 2048^3 floats, 32 GiB that must be free in FOLDER, within MemoryLimit 1024, and beside it every
+fourth voxel trained from memory. "channel": 10240 x 7680 x 1536 doubles, 0.97 TB that are computed
+where they are asked for. Models are compared with the field itself on 10^8 random voxels.
+"""
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import results_file
+
+# In pvpython; arguments as JSON, the answer as the last line.
+CHILD = """
+import json, resource, sys, time
+from paraview import servermanager, simple
+given = json.loads(sys.argv[1])
+for name in ("INRVolume", "TurbulentChannel"):
+    simple.LoadPlugin(f"{given['plugins']}/{name}/{name}.so", remote=False, ns=vars(simple))
+def peak():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+def read():
+    return int(open("/proc/self/io").read().split()[1])
+source = getattr(simple, given["source"])(**given["properties"])
+idle, before, start = peak(), read(), time.time()
+writer = servermanager.writers.INRWriter(Input=source, FileName=given["model"], **given["writer"])
+trainer = writer.GetClientSideObject()
+phases = {}
+def note(*unused):
+    phases[(trainer.GetProgressText() or "").split(",")[0]] = time.time() - start
+trainer.AddObserver("ProgressEvent", note)
+writer.UpdatePipeline()
+print(json.dumps({"peak": peak() - idle, "read": read() - before, "seconds": time.time() - start,
+                  "until": phases}))
+"""
+
+MODEL = json.dumps({
+    "encoding": {"otype": "HashGrid", "n_levels": 16, "n_features_per_level": 4,
+                 "log2_hashmap_size": 17, "base_resolution": 8, "per_level_scale": 1.4},
+    "network": {"otype": "FullyFusedMLP", "n_neurons": 64, "n_hidden_layers": 2,
+                "activation": "ReLU", "output_activation": "None"}})
+STEPS = 6000
+CHANNEL = [10240, 7680, 1536]
+
+build = Path(sys.argv[1]).resolve()
+folder = Path(sys.argv[2]).resolve()
+parts = sys.argv[3:] or ["raw", "channel"]
+
+
+def train(model, source, properties, **writer):
+    given = {"plugins": str(next((build / "lib").glob("paraview-*")) / "plugins"), "source": source,
+             "properties": properties, "model": str(model), "writer": writer}
+    output = subprocess.run(["pvpython", "-c", CHILD, json.dumps(given)], check=True,
+                            stdout=subprocess.PIPE, text=True).stdout
+    answer = json.loads(output.strip().splitlines()[-1])
+    print(model.name, answer, flush=True)
+    return answer
+
+
+def truth(model):
+    output = subprocess.run([build / "Testing/Turbulence/channel_truth", model], check=True,
+                            stdout=subprocess.PIPE, text=True).stdout
+    answer = json.loads(output)
+    print(model.name, answer, flush=True)
+    return answer
+
+
+def phases(run):
+    return ", ".join(f"{name} until {seconds:.0f} s" for name, seconds in run["until"].items() if name)
+
+
+def raw_file():
+    header, data = folder / "channel.mhd", folder / "channel.raw"
+    if not data.exists():
+        subprocess.run([build / "Testing/Turbulence/turbulent_channel", "2048", "2048", "2048",
+                        header], check=True)
+    model = folder / "raw.inr"
+    run = train(model, "ImageReader",
+                {"FileNames": [str(data)], "DataScalarType": "float", "FileDimensionality": 3,
+                 "DataExtent": [0, 2047] * 3},
+                MemoryLimit=1024, MaximumSteps=STEPS, TimeLimit=0, ModelConfig=MODEL)
+    streamed = truth(model)
+    sample = folder / "sample.inr"
+    train(sample, "TurbulentChannel", {"Dimensions": [512] * 3, "OutputScalarType": "float"},
+          MaximumSteps=STEPS, TimeLimit=0, ModelConfig=MODEL)
+    memory = truth(sample)
+    size = data.stat().st_size
+    about = f"{size / 2**30:.0f} GiB raw, MemoryLimit 1024, {STEPS} steps, {phases(run)}"
+    yield results_file.result("peak memory MiB", round(run["peak"]), "MiB", "lower",
+                              about + "; above the idle process", target=1024)
+    yield results_file.result("file bytes read ratio", round(run["read"] / size, 3), "", "lower",
+                              "all the process read, over the file", target=3)
+    yield results_file.result("PSNR of 2048^3 from pieces", round(streamed["psnr"], 2), "dB",
+                              "higher", f"10^8 random voxels; ratio {streamed['ratio']:.0f}")
+    yield results_file.result("PSNR of pieces minus PSNR from memory",
+                              round(streamed["psnr"] - memory["psnr"], 2), "dB", "higher",
+                              "from memory: every fourth voxel (512^3), same model and steps, "
+                              f"{memory['psnr']:.2f} dB on voxels of its own", target=-0.3)
+
+
+def channel():
+    model = folder / "channel.inr"
+    run = train(model, "TurbulentChannel", {"Dimensions": CHANNEL, "OutputScalarType": "double"},
+                MemoryLimit=4096, TimeLimit=300, ModelConfig=MODEL.replace(": 17", ": 20"))
+    good = truth(model)
+    about = (f"10240 x 7680 x 1536 doubles, {phases(run)}, peak {run['peak']:.0f} MiB above the idle "
+             "process of MemoryLimit 4096")
+    yield results_file.result("channel model MB", round(good["file_bytes"] / 1e6, 1), "MB", "lower",
+                              about, target=150)
+    yield results_file.result("channel PSNR", round(good["psnr"], 2), "dB", "higher",
+                              f"10^8 random voxels; largest error {good['max_error']:.3g} of a range "
+                              f"of {good['field_range'][1] - good['field_range'][0]:.3g}; ratio "
+                              f"{good['ratio']:.0f}", target=35)
+
+
+folder.mkdir(parents=True, exist_ok=True)
+results = []
+for part, function in (("raw", raw_file), ("channel", channel)):
+    if part in parts:
+        results += list(function())
+results_file.write("terascale", results)
