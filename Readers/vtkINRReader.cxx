@@ -368,6 +368,10 @@ std::string vtkINRReader::Summary() const
   add("PSNR", this->PSNR, " dB");
   add("SSIM", this->SSIM, "");
   add("largest error", this->MaximumError, "");
+  const std::optional<inr::Quality>& quality = this->Internal->Source->Header().quality;
+  if (quality && quality->sampledVoxels > 0) {
+    text += ", measured on " + std::to_string(quality->sampledVoxels) + " voxels";
+  }
   return text;
 }
 

@@ -59,7 +59,7 @@ inline std::shared_ptr<inr::Model> FullModel()
     const float low = 0.9f * inr::RandomUnit(3, k);
     model->macroCells.ranges[k] = {low, low + 0.1f * inr::RandomUnit(4, k)};
   }
-  model->quality = inr::Quality{41.25, 0.987, 3.5};
+  model->quality = inr::Quality{41.25, 0.987, 3.5, 123456};
   model->training = inr::TrainingRecord{12345, 20000, ~std::uint64_t{0}, 67.5, "avx2", 3, 777};
   return model;
 }

@@ -35,6 +35,7 @@ TEST_F(ModelFile, KeepsEveryField)
   EXPECT_EQ(read->volume.high, written->volume.high);
   EXPECT_EQ(read->quality->psnr, written->quality->psnr);
   EXPECT_EQ(read->quality->maxError, written->quality->maxError);
+  EXPECT_EQ(read->quality->sampledVoxels, written->quality->sampledVoxels);
   EXPECT_EQ(read->training->steps, written->training->steps);
   EXPECT_EQ(read->training->plannedSteps, written->training->plannedSteps);
   EXPECT_EQ(read->training->seed, written->training->seed);

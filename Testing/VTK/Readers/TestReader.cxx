@@ -71,6 +71,12 @@ protected:
   vtkNew<vtkINRReader> Algorithm;
 };
 
+std::string Summary(vtkImageData* image)
+{
+  return vtkStringArray::SafeDownCast(image->GetFieldData()->GetAbstractArray("INRSummary"))
+      ->GetValue(0);
+}
+
 } // namespace
 
 TEST_F(Reader, GivesTheNativeGridWhereItIsSmallEnough)
@@ -257,23 +263,26 @@ TEST_F(Reader, TakesNameRangeAndDimensionsFromTheUser)
   EXPECT_EQ(image->GetNumberOfPoints(), 10 * 11 * 12);
 }
 
+TEST_F(Reader, SaysWhenTheQualityIsThatOfSomeVoxels)
+{
+  const auto model = MakeModel(Dims);
+  model->quality = inr::Quality{41.5, 0.96, 7.25, 1000};
+  const std::string text = Summary(this->open(this->write(*model)));
+  EXPECT_NE(text.find("largest error 7.25, measured on 1000 voxels"), std::string::npos) << text;
+}
+
 // A file of upstream, trained out of core, stores no more than 1,024 voxels along an axis.
 TEST_F(Reader, SaysWhereTheFileMayHideVoxelsAndTakesTheirNumber)
 {
-  const auto summary = [](vtkImageData* image) {
-    return std::string(
-        vtkStringArray::SafeDownCast(image->GetFieldData()->GetAbstractArray("INRSummary"))
-            ->GetValue(0));
-  };
   auto model = MakeModel({1024, 9, 8});
   model->volume.direction = glm::dmat3(1.0);
   const std::string path = this->write(*model);
-  EXPECT_NE(summary(this->open(path)).find("Dimensions"), std::string::npos);
+  EXPECT_NE(Summary(this->open(path)).find("Dimensions"), std::string::npos);
 
   this->Algorithm->SetDimensions(3001, 17, 8);
   vtkImageData* const image = this->open(path);
-  EXPECT_EQ(summary(image).find("Dimensions"), std::string::npos) << summary(image);
-  EXPECT_EQ(summary(image).find("3001 x 17 x 8 voxels"), 0u) << summary(image);
+  EXPECT_EQ(Summary(image).find("Dimensions"), std::string::npos) << Summary(image);
+  EXPECT_EQ(Summary(image).find("3001 x 17 x 8 voxels"), 0u) << Summary(image);
   const glm::dvec3 first = model->volume.origin;
   const glm::dvec3 last = first + model->volume.spacing * glm::dvec3(3000, 16, 7);
   const double* bounds = image->GetBounds();
@@ -287,7 +296,7 @@ TEST_F(Reader, SaysWhereTheFileMayHideVoxelsAndTakesTheirNumber)
 
   model->quality = inr::Quality{40, 0.9, 1}; // one of ours
   this->Algorithm->SetDimensions(0, 0, 0);
-  EXPECT_EQ(summary(this->open(this->write(*model))).find("Dimensions"), std::string::npos);
+  EXPECT_EQ(Summary(this->open(this->write(*model))).find("Dimensions"), std::string::npos);
 }
 
 TEST_F(Reader, OpensFarMoreThanMemoryHoldsWithoutEvaluating)
