@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds everything on Debian 12 and runs every test but those labelled `long`; installs what is
-# missing. Ends with "N passed, N failed"; its status is 0 when nothing failed.
+# missing. Ends with "N passed, N failed"; its status is 0 when nothing failed. What a machine cannot
+# run, like the kernels on a GPU, is skipped, and counts as neither: Testing/run_cuda.sh.
 #
 #   Testing/run.sh [CTEST-OPTION...]     e.g. Testing/run.sh -L core
 set -uo pipefail
@@ -11,6 +12,7 @@ bash CMake/install-debian-packages.sh test || exit 1
 
 passed=0
 failed=0
+skipped=0
 
 # build PRESET: configures and builds; a failure counts as one failed test.
 build() {
@@ -28,13 +30,15 @@ build() {
 
 # run_tests FOLDER [CTEST-OPTION...]: adds the folder's tests to the sums.
 run_tests() {
-  local folder=$1 summary
+  local folder=$1 summary missed
   shift
   ctest --test-dir "$folder" -j "$(nproc)" -LE long --output-on-failure "$@" | tee "$folder/ctest.log"
   summary=$(grep -E 'tests passed, .* failed out of' "$folder/ctest.log")
   if [[ $summary =~ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]; then
+    missed=$(grep -c '\*\*\*Skipped' "$folder/ctest.log")
     failed=$((failed + BASH_REMATCH[1]))
-    passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1]))
+    passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1] - missed))
+    skipped=$((skipped + missed))
   elif ! grep -q 'No tests were found' "$folder/ctest.log"; then
     failed=$((failed + 1))
   fi
@@ -56,5 +60,6 @@ fi
 build core && run_tests build-core -E '^Trainer\.' "$@"
 build asan && run_tests build-asan -L 'core|fuzz' -E '^(Trainer|Examples)\.' "$@"
 
+[ "$skipped" -eq 0 ] || echo "== $skipped skipped, as their output says why"
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

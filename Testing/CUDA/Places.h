@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,15 @@ struct Setting
   bool half() const { return this->precision == inr::cuda::Precision::Half; }
 };
 
+inline std::ostream& operator<<(std::ostream& stream, const Setting& setting)
+{
+  return stream << (setting.place == Place::Host ? "Host" : "Gpu")
+                << (setting.half() ? "Half" : "Float32");
+}
+
 inline std::string NameOf(const testing::TestParamInfo<Setting>& info)
 {
-  return std::string(info.param.place == Place::Host ? "Host" : "Gpu") +
-         (info.param.half() ? "Half" : "Float32");
+  return testing::PrintToString(info.param);
 }
 
 inline std::vector<Setting> AllSettings()
