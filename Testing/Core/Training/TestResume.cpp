@@ -6,6 +6,7 @@
 #include "Core/Training/GradientDescent.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Training/FieldReader.h"
 #include "Testing/Core/Training/Fields.h"
 
 #include <gtest/gtest.h>
@@ -140,6 +141,26 @@ TEST_F(Resume, EndsAtTheSameStepByQuality)
   EXPECT_EQ(resumed->training->steps, whole->training->steps);
   EXPECT_EQ(resumed->parameters, whole->parameters);
   EXPECT_EQ(this->train(options)->training->steps, whole->training->steps);
+}
+
+TEST_F(Resume, GivesTheModelThatTrainingFromPiecesWouldHaveGiven)
+{
+  const Field<float> field =
+      Waves<float>({128, 140, 153}, inr::ScalarType::Float32, -3, 5); // three pieces
+  inr::TrainingOptions options = this->options(40);
+  options.memoryLimit = std::int64_t{120} << 20;
+  const auto trainFrom = [&](const inr::TrainingObserver& observer) {
+    FieldReader<float> reader(field);
+    return inr::TrainModel(reader, {}, options, observer);
+  };
+  options.checkpoint.path.clear();
+  const inr::ModelPointer whole = trainFrom({});
+  options.checkpoint.path = this->Path;
+  // Pieces are being read again by then.
+  EXPECT_THROW(trainFrom([](const inr::TrainingProgress& now) { return now.steps < 25; }),
+               inr::Error);
+  EXPECT_EQ(trainFrom({})->parameters, whole->parameters);
+  EXPECT_EQ(this->count(CheckpointEvent::Resumed), 1);
 }
 
 TEST_F(Resume, CountsTheTimeBefore)
