@@ -20,10 +20,10 @@ struct TrainingStep
 {
   std::uint64_t number = 0;
   std::uint64_t planned = 0;
+  std::uint64_t stream = 0; ///< of random numbers
 };
 
-/// The mini-batches of a training, BatchSize samples each, in an order that keeps neighbours
-/// together.
+/// The mini-batches of a training, in an order that keeps neighbours together.
 class BatchSource
 {
 public:
@@ -32,6 +32,10 @@ public:
   /// Called before the items of a step are drawn, by the thread that trains. May wait for data as
   /// long as `check` lets it.
   virtual void prepare(const TrainingStep&, const StopCheck&) {}
+
+  /// Samples of the prepared mini-batch: that are drawn here, and with those of other processes.
+  virtual std::int64_t count() const { return BatchSize; }
+  virtual std::int64_t total() const { return BatchSize; }
 
   /// Items [begin, end) of the mini-batch of step number `step`: positions in the unit cube and
   /// their targets (see SampleSource). Depends on the arguments and on what was prepared alone;

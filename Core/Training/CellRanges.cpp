@@ -79,6 +79,17 @@ void CellRanges::add(const VolumePiece& piece, const VoxelBox& box, const Arena&
   VisitScalars(piece.data, [&](const auto* values) { this->addRows(piece, values, box, arena); });
 }
 
+void CellRanges::gather(const TrainingGroup& group)
+{
+  const std::string mine(reinterpret_cast<const char*>(this->Ranges.data()),
+                         this->Ranges.size() * sizeof(Range));
+  for (const std::string& other : group.gather(mine)) {
+    for (std::size_t k = 0; k < this->Ranges.size(); ++k) {
+      this->Ranges[k].extend(FromBytes<Range>(other.data() + k * sizeof(Range)));
+    }
+  }
+}
+
 MacroCells CellRanges::cells(double low, double high, double margin,
                              MacroCellProvenance provenance) const
 {

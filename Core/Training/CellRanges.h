@@ -3,6 +3,7 @@
 
 #include "Core/Model/MacroCells.h"
 #include "Core/Parallel.h"
+#include "Core/Training/TrainingGroup.h"
 #include "Core/Training/Volume.h"
 
 #include <algorithm>
@@ -43,6 +44,9 @@ public:
   /// Takes in the voxels of a box within a piece. A value that is not finite says that anything may
   /// be there.
   void add(const VolumePiece& piece, const VoxelBox& box, const Arena& arena);
+
+  /// Takes in what others have.
+  void gather(const TrainingGroup& group);
 
   /// The ranges in units in which `low` is 0 and `high` is 1, rounded outward, and `margin` wider
   /// to both sides; where anything may be, or nothing was taken in, 0 to 1.

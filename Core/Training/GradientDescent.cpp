@@ -113,8 +113,7 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
       Views(description, this->Shape, this->Parameters.data()), Gradient(this->Parameters.size()),
       Grid(this->Views.view(), this->Gradient.data() + this->Shape.gridOffset),
       FirstMoments(this->Parameters.size()), SecondMoments(this->Parameters.size()),
-      Updates(this->Parameters.size() - this->Shape.gridOffset), Corrections(BiasCorrections()),
-      Positions(BatchSize), Targets(BatchSize)
+      Updates(this->Parameters.size() - this->Shape.gridOffset), Corrections(BiasCorrections())
 {
   for (std::vector<float>* const values :
        {&this->Parameters, &this->Gradient, &this->FirstMoments, &this->SecondMoments}) {
@@ -126,6 +125,13 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
 void GradientDescent::startFrom(const std::vector<float>& parameters)
 {
   std::copy(parameters.begin(), parameters.end(), this->Parameters.begin());
+}
+
+void GradientDescent::share(const TrainingGroup& group)
+{
+  if (group.size() > 1) {
+    this->Exchange.emplace(group, this->Threads);
+  }
 }
 
 StateArrays GradientDescent::state()
@@ -140,12 +146,8 @@ StateArrays GradientDescent::state()
 
 std::optional<double> GradientDescent::step(BatchSource& batches, const StopCheck& check)
 {
-  batches.prepare({this->Steps, this->PlannedSteps}, check);
-  if (!check.goesOn()) {
-    return std::nullopt;
-  }
-  this->drawBatch(batches);
-  const std::optional<double> loss = this->computeGradient(this->Positions, this->Targets, check);
+  const std::optional<double> loss =
+      this->Exchange ? this->computeTogether(batches, check) : this->computeShare(batches, check);
   if (!loss) {
     return loss;
   }
@@ -156,10 +158,30 @@ std::optional<double> GradientDescent::step(BatchSource& batches, const StopChec
   return loss;
 }
 
-void GradientDescent::drawBatch(const BatchSource& batches)
+std::optional<double> GradientDescent::computeTogether(BatchSource& batches, const StopCheck& check)
+{
+  std::optional<double> loss;
+  this->Exchange->group().together([&] { loss = this->computeShare(batches, check); });
+  return this->Exchange->sum(loss, this->Gradient.data(), this->Shape.gridOffset, this->Grid);
+}
+
+std::optional<double> GradientDescent::computeShare(BatchSource& batches, const StopCheck& check)
 {
   const std::uint64_t stream = StreamSeed(this->Seed, BatchStream);
-  this->Threads.forEachBlock(BatchSize, ShardSize, [&](std::int64_t begin, std::int64_t end) {
+  batches.prepare({this->Steps, this->PlannedSteps, stream}, check);
+  if (!check.goesOn()) {
+    return std::nullopt;
+  }
+  this->drawBatch(batches, stream);
+  return this->backpropagate(this->Positions, this->Targets, batches.total(), check);
+}
+
+void GradientDescent::drawBatch(const BatchSource& batches, std::uint64_t stream)
+{
+  const std::int64_t count = batches.count();
+  this->Positions.resize(static_cast<std::size_t>(count));
+  this->Targets.resize(static_cast<std::size_t>(count));
+  this->Threads.forEachBlock(count, ShardSize, [&](std::int64_t begin, std::int64_t end) {
     batches.draw(stream, this->Steps, begin, end, &this->Positions[begin], &this->Targets[begin]);
   });
 }
@@ -167,6 +189,15 @@ void GradientDescent::drawBatch(const BatchSource& batches)
 std::optional<double> GradientDescent::computeGradient(const std::vector<glm::vec3>& positions,
                                                        const std::vector<float>& targets,
                                                        const StopCheck& check)
+{
+  return this->backpropagate(positions, targets, static_cast<std::int64_t>(positions.size()),
+                             check);
+}
+
+/// Of a mini-batch of `total` samples those that are here.
+std::optional<double> GradientDescent::backpropagate(const std::vector<glm::vec3>& positions,
+                                                     const std::vector<float>& targets,
+                                                     std::int64_t total, const StopCheck& check)
 {
   const auto count = static_cast<std::int64_t>(positions.size());
   const std::int64_t shards = (count + ShardSize - 1) / ShardSize;
@@ -176,10 +207,14 @@ std::optional<double> GradientDescent::computeGradient(const std::vector<glm::ve
   this->Grid.clear(); // an update leaves nothing, but not every gradient is entered
   this->ShardGradients.resize(static_cast<std::size_t>(shards));
   this->ShardLosses.assign(static_cast<std::size_t>(shards), 0.0);
+  if (count == 0) { // all samples are other processes'
+    this->sumShards();
+    return 0.0;
+  }
   const float* xyz = &positions.data()->x;
   this->encode(xyz, count, check);
   this->Threads.forEachBlock(count, ShardSize, [&](std::int64_t begin, std::int64_t end) {
-    this->backpropagateShard(begin / ShardSize, targets.data(), begin, end, count, check);
+    this->backpropagateShard(begin / ShardSize, targets.data(), begin, end, total, check);
   });
   if (!check.goesOn()) {
     return std::nullopt;
@@ -190,7 +225,7 @@ std::optional<double> GradientDescent::computeGradient(const std::vector<glm::ve
     return std::nullopt;
   }
   return std::accumulate(this->ShardLosses.begin(), this->ShardLosses.end(), 0.0) /
-         static_cast<double>(count);
+         static_cast<double>(total);
 }
 
 void GradientDescent::encode(const float* xyz, std::int64_t count, const StopCheck& check)

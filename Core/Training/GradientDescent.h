@@ -4,6 +4,7 @@
 #include "Core/Inference/ModelView.h"
 #include "Core/Parallel.h"
 #include "Core/Training/BatchSource.h"
+#include "Core/Training/GradientExchange.h"
 #include "Core/Training/GridGradient.h"
 #include "Core/Training/StateArray.h"
 #include "Core/Training/StopCheck.h"
@@ -52,12 +53,17 @@ public:
   StateArrays state();
   void goOnAfter(std::uint64_t steps) { this->Steps = steps; }
 
+  /// Before the first step: the mini-batches are shares of larger ones, and the parameters of all
+  /// processes stay the same. The group must outlive this.
+  void share(const TrainingGroup& group);
+
   /// Spreads the learning rate over so many steps (default: no end in sight, a constant rate).
   void plan(std::uint64_t steps) { this->PlannedSteps = steps; }
 
   /// One mini-batch; returns the mean squared error over it, before the update. Nothing when
   /// `check` stopped it: then no parameter has changed, and the next step draws the same batch. An
   /// update that has begun is always finished.
+  /// In a group all must call it; it returns the same to all, and throws when one's does.
   std::optional<double> step(BatchSource& batches, const StopCheck& check = StopCheck());
 
   /// Fills gradient() with d (mean (output - target)^2) / d parameter for `count` samples (targets
@@ -72,7 +78,12 @@ public:
   const std::vector<float>& gradient() const { return this->Gradient; }
 
 private:
-  void drawBatch(const BatchSource& batches);
+  std::optional<double> computeTogether(BatchSource& batches, const StopCheck& check);
+  std::optional<double> computeShare(BatchSource& batches, const StopCheck& check);
+  void drawBatch(const BatchSource& batches, std::uint64_t stream);
+  std::optional<double> backpropagate(const std::vector<glm::vec3>& positions,
+                                      const std::vector<float>& targets, std::int64_t total,
+                                      const StopCheck& check);
   void encode(const float* xyz, std::int64_t count, const StopCheck& check);
   void backpropagateShard(std::int64_t shard, const float* targets, std::int64_t begin,
                           std::int64_t end, std::int64_t total, const StopCheck& check);
@@ -82,6 +93,7 @@ private:
   void updateGrid(float learningRate);
 
   const Arena& Threads;
+  std::optional<GradientExchange> Exchange; ///< empty = alone
   const TrainKernel& Kernel;
   Layout Shape;
   std::uint64_t Seed;

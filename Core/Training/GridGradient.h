@@ -28,6 +28,7 @@ public:
   GridGradient& operator=(const GridGradient&) = delete;
 
   LevelGradient level(int level);
+  float* values(const Piece& piece) { return this->Values + piece.first; }
   const std::vector<Piece>& pieces() const { return this->Pieces; }
 
   /// Makes everything zero that is not.

@@ -17,36 +17,34 @@ namespace {
 class SliceComparison
 {
 public:
-  SliceComparison(const Evaluator& evaluator, const VolumePiece& piece, const VolumeInfo& info,
-                  const Arena& arena, std::int64_t bandSize)
-      : BandSize(bandSize), Source(evaluator), Piece(piece), Info(info), Threads(arena),
-        SliceSize(static_cast<std::size_t>(piece.data.dims.x * piece.data.dims.y)),
-        Raw(this->SliceSize), Decoded(this->SliceSize), Reference(this->SliceSize)
+  SliceComparison(const Evaluator& evaluator, const VolumePiece& piece, const VoxelBox& box,
+                  const VolumeInfo& info, const Arena& arena, std::int64_t bandSize)
+      : BandSize(bandSize), Source(evaluator), Piece(piece), Box(box), Info(info), Threads(arena),
+        SliceSize(static_cast<std::size_t>(box.size.x * box.size.y)), Raw(this->SliceSize),
+        Decoded(this->SliceSize), Reference(this->SliceSize)
   {}
 
-  /// `check` receives the fraction done of the piece and throws to stop.
+  /// `check` receives the fraction done of the box and throws to stop.
   void load(std::int64_t z, const std::function<void(double)>& check)
   {
-    const glm::i64vec3 size = this->Piece.data.dims;
+    const glm::i64vec3 size = this->Box.size;
     const std::int64_t rows = std::max<std::int64_t>(1, this->BandSize / size.x);
     for (std::int64_t y = 0; y < size.y; y += rows) {
       check((static_cast<double>(z) + static_cast<double>(y) / static_cast<double>(size.y)) /
             static_cast<double>(size.z));
       const std::int64_t height = std::min(rows, size.y - y);
       EvaluateLattice(this->Source, this->Threads,
-                      VoxelLattice(this->Info.dims, this->Piece.first + glm::i64vec3(0, y, z),
+                      VoxelLattice(this->Info.dims, this->Box.first + glm::i64vec3(0, y, z),
                                    {size.x, height, 1}),
                       this->Raw.data() + y * size.x);
     }
-    const double range = this->Info.high - this->Info.low; // its inverse may be infinite
-    const auto count = static_cast<std::int64_t>(this->SliceSize);
+    for (std::size_t k = 0; k < this->SliceSize; ++k) {
+      this->Raw[k] = NormalisedOutput(this->Raw[k]);
+      this->Decoded[k] = this->Raw[k];
+    }
     VisitScalars(this->Piece.data, [&](const auto* values) {
-      const auto* slice = values + z * count * this->Piece.data.stride;
-      for (std::int64_t k = 0; k < count; ++k) {
-        const auto value = static_cast<double>(slice[k * this->Piece.data.stride]);
-        this->Reference[k] = (value - this->Info.low) / range;
-        this->Raw[k] = NormalisedOutput(this->Raw[k]);
-        this->Decoded[k] = this->Raw[k];
+      for (std::int64_t y = 0; y < size.y; ++y) {
+        this->loadRow(values, y, z);
       }
     });
   }
@@ -54,7 +52,7 @@ public:
   QualityMeter::Errors rowErrors(std::int64_t y) const
   {
     QualityMeter::Errors errors;
-    const std::int64_t width = this->Piece.data.dims.x;
+    const std::int64_t width = this->Box.size.x;
     for (std::int64_t k = y * width; k < (y + 1) * width; ++k) {
       const double difference = std::abs(this->Reference[k] - this->Decoded[k]);
       if (std::isfinite(difference)) {
@@ -71,9 +69,24 @@ public:
   const std::vector<double>& reference() const { return this->Reference; }
 
 private:
+  template <class T> void loadRow(const T* values, std::int64_t y, std::int64_t z)
+  {
+    const glm::i64vec3 size = this->Piece.data.dims;
+    const glm::i64vec3 at = this->Box.first - this->Piece.first + glm::i64vec3(0, y, z);
+    const std::int64_t stride = this->Piece.data.stride;
+    const T* const row = values + stride * (at.x + size.x * (at.y + size.y * at.z));
+    const double range = this->Info.high - this->Info.low; // its inverse may be infinite
+    for (std::int64_t x = 0; x < this->Box.size.x; ++x) {
+      const auto value = static_cast<double>(row[x * stride]);
+      this->Reference[static_cast<std::size_t>(y * this->Box.size.x + x)] =
+          (value - this->Info.low) / range;
+    }
+  }
+
   std::int64_t BandSize;
   const Evaluator& Source;
   const VolumePiece& Piece;
+  VoxelBox Box;
   const VolumeInfo& Info;
   const Arena& Threads;
   std::size_t SliceSize;
@@ -91,11 +104,30 @@ void QualityMeter::Errors::add(const Errors& other)
   this->voxels += other.voxels;
 }
 
-void QualityMeter::add(const VolumePiece& piece, CellRanges* decoded,
+void QualityMeter::gather(const TrainingGroup& group)
+{
+  struct Sums
+  {
+    Errors errors;
+    double similarity;
+    std::int64_t windows;
+  };
+  const std::vector<Sums> all = group.valuesOfAll(Sums{this->All, this->Similarity, this->Windows});
+  this->All = Errors();
+  this->Similarity = 0;
+  this->Windows = 0;
+  for (const Sums& sums : all) {
+    this->All.add(sums.errors);
+    this->Similarity += sums.similarity;
+    this->Windows += sums.windows;
+  }
+}
+
+void QualityMeter::add(const VolumePiece& piece, const VoxelBox& box, CellRanges* decoded,
                        const std::function<void(double)>& check)
 {
-  const glm::i64vec3 size = piece.data.dims;
-  SliceComparison slice(this->Source, piece, this->Info, this->Threads, this->BandSize);
+  const glm::i64vec3 size = box.size;
+  SliceComparison slice(this->Source, piece, box, this->Info, this->Threads, this->BandSize);
   SliceSsim windows(size.x, size.y, this->Threads);
   std::vector<Errors> rows(static_cast<std::size_t>(size.y));
   for (std::int64_t z = 0; z < size.z; ++z) {
@@ -111,7 +143,7 @@ void QualityMeter::add(const VolumePiece& piece, CellRanges* decoded,
     windows.addSlice(slice.reference().data(), slice.decoded().data());
     if (decoded != nullptr) {
       VolumePiece layer{{slice.raw().data(), ScalarType::Float32, {size.x, size.y, 1}},
-                        piece.first + glm::i64vec3(0, 0, z)};
+                        box.first + glm::i64vec3(0, 0, z)};
       decoded->add(layer, {layer.first, layer.data.dims}, this->Threads);
     }
   }

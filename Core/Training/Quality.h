@@ -3,6 +3,7 @@
 
 #include "Core/Inference/Evaluator.h"
 #include "Core/Training/CellRanges.h"
+#include "Core/Training/TrainingGroup.h"
 #include "Core/Training/Volume.h"
 
 #include <cstdint>
@@ -23,10 +24,19 @@ public:
   /// Decodes the voxels of a piece and compares. `decoded`, if any, takes in their normalised
   /// values. `check` receives the fraction done of the piece, after so many voxels as `bandSize`
   /// says, in whole rows, and throws to stop; the last bit of a position may depend on that.
-  void add(const VolumePiece& piece, CellRanges* decoded, const std::function<void(double)>& check);
+  void add(const VolumePiece& piece, CellRanges* decoded, const std::function<void(double)>& check)
+  {
+    this->add(piece, {piece.first, piece.data.dims}, decoded, check);
+  }
+  /// The same of a box within a piece.
+  void add(const VolumePiece& piece, const VoxelBox& box, CellRanges* decoded,
+           const std::function<void(double)>& check);
 
   /// Of all finite voxels, and of the SSIM windows that lie within one piece; see MeasureQuality.
   Quality quality() const;
+
+  /// Takes in what others have compared, in their order.
+  void gather(const TrainingGroup& group);
 
   /// Sums over voxels, in normalised units.
   struct Errors

@@ -25,6 +25,8 @@ public:
 
   std::int64_t count() const { return this->Boxes.count(); }
 
+  const HalvedCube& boxes() const { return this->Boxes; }
+
   /// The position in box k (0 to count() - 1) that number `drawn` of the random stream gives.
   glm::vec3 at(std::int64_t k, std::uint64_t stream, std::uint64_t drawn) const;
 

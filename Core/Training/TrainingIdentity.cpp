@@ -29,7 +29,7 @@ std::uint32_t ChecksumOf(const ModelPointer& start)
 } // namespace
 
 TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
-                            const PsnrEstimate& estimate)
+                            const PsnrEstimate& estimate, int processes)
 {
   if (options.checkpoint.path.empty()) {
     return {};
@@ -44,6 +44,7 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
           {"the time step", volume.time ? Text(*volume.time) : "none"},
           {"the model", Text(DescriptionToJson(model.description))},
           {"the parameters to start from (checksum)", Text(ChecksumOf(options.start))},
+          {"the number of processes", Text(processes)},
           {"the kernel family", model.training->kernel},
           {"Seed", Text(options.seed)},
           {"TargetPSNR", Text(options.targetPsnr)},

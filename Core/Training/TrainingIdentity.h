@@ -12,6 +12,6 @@ namespace inr {
 /// the values at the estimate's voxels. Its texts are ASCII. Empty when the options ask for no
 /// checkpoint.
 TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
-                            const PsnrEstimate& estimate);
+                            const PsnrEstimate& estimate, int processes);
 
 } // namespace inr

@@ -44,7 +44,8 @@ void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const Psn
   try {
     this->train(descent, batches, estimate, kernel);
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::InvalidModel) { // diverged: nothing to go on from
+    // After a divergence there is nothing to go on from.
+    if (error.code() == ErrorCode::InvalidModel || this->Group.rank() > 0) {
       throw;
     }
     throw Error(error.code(),
@@ -71,7 +72,7 @@ void TrainingLoop::train(GradientDescent& descent, BatchSource& batches,
                          const PsnrEstimate& estimate, const EvaluateKernel& kernel)
 {
   const StopCheck check([&] { return this->keepGoing(descent.steps()); });
-  while (!this->reachedLimit(descent.steps())) {
+  while (this->goesOn(descent)) {
     const std::optional<double> loss = descent.step(batches, check);
     if (!loss) { // the time is up, and the step was dropped
       break;
@@ -81,7 +82,7 @@ void TrainingLoop::train(GradientDescent& descent, BatchSource& batches,
       break;
     }
     this->planByTheClock(descent);
-    this->report(descent.steps());
+    this->Group.together([&] { this->report(descent.steps()); });
     if (this->Keeper.isDue()) {
       this->Keeper.write(this->state(descent, false), descent.state());
     }
@@ -106,20 +107,58 @@ void TrainingLoop::finish(GradientDescent& descent)
   }
 }
 
+/// As rank 0 says.
+bool TrainingLoop::goesOn(GradientDescent& descent)
+{
+  struct Decision
+  {
+    bool goesOn;
+    std::uint64_t plannedSteps;
+  };
+  const Decision decision =
+      this->Group.valueOfFirst(Decision{!this->reachedLimit(descent.steps()), this->PlannedSteps});
+  if (decision.plannedSteps != this->PlannedSteps) {
+    this->plan(descent, decision.plannedSteps);
+  }
+  return decision.goesOn;
+}
+
 void TrainingLoop::resume(GradientDescent& descent)
 {
-  const std::optional<TrainingState> before = this->Keeper.resume(descent.state());
-  if (!before) {
+  struct Before
+  {
+    bool known;
+    TrainingState state;
+  };
+  const std::optional<TrainingState> mine = this->Keeper.resume(descent.state());
+  const Before before =
+      this->Group.valueOfFirst(Before{mine.has_value(), mine.value_or(TrainingState())});
+  if (!before.known) {
     return;
   }
-  descent.goOnAfter(before->steps);
-  if (before->plannedSteps > 0) {
-    this->plan(descent, before->plannedSteps);
+  this->shareArrays(descent.state());
+  descent.goOnAfter(before.state.steps);
+  if (before.state.plannedSteps > 0) {
+    this->plan(descent, before.state.plannedSteps);
   }
-  this->Clock = TrainingClock(before->seconds);
-  this->LastReport = before->seconds;
-  this->Psnr = before->psnr;
-  this->Finished = before->finished;
+  this->Clock = TrainingClock(before.state.seconds);
+  this->LastReport = before.state.seconds;
+  this->Psnr = before.state.psnr;
+  this->Finished = before.state.finished;
+}
+
+/// Gives all what rank 0 has read.
+void TrainingLoop::shareArrays(const StateArrays& arrays) const
+{
+  constexpr std::int64_t pieceSize = 1 << 24;
+  for (const StateArray& array : arrays) {
+    for (std::int64_t done = 0; done<array.bytes&& this->Group.size()> 1; done += pieceSize) {
+      char* const piece = static_cast<char*>(array.data) + done;
+      const auto bytes = static_cast<std::size_t>(std::min(pieceSize, array.bytes - done));
+      const std::string first = this->Group.fromFirst(std::string(piece, bytes));
+      std::copy(first.begin(), first.end(), piece);
+    }
+  }
 }
 
 TrainingState TrainingLoop::state(const GradientDescent& descent, bool finished) const
@@ -137,7 +176,7 @@ void TrainingLoop::plan(GradientDescent& descent, std::uint64_t steps)
 void TrainingLoop::planByTheClock(GradientDescent& descent)
 {
   const double share = this->Clock.seconds() / this->Options.timeLimit;
-  if (this->PlannedSteps > 0 || share < TimingShare) {
+  if (this->PlannedSteps > 0 || share < TimingShare || this->Group.rank() > 0) {
     return;
   }
   auto steps = static_cast<std::uint64_t>(static_cast<double>(descent.steps()) / share);
@@ -165,8 +204,8 @@ bool TrainingLoop::reachedTarget(const GradientDescent& descent, const PsnrEstim
   if (this->Options.targetPsnr <= 0 || descent.steps() % PsnrInterval != 0) {
     return false;
   }
-  this->Psnr = estimate.measure(descent.view(), kernel, check);
-  return this->Psnr >= this->Options.targetPsnr + this->storingLoss();
+  this->Group.together([&] { this->Psnr = estimate.measure(descent.view(), kernel, check); });
+  return this->Group.valueOfFirst(this->Psnr >= this->Options.targetPsnr + this->storingLoss());
 }
 
 bool TrainingLoop::timeIsUp() const

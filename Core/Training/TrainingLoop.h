@@ -19,9 +19,10 @@ constexpr double TrainingShare = 0.9;
 class TrainingLoop
 {
 public:
+  /// In a group rank 0 decides when to stop and what the plan is, and has the checkpoint.
   TrainingLoop(const TrainingOptions& options, const TrainingObserver& observer,
-               CheckpointKeeper& keeper)
-      : Options(options), Observer(observer), Keeper(keeper)
+               CheckpointKeeper& keeper, const TrainingGroup& group)
+      : Options(options), Observer(observer), Keeper(keeper), Group(group)
   {}
 
   /// Throws what TrainModel says of training itself. The checkpoint is written between steps and
@@ -37,6 +38,8 @@ public:
 private:
   void planAhead(GradientDescent& descent);
   void resume(GradientDescent& descent);
+  void shareArrays(const StateArrays& arrays) const;
+  bool goesOn(GradientDescent& descent);
   void train(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
              const EvaluateKernel& kernel);
   void finish(GradientDescent& descent);
@@ -55,6 +58,7 @@ private:
   const TrainingOptions& Options;
   const TrainingObserver& Observer;
   CheckpointKeeper& Keeper;
+  const TrainingGroup& Group;
   TrainingClock Clock;
   bool Finished = false;          ///< before it was stopped
   std::uint64_t PlannedSteps = 0; ///< 0 until there is a plan

@@ -49,6 +49,13 @@ void RoundAsStored(Model& model)
   }
 }
 
+/// One that all processes have: the same gradients then lead to the same parameters.
+InstructionSet CommonInstructionSet(const std::string& kernel, const TrainingGroup& group)
+{
+  const std::vector<InstructionSet> all = group.valuesOfAll(ChooseInstructionSet(kernel));
+  return *std::min_element(all.begin(), all.end());
+}
+
 } // namespace
 
 void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options)
@@ -81,8 +88,10 @@ std::int64_t BandSize(const Description& description)
 }
 
 TrainingRun::TrainingRun(const VolumeInfo& info, const VolumeStatistics& statistics,
-                         const TrainingOptions& options, const TrainingObserver& observer)
-    : Options(options), Observer(observer), Set(ChooseInstructionSet(options.kernel)),
+                         const TrainingOptions& options, const TrainingObserver& observer,
+                         const TrainingGroup* group)
+    : Options(options), Observer(observer), Together(group),
+      Set(CommonInstructionSet(options.kernel, this->group())),
       MacroCellSize(MacroCellSizeOf(info, options))
 {
   if (!statistics.hasValues()) {
@@ -138,8 +147,11 @@ void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, cons
   Model& model = this->Result;
   GradientDescent descent(model.description, this->Options.seed, this->Set, arena);
   StartFrom(this->Options.start, model, descent);
-  CheckpointKeeper keeper(this->Options.checkpoint, IdentityOf(model, this->Options, estimate));
-  TrainingLoop loop(this->Options, this->Observer, keeper);
+  descent.share(this->group());
+  const bool first = this->group().rank() == 0;
+  CheckpointKeeper keeper(first ? this->Options.checkpoint : CheckpointOptions(),
+                          IdentityOf(model, this->Options, estimate, this->group().size()));
+  TrainingLoop loop(this->Options, this->Observer, keeper, this->group());
   loop.run(descent, batches, estimate, EvaluateKernelFor(this->Set));
   model.training->steps = descent.steps();
   model.training->plannedSteps = loop.plannedSteps();

@@ -4,6 +4,7 @@
 #include "Core/Training/BatchSource.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Trainer.h"
+#include "Core/Training/TrainingGroup.h"
 
 #include <cstdint>
 #include <memory>
@@ -15,9 +16,11 @@ namespace inr {
 class TrainingRun
 {
 public:
-  /// Throws what TrainModel says of its arguments. All of them must outlive this.
+  /// Throws what TrainModel says of its arguments. All of them must outlive this. In a group all
+  /// have the same arguments; rank 0 has the checkpoint.
   TrainingRun(const VolumeInfo& info, const VolumeStatistics& statistics,
-              const TrainingOptions& options, const TrainingObserver& observer);
+              const TrainingOptions& options, const TrainingObserver& observer,
+              const TrainingGroup* group = nullptr);
 
   const Description& description() const { return this->Result.description; }
   int macroCellSize() const { return this->MacroCellSize; }
@@ -36,9 +39,12 @@ public:
 
 private:
   StopCheck storingCheck() const;
+  const TrainingGroup& group() const { return this->Together ? *this->Together : this->Alone; }
 
   const TrainingOptions& Options;
   const TrainingObserver& Observer;
+  TrainingGroup Alone;
+  const TrainingGroup* Together; ///< null = alone
   InstructionSet Set;
   int MacroCellSize;
   Model Result;

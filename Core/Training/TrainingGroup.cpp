@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/TrainingGroup.h"
+
+#include "Core/Error.h"
+
+#include <new>
+
+namespace inr {
+
+namespace {
+
+/// The error's code as a character, then its message.
+std::string Described(const Error& error)
+{
+  return static_cast<char>(error.code()) + std::string(error.what());
+}
+
+} // namespace
+
+std::string TrainingGroup::fromFirst(const std::string& bytes) const
+{
+  return this->gather(this->rank() == 0 ? bytes : std::string()).front();
+}
+
+void TrainingGroup::together(const std::function<void()>& work) const
+{
+  if (this->size() == 1) {
+    work();
+    return;
+  }
+  std::string mine; // empty = it went well
+  try {
+    work();
+  } catch (const Error& error) {
+    mine = Described(error);
+  } catch (const std::bad_alloc&) {
+    mine = Described(Error(ErrorCode::TooLarge, "there is not enough memory"));
+  }
+  const std::vector<std::string> all = this->gather(mine);
+  for (std::size_t rank = 0; rank < all.size(); ++rank) {
+    if (!all[rank].empty()) {
+      const std::string other = "process " + std::to_string(rank) + ": ";
+      throw Error(static_cast<ErrorCode>(all[rank][0]),
+                  (static_cast<int>(rank) == this->rank() ? "" : other) + all[rank].substr(1));
+    }
+  }
+}
+
+} // namespace inr
