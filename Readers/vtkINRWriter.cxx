@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRWriter.h"
 
+#include "ControllerGroup.h"
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelFile.h"
-#include "Core/Training/Trainer.h"
+#include "Core/Training/ParallelTraining.h"
 #include "MemoryCheck.h"
+#include "ParallelInput.h"
 #include "PipelineReader.h"
 #include "StepSequence.h"
 #include "StopSignals.h"
@@ -24,6 +26,7 @@
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkLogger.h>
+#include <vtkMultiProcessController.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -43,12 +46,14 @@ constexpr std::int64_t MiB = std::int64_t{1} << 20;
 class vtkINRWriter::Internals
 {
 public:
-  StepSequence Steps;         ///< those of WriteTimeSteps
-  std::string Problem;        ///< why there are none
-  std::string Target;         ///< the file that is being written
-  WholeImage Whole;           ///< the input
-  bool InPieces = false;      ///< whether it is read so
-  std::string WholeReader;    ///< the class of a reader that must not be asked for pieces
+  StepSequence Steps;      ///< those of WriteTimeSteps
+  std::string Problem;     ///< why there are none
+  std::string Target;      ///< the file that is being written
+  WholeImage Whole;        ///< the input
+  bool InPieces = false;   ///< whether it is read so
+  std::string WholeReader; ///< the class of a reader that must not be asked for pieces
+  vtkSmartPointer<vtkMultiProcessController> Controller =
+      vtkMultiProcessController::GetGlobalController();
   inr::ModelPointer Previous; ///< what was written last, if it is of a time step
 };
 
@@ -132,6 +137,11 @@ void vtkINRWriter::PlanReading(vtkInformation* input)
   if (whole.dims.x * whole.dims.y * whole.dims.z == 0) {
     return;
   }
+  const ControllerGroup group(this->Internal->Controller);
+  if (group.size() > 1) {
+    RequestPiece(input, whole, FindWholeFileReader(this).empty(), group);
+    return;
+  }
   const auto limit = static_cast<double>(this->MemoryLimitInBytes());
   const bool isLarge = whole.bytes > limit / 2 && !whole.isInMemory;
   this->Internal->WholeReader = isLarge ? FindWholeFileReader(this) : std::string();
@@ -154,8 +164,10 @@ void vtkINRWriter::WriteData()
     this->WriteInput(signals);
   } catch (const std::exception& error) { // inr::Error, or no memory
     this->SetErrorCode(vtkErrorCode::UserError);
-    vtkErrorMacro("Cannot save '" << fileName
-                                  << "' as an implicit neural representation: " << error.what());
+    if (ControllerGroup(this->Internal->Controller).rank() == 0) { // others say the same
+      vtkErrorMacro("Cannot save '" << fileName
+                                    << "' as an implicit neural representation: " << error.what());
+    }
   }
 }
 
@@ -173,15 +185,25 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
     const std::string suffix = this->FileNameSuffix ? this->FileNameSuffix : "";
     fileName = StepFileName(fileName, suffix, steps.number());
   }
-  TrainingInput input = this->FindInput(this->GetInput());
+  const ControllerGroup group(this->Internal->Controller);
+  ParallelInput input;
+  if (group.size() > 1) {
+    input = FindPiece(
+        this->GetInput(), this->Internal->Whole,
+        [this](vtkDataObject* data) { return this->FindInput(data); }, group);
+  } else {
+    input.input = this->FindInput(this->GetInput());
+  }
   if (!steps.isEmpty()) {
-    input.info.time = steps.time();
+    input.input.info.time = steps.time();
   }
-  {
-    // Learn that the target is not writable now, not after minutes of training.
-    const inr::AtomicFile attempt(fileName);
-  }
-  this->Train(input, signals);
+  group.together([&] {
+    if (group.rank() == 0) {
+      // Learn that the target is not writable now, not after minutes of training.
+      const inr::AtomicFile attempt(fileName);
+    }
+  });
+  this->Train(input, signals, group);
 }
 
 TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
@@ -272,9 +294,12 @@ inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
   return inr::TrainModel(reader, first.info, options, observe);
 }
 
-void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
+void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
+                         const ControllerGroup& group)
 {
+  const TrainingInput& input = given.input;
   inr::TrainingOptions options = this->MakeOptions();
+  options.threads = group.threads();
   options.start = this->FindStart(input.info);
   this->Internal->Previous = nullptr;
   TrainingCheckpoint checkpoint(this, this->Internal->Target, this->CheckpointInterval,
@@ -293,9 +318,16 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
   };
   inr::ModelPointer model;
   try {
-    model = this->Internal->InPieces ? this->TrainInPieces(input, options, observe)
-                                     : inr::TrainModel(input.data, input.info, options, observe);
-    this->KeepResult(*model, inr::WriteModel(*model, this->Internal->Target));
+    if (group.size() > 1) {
+      model = inr::TrainModel(given.piece(), input.info, options, group, observe);
+    } else {
+      model = this->Internal->InPieces ? this->TrainInPieces(input, options, observe)
+                                       : inr::TrainModel(input.data, input.info, options, observe);
+    }
+    vtkIdType bytes = 0;
+    group.together(
+        [&] { bytes = group.rank() == 0 ? inr::WriteModel(*model, this->Internal->Target) : 0; });
+    this->KeepResult(*model, group.valueOfFirst(bytes));
   } catch (const inr::Error& error) {
     checkpoint.tell();
     throw checkpoint.complete(error);
@@ -304,11 +336,21 @@ void vtkINRWriter::Train(const TrainingInput& input, const StopSignals& signals)
   checkpoint.remove();
   this->UpdateProgress(this->Internal->Steps.progress(1.0));
   this->Internal->Previous = model->volume.time ? model : nullptr;
-  if (model->training->nonFinite > 0) {
+  if (model->training->nonFinite > 0 && group.rank() == 0) {
     vtkWarningMacro("Array '" << input.info.arrayName << "' has " << model->training->nonFinite
                               << " NaN or infinite values; they were left out of the training.");
   }
 }
+
+void vtkINRWriter::SetController(vtkMultiProcessController* controller)
+{
+  if (this->Internal->Controller != controller) {
+    this->Internal->Controller = controller;
+    this->Modified();
+  }
+}
+
+vtkMultiProcessController* vtkINRWriter::GetController() { return this->Internal->Controller; }
 
 void vtkINRWriter::ForgetResult()
 {
@@ -327,6 +369,9 @@ void vtkINRWriter::KeepResult(const inr::Model& model, vtkIdType fileSize)
   this->Ratio = bytes / static_cast<double>(fileSize);
   this->Steps = static_cast<vtkIdType>(model.training->steps);
   this->TrainingSeconds = model.training->seconds;
+  if (ControllerGroup(this->Internal->Controller).rank() > 0) {
+    return; // the first one says so
+  }
   vtkLog(INFO, << this->Internal->Target << ": PSNR " << this->PSNR << " dB, SSIM " << this->SSIM
                << ", largest error " << this->MaximumError << ", ratio " << this->Ratio << ", "
                << this->Steps << " steps in " << this->TrainingSeconds << " s");

@@ -34,7 +34,10 @@
 #include <memory>     // for Internals
 #include <string>     // for messages
 
+class ControllerGroup;
 class StopSignals;
+class vtkMultiProcessController;
+struct ParallelInput;
 struct TrainingInput;
 namespace inr {
 struct Model;
@@ -189,6 +192,16 @@ public:
   ///@}
 
   ///@{
+  /// The processes that train together, each on the piece of the image that it holds, where there
+  /// are several: n processes give the model of one whose mini-batches are n times as large. All of
+  /// them call Write and hold their pieces in memory, whatever MemoryLimit says; the first one
+  /// writes the file. Default: the global controller; null = this
+  /// process alone.
+  void SetController(vtkMultiProcessController* controller);
+  vtkMultiProcessController* GetController();
+  ///@}
+
+  ///@{
   /// What the last Write achieved: quality against the data (PSNR in dB, infinite when exact),
   /// bytes of the data over bytes of the file, steps and seconds of training. 0 before.
   vtkGetMacro(PSNR, double);
@@ -225,7 +238,7 @@ private:
   TrainInPieces(const TrainingInput& first, const inr::TrainingOptions& options,
                 const std::function<bool(const inr::TrainingProgress&)>& observe);
   std::shared_ptr<const inr::Model> FindStart(const inr::VolumeInfo& volume) const;
-  void Train(const TrainingInput& input, const StopSignals& signals);
+  void Train(const ParallelInput& input, const StopSignals& signals, const ControllerGroup& group);
   void ForgetResult();
   void KeepResult(const inr::Model& model, vtkIdType fileSize);
 

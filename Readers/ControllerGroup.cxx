@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ControllerGroup.h"
+
+#include "Core/Error.h"
+#include "Core/Parallel.h"
+
+#include <vtkMultiProcessController.h>
+
+#include <algorithm>
+
+namespace {
+
+constexpr vtkIdType PieceSize = vtkIdType{1} << 22;
+
+void RequireReached(int result)
+{
+  if (result == 0) {
+    throw inr::Error(inr::ErrorCode::CannotRead, "the other processes cannot be reached");
+  }
+}
+
+} // namespace
+
+ControllerGroup::ControllerGroup(vtkMultiProcessController* controller)
+    : Controller(controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr)
+{}
+
+int ControllerGroup::rank() const
+{
+  return this->Controller ? this->Controller->GetLocalProcessId() : 0;
+}
+
+int ControllerGroup::size() const
+{
+  return this->Controller ? this->Controller->GetNumberOfProcesses() : 1;
+}
+
+std::vector<std::string> ControllerGroup::gather(const std::string& bytes) const
+{
+  if (!this->Controller) {
+    return {bytes};
+  }
+  const auto own = static_cast<vtkIdType>(bytes.size());
+  std::vector<vtkIdType> lengths(static_cast<std::size_t>(this->size()));
+  RequireReached(this->Controller->AllGather(&own, lengths.data(), 1));
+  std::vector<std::string> parts(lengths.size());
+  const vtkIdType longest = *std::max_element(lengths.begin(), lengths.end());
+  for (vtkIdType begin = 0; begin < longest; begin += PieceSize) {
+    this->gatherPiece(bytes, begin, lengths, parts);
+  }
+  return parts;
+}
+
+/// Of all that have so many bytes the next ones: MPI counts in 32 bits.
+void ControllerGroup::gatherPiece(const std::string& bytes, vtkIdType begin,
+                                  const std::vector<vtkIdType>& lengths,
+                                  std::vector<std::string>& parts) const
+{
+  std::vector<vtkIdType> counts;
+  std::vector<vtkIdType> offsets;
+  vtkIdType total = 0;
+  for (const vtkIdType length : lengths) {
+    counts.push_back(std::clamp<vtkIdType>(length - begin, 0, PieceSize));
+    offsets.push_back(total);
+    total += counts.back();
+  }
+  std::string all(static_cast<std::size_t>(total), '\0');
+  const vtkIdType count = counts[static_cast<std::size_t>(this->rank())];
+  const char* const mine = bytes.data() + std::min(begin, static_cast<vtkIdType>(bytes.size()));
+  RequireReached(
+      this->Controller->AllGatherV(mine, all.data(), count, counts.data(), offsets.data()));
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    parts[k].append(all, static_cast<std::size_t>(offsets[k]), static_cast<std::size_t>(counts[k]));
+  }
+}
+
+int ControllerGroup::threads() const
+{
+  if (!this->Controller) {
+    return 0;
+  }
+  const std::uint64_t own = inr::AvailableCoresKey();
+  const std::vector<std::uint64_t> keys = this->valuesOfAll(own);
+  const auto sharers = static_cast<int>(std::count(keys.begin(), keys.end(), own));
+  return std::max(1, inr::AvailableCores() / sharers);
+}

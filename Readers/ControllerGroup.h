@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Training/TrainingGroup.h"
+
+#include <vtkType.h>
+
+#include <string>
+#include <vector>
+
+class vtkMultiProcessController;
+
+/// The processes of a VTK program that runs in several.
+class ControllerGroup : public inr::TrainingGroup
+{
+public:
+  /// Without a controller, or with one of a single process, a group of one.
+  explicit ControllerGroup(vtkMultiProcessController* controller);
+
+  int rank() const override;
+  int size() const override;
+  std::vector<std::string> gather(const std::string& bytes) const override;
+
+  /// For this process, so that those on the same machine share its cores; 0 (= all) when alone.
+  int threads() const;
+
+private:
+  void gatherPiece(const std::string& bytes, vtkIdType begin, const std::vector<vtkIdType>& lengths,
+                   std::vector<std::string>& parts) const;
+
+  vtkMultiProcessController* Controller; ///< null = alone
+};

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ParallelInput.h"
+
+#include "Core/Error.h"
+
+#include <vtkDataArray.h>
+#include <vtkExtentTranslator.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkNew.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <algorithm>
+#include <array>
+
+namespace {
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+bool IsEmpty(const int* extent)
+{
+  return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+}
+
+bool Contains(const int* outer, const int* inner)
+{
+  return outer[0] <= inner[0] && outer[1] >= inner[1] && outer[2] <= inner[2] &&
+         outer[3] >= inner[3] && outer[4] <= inner[4] && outer[5] >= inner[5];
+}
+
+/// As VTK cuts an image for the processes of the group; empty for those that are too many.
+std::array<int, 6> PieceExtent(const WholeImage& whole, const ControllerGroup& group)
+{
+  std::array<int, 6> extent = {0, -1, 0, -1, 0, -1};
+  int wholeExtent[6];
+  std::copy_n(whole.extent, 6, wholeExtent);
+  vtkNew<vtkExtentTranslator> translator;
+  translator->PieceToExtentThreadSafe(group.rank(), group.size(), 0, wholeExtent, extent.data(),
+                                      vtkExtentTranslator::BLOCK_MODE, 0);
+  return extent;
+}
+
+/// The process' piece of what it has got, which may be all that there is; null where it has none.
+vtkSmartPointer<vtkImageData> PieceOf(vtkImageData* image, const WholeImage& whole,
+                                      const ControllerGroup& group)
+{
+  const std::array<int, 6> wanted = PieceExtent(whole, group);
+  const bool hasAll = Contains(image->GetExtent(), whole.extent);
+  if (image->GetNumberOfPoints() == 0 || (hasAll && IsEmpty(wanted.data()))) {
+    return nullptr;
+  }
+  auto piece = vtkSmartPointer<vtkImageData>::New();
+  piece->ShallowCopy(image);
+  if (!IsEmpty(wanted.data()) && Contains(image->GetExtent(), wanted.data())) {
+    piece->Crop(wanted.data()); // nothing is copied where the extents are the same
+  }
+  return piece;
+}
+
+/// What the first process knows of the whole, the others learn.
+void ShareInfo(inr::VolumeInfo& info, const ControllerGroup& group)
+{
+  info.type = group.valueOfFirst(info.type);
+  info.dims = group.valueOfFirst(info.dims);
+  info.arrayName = group.fromFirst(info.arrayName);
+  const double time = group.valueOfFirst(info.time.value_or(0.0));
+  info.time =
+      group.valueOfFirst(info.time.has_value()) ? std::optional<double>(time) : std::nullopt;
+}
+
+} // namespace
+
+void RequestPiece(vtkInformation* input, const WholeImage& whole, bool inParts,
+                  const ControllerGroup& group)
+{
+  std::array<int, 6> extent = PieceExtent(whole, group);
+  if (!inParts) {
+    std::copy_n(whole.extent, 6, extent.begin());
+  }
+  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), inParts ? group.rank() : 0);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), inParts ? group.size() : 1);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  input->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+}
+
+ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
+                        const std::function<TrainingInput(vtkDataObject*)>& find,
+                        const ControllerGroup& group)
+{
+  ParallelInput found;
+  inr::VolumeInfo& info = found.input.info;
+  group.together([&] {
+    auto* image = vtkImageData::SafeDownCast(data);
+    const vtkSmartPointer<vtkImageData> piece = image ? PieceOf(image, whole, group) : nullptr;
+    if (!piece) {
+      if (!image || group.rank() == 0) {
+        find(data); // says what is wrong with it
+      }
+      return; // more processes than the image can be cut for
+    }
+    found.input = find(piece);
+    const int* const extent = piece->GetExtent();
+    for (int axis = 0; axis < 3; ++axis) {
+      found.first[axis] = std::int64_t{extent[2 * axis]} - whole.extent[2 * axis];
+    }
+    info.dims = whole.dims;
+    piece->TransformIndexToPhysicalPoint(whole.extent[0], whole.extent[2], whole.extent[4],
+                                         &info.origin.x);
+  });
+  ShareInfo(info, group);
+  group.together([&] {
+    if (found.input.values && found.input.data.type != info.type) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument,
+                       "array '" + info.arrayName + "' holds " +
+                           inr::ScalarName(found.input.data.type) + " here and " +
+                           inr::ScalarName(info.type) + " in the first process");
+    }
+  });
+  return found;
+}
