@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace {
 
@@ -40,19 +41,27 @@ std::array<int, 6> PieceExtent(const WholeImage& whole, const ControllerGroup& g
   return extent;
 }
 
-/// The process' piece of what it has got, which may be all that there is; null where it has none.
-vtkSmartPointer<vtkImageData> PieceOf(vtkImageData* image, const WholeImage& whole,
-                                      const ControllerGroup& group)
+/// Whether all processes of the group have what VTK would cut for them, or more. Those of a
+/// simulation have cut the image in their own way.
+bool IsCutByVTK(vtkImageData* image, const int* wanted, const ControllerGroup& group)
 {
-  const std::array<int, 6> wanted = PieceExtent(whole, group);
-  const bool hasAll = Contains(image->GetExtent(), whole.extent);
-  if (image->GetNumberOfPoints() == 0 || (hasAll && IsEmpty(wanted.data()))) {
+  const bool here = IsEmpty(wanted) || (image && Contains(image->GetExtent(), wanted));
+  const std::vector<int> all = group.valuesOfAll(static_cast<int>(here));
+  return std::count(all.begin(), all.end(), 0) == 0;
+}
+
+/// The process' piece of what it has got, which may be all that there is; null where it has none.
+vtkSmartPointer<vtkImageData> PieceOf(vtkImageData* image, const int* wanted, bool cut)
+{
+  if (image->GetNumberOfPoints() == 0 || (cut && IsEmpty(wanted))) {
     return nullptr;
   }
   auto piece = vtkSmartPointer<vtkImageData>::New();
   piece->ShallowCopy(image);
-  if (!IsEmpty(wanted.data()) && Contains(image->GetExtent(), wanted.data())) {
-    piece->Crop(wanted.data()); // nothing is copied where the extents are the same
+  if (cut) {
+    int extent[6];
+    std::copy_n(wanted, 6, extent);
+    piece->Crop(extent); // nothing is copied where the extents are the same
   }
   return piece;
 }
@@ -89,9 +98,12 @@ ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
 {
   ParallelInput found;
   inr::VolumeInfo& info = found.input.info;
+  auto* const image = vtkImageData::SafeDownCast(data);
+  const std::array<int, 6> wanted = PieceExtent(whole, group);
+  const bool cut = IsCutByVTK(image, wanted.data(), group);
   group.together([&] {
-    auto* image = vtkImageData::SafeDownCast(data);
-    const vtkSmartPointer<vtkImageData> piece = image ? PieceOf(image, whole, group) : nullptr;
+    const vtkSmartPointer<vtkImageData> piece =
+        image ? PieceOf(image, wanted.data(), cut) : nullptr;
     if (!piece) {
       if (!image || group.rank() == 0) {
         find(data); // says what is wrong with it

@@ -7,23 +7,17 @@ import os
 
 from paraview import catalyst
 from paraview.simple import CreateExtractor, LoadPlugin, TrivialProducer
-from paraview.vtk.vtkParallelCore import vtkMultiProcessController
 
 LoadPlugin(
     os.environ.get("INR_PLUGIN", "build/lib/paraview-5.11/plugins/INRVolume/INRVolume.so"),
     remote=False, ns=globals(),
 )
 
-# Each process saves the part of the grid that it has, in a file of its own: nothing is sent around.
-controller = vtkMultiProcessController.GetGlobalController()
-parallel = controller.GetNumberOfProcesses() > 1
-part = f"_part{controller.GetLocalProcessId()}" if parallel else ""
-
 grid = TrivialProducer(registrationName="grid")
 model = CreateExtractor("INR", grid, registrationName="model")
 model.Trigger = "TimeStep"
 model.Trigger.Frequency = int(os.environ.get("INR_EVERY", 500))
-model.Writer.FileName = f"grid_{{timestep:06d}}{part}.inr"
+model.Writer.FileName = "grid_{timestep:06d}.inr"
 model.Writer.Scalars = ["POINTS", "V"]
 model.Writer.MaximumSteps = int(os.environ.get("INR_STEPS", 1000))
 
