@@ -3,6 +3,7 @@
 // Many frames in a row, each within its time: what a user sees while the cache fills.
 //
 //   bench_flight MODEL.inr NAME flight FRAMES     through a volume of 4096^3: memory and holes
+//   bench_flight MODEL.inr NAME tour FRAMES       the same through the model's own voxels, 2 GiB
 //   bench_flight MODEL.inr NAME protocol FRAMES   one view of the volume scaled by 4: frame times
 //
 // prints one JSON object per line; flight.py writes the result file.
@@ -57,13 +58,21 @@ std::int64_t Holes(const inr::Image& picture, const inr::FrameStatistics& statis
   return statistics.rays - seen;
 }
 
-void Fly(const inr::ModelPointer& model, const std::string& name, int frames)
+/// Share of the samples that came from the level they asked for.
+double HitRate(const inr::FrameStatistics& statistics)
 {
-  const inr::ModelPointer large = Scaled(model, glm::i64vec3(4096));
+  const auto samples = static_cast<double>(std::max<std::int64_t>(statistics.samples, 1));
+  return 1 - static_cast<double>(statistics.missed) / samples;
+}
+
+void Fly(const inr::ModelPointer& large, std::int64_t cacheBytes, const std::string& name,
+         int frames)
+{
   inr::RendererOptions options = Cached();
-  options.cache.bytes = std::int64_t{64} << 20; // fills on the way
+  options.cache.bytes = cacheBytes;
   inr::Renderer renderer(large, options);
   renderer.setTransferFunction(Looks(large->volume)[1].function);
+  double hits = 0;
   double warm = 0;
   double most = 0;
   std::int64_t holes = 0;
@@ -74,6 +83,7 @@ void Fly(const inr::ModelPointer& model, const std::string& name, int frames)
         renderer.render(Waypoint(large->volume, static_cast<double>(k) / frames), picture);
     seconds.push_back(statistics.seconds);
     holes += Holes(picture, statistics) > 0 ? 1 : 0;
+    hits += HitRate(statistics) / frames;
     const double memory = ResidentMebibytes();
     warm = k < frames / 4 ? std::max(warm, memory) : warm;
     most = std::max(most, memory);
@@ -86,6 +96,7 @@ void Fly(const inr::ModelPointer& model, const std::string& name, int frames)
   Report("frames with a hole" + where, static_cast<double>(holes), "", "lower", Target(0));
   Report("largest memory" + where, most, "MiB", "lower");
   Report("growth of memory after a quarter" + where, most - warm, "MiB", "lower");
+  Report("mean hit rate" + where, hits, "", "higher");
   Report("median frame" + where, 1000 * seconds[seconds.size() / 2], "ms", "lower");
   Report("slowest of a hundred" + where, 1000 * seconds[seconds.size() * 99 / 100], "ms", "lower");
 }
@@ -116,8 +127,7 @@ void Watch(const inr::ModelPointer& model, const Look& look, const std::string& 
     inr::Image picture;
     const inr::FrameStatistics statistics = renderer.render(frame, picture);
     march.push_back(1000 * statistics.marchSeconds);
-    const auto samples = static_cast<double>(std::max<std::int64_t>(statistics.samples, 1));
-    hits.push_back(1 - static_cast<double>(statistics.missed) / samples);
+    hits.push_back(HitRate(statistics));
     last += k >= frames - counted ? march.back() / counted : 0.0;
   }
   const std::string where = ", " + what + ", " + look.name + " x4, " + name;
@@ -147,11 +157,17 @@ int main(int argc, char* argv[])
 {
   const std::string mode = argc == 5 ? argv[3] : "";
   const int frames = argc == 5 ? std::atoi(argv[4]) : 0;
-  if ((mode != "flight" && mode != "protocol") || frames < 1) {
-    std::cerr << "usage: bench_flight MODEL.inr NAME flight|protocol FRAMES\n";
+  if ((mode != "flight" && mode != "tour" && mode != "protocol") || frames < 1) {
+    std::cerr << "usage: bench_flight MODEL.inr NAME flight|tour|protocol FRAMES\n";
     return 2;
   }
   const inr::ModelPointer model = inr::ReadModel(argv[1]);
-  mode == "flight" ? Fly(model, argv[2], frames) : RunProtocol(model, argv[2], frames);
+  if (mode == "flight") { // with a cache that fills on the way
+    Fly(Scaled(model, glm::i64vec3(4096)), std::int64_t{64} << 20, argv[2], frames);
+  } else if (mode == "tour") {
+    Fly(model, std::int64_t{2} << 30, argv[2], frames);
+  } else {
+    RunProtocol(model, argv[2], frames);
+  }
   return 0;
 }

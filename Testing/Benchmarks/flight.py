@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs bench_flight for one or more models and writes flight.json or protocol.json.
+"""Runs bench_flight for one or more models and writes flight.json, tour.json or protocol.json.
 
     cmake --preset core -DINR_BUILD_BENCHMARKS=ON && cmake --build --preset core
-    Testing/Benchmarks/flight.py build-core/Testing/Benchmarks flight|protocol FRAMES NAME=MODEL.inr...
+    Testing/Benchmarks/flight.py build-core/Testing/Benchmarks flight|tour|protocol FRAMES NAME=MODEL.inr...
 """
 import json
 import subprocess
@@ -21,7 +21,7 @@ for argument in sys.argv[4:]:
     for line in run.stdout.splitlines():
         result = json.loads(line)
         result["value"] = float(f"{result['value']:.4g}")
-        result["note"] = "2 threads, " + ("192x192" if mode == "flight" else "512x512")
+        result["note"] = "2 threads, " + ("512x512" if mode == "protocol" else "192x192")
         results.append(result)
         print(f"{result['name']}: {result['value']} {result['unit']}", flush=True)
 results_file.write(mode, results)
