@@ -85,6 +85,7 @@ def raw_file():
     model = folder / "raw.inr"
     run = train(model, "ImageReader",
                 {"FileNames": [str(data)], "DataScalarType": "float", "FileDimensionality": 3,
+                 "DataByteOrder": "LittleEndian",
                  "DataExtent": [0, 2047] * 3},
                 MemoryLimit=1024, MaximumSteps=STEPS, TimeLimit=0, ModelConfig=MODEL)
     streamed = truth(model)
