@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* Usage =
     "usage: channel_truth MODEL.inr [--voxels 100000000] [--draw 1] [--threads 0]\n"
-    "                     [--seed 1] [--octaves 6] [--intensity 0.14] [--time 0]\n"
+    "                     [--seed 1] [--octaves 6] [--intensity 0.06] [--time 0]\n"
     "The second line names the field as turbulent_channel and TurbulentChannel do; --draw is the\n"
     "seed of the random voxels.\n";
 

@@ -18,7 +18,7 @@ namespace inr {
 /// unit cube, so that the field is the same at any resolution; the channel it stands for measures
 /// `Size` half-heights. Structures are longer in x than across, lean downstream, and are finer and
 /// smaller near the walls, where they vanish. Values are in units of the mean velocity in the
-/// middle, about -0.2 to 1.6.
+/// middle, about 0 to 1.3.
 class TurbulentChannel
 {
 public:
@@ -30,7 +30,7 @@ public:
     /// Octaves of wave numbers across the stream, from 2 per half-height on, 1 to 8. The smallest
     /// structures are 2 pi/2^(octaves + 1) half-heights wide: 40 voxels of 7,680 for 6 octaves.
     int octaves = 6;
-    double intensity = 0.14; ///< root mean square of the fluctuations where nothing damps them
+    double intensity = 0.06; ///< root mean square of the fluctuations where nothing damps them
     double time = 0;         ///< in half-heights over velocity in the middle
   };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* Usage =
     "usage: turbulent_channel NX NY NZ OUTPUT [--type float32] [--endian little]\n"
-    "                         [--seed 1] [--octaves 6] [--intensity 0.14] [--time 0]\n"
+    "                         [--seed 1] [--octaves 6] [--intensity 0.06] [--time 0]\n"
     "OUTPUT is a name ending in .mhd (MetaImage), whose voxels go into a .raw beside it, or - for\n"
     "the voxels on standard output. Types: float32, float64. Byte orders: little, big.\n";
 

@@ -47,7 +47,7 @@ public:
   ///@}
 
   ///@{
-  /// Root mean square of the fluctuations in mean velocities of the middle, 0 to 1; default 0.14.
+  /// Root mean square of the fluctuations in mean velocities of the middle, 0 to 1; default 0.06.
   vtkSetClampMacro(Intensity, double, 0, 1);
   vtkGetMacro(Intensity, double);
   ///@}
@@ -100,7 +100,7 @@ private:
   int Dimensions[3] = {256, 192, 64};
   int Seed = 1;
   int Octaves = 6;
-  double Intensity = 0.14;
+  double Intensity = 0.06;
   int OutputScalarType = VTK_FLOAT;
   int NumberOfTimeSteps = 1;
   double TimeStepSize = 0.05;
