@@ -25,10 +25,10 @@ KILLS = 20
 def main():
     with tempfile.TemporaryDirectory() as folder:
         training = Training(os.path.join(folder, "model.inr"), edge=96, steps=4000, interval=0.1)
-        good, differing = kill_often(training, KILLS, longest=3.0)
+        good, resumed, differing = kill_often(training, KILLS, longest=3.0)
         left = os.listdir(folder)
     note = (f"of {KILLS} kills of trainings of 96^3 voxels, {training.steps} steps, by MaximumSteps; "
-            f"{differing} bytes of the finished models' voxels differ, {len(left)} files are left")
+            f"{resumed} when there was a checkpoint, {differing} bytes of the finished models' voxels differ, {len(left)} files are left")
     good = good if differing == 0 and not left else 0
     results_file.write("kill-resume", [results_file.result(
         "kill resume OK", good, "kills", "higher", note, target=KILLS)])

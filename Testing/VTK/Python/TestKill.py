@@ -8,7 +8,7 @@ from killing import Training, kill_often
 
 with tempfile.TemporaryDirectory() as folder:
     training = Training(os.path.join(folder, "model.inr"), edge=40, steps=600, interval=0.02)
-    good, differing = kill_often(training, kills=3, longest=1.0)
-    print(f"{good} of 3 went on, {differing} bytes differ")
+    good, resumed, differing = kill_often(training, kills=3, longest=1.0)
+    print(f"{good} of 3 went on, {resumed} from a checkpoint, {differing} bytes differ")
     assert good == 3 and differing == 0
     assert os.listdir(folder) == [], os.listdir(folder)

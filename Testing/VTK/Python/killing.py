@@ -128,13 +128,14 @@ def live_and_die(training, longest, chance):
 
 def kill_often(training, kills, longest, seed=1):
     """Kills it so many times; a training that is done before begins again. Returns the number of
-    kills after which it went on from all that the checkpoint had; and the largest difference of a
-    finished model from one that was never killed, in bytes that differ."""
+    kills after which it went on from all that the checkpoint had, or anew where none was written
+    yet; the number of those that had one; and the largest difference of a finished model from one
+    that was never killed, in bytes that differ."""
     chance = random.Random(seed)
     training.finish()
     expected = training.decoded()
     os.remove(training.path)
-    good, killed, kept, differing = 0, 0, -1, 0
+    good, resumed, killed, kept, differing = 0, 0, 0, -1, 0
 
     def compare():
         nonlocal differing
@@ -146,9 +147,10 @@ def kill_often(training, kills, longest, seed=1):
         dead, messages = (False, training.finish()) if done else live_and_die(training, longest, chance)
         if killed and kept != "finished":
             good += steps_gone_on_from(messages) == kept
+            resumed += kept >= 0
         if done:
             compare()
-            return good, differing
+            return good, resumed, differing
         if not dead:
             compare()
             kept = "finished"
