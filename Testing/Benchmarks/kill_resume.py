@@ -28,7 +28,8 @@ def main():
         good, resumed, differing = kill_often(training, KILLS, longest=3.0)
         left = os.listdir(folder)
     note = (f"of {KILLS} kills of trainings of 96^3 voxels, {training.steps} steps, by MaximumSteps; "
-            f"{resumed} when there was a checkpoint, {differing} bytes of the finished models' voxels differ, {len(left)} files are left")
+            f"{resumed} when there was a checkpoint, {differing} bytes of the finished models' "
+            f"voxels differ, {len(left)} files are left")
     good = good if differing == 0 and not left else 0
     results_file.write("kill-resume", [results_file.result(
         "kill resume OK", good, "kills", "higher", note, target=KILLS)])
