@@ -35,7 +35,7 @@ std::string FindWholeFileReader(vtkAlgorithm* algorithm)
   }
   for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port) {
     for (int k = 0; k < algorithm->GetNumberOfInputConnections(port); ++k) {
-      const std::string found =
+      std::string found =
           FindWholeFileReader(algorithm->GetInputConnection(port, k)->GetProducer());
       if (!found.empty()) {
         return found;

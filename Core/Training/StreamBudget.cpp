@@ -6,6 +6,7 @@
 #include "Core/Training/BlockGrid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace inr {
@@ -51,13 +52,14 @@ Description FittingDescription(const VolumeInfo& info, const TrainingOptions& op
   if (options.description || options.targetRatio > 0) {
     return options.description.value_or(choose(options.targetRatio));
   }
-  constexpr double largestRatio = 1e12; // by then it is the smallest model
+  constexpr int fewestHalvings = 4;
+  constexpr int mostHalvings = 40; // by then it is the smallest model
   Description description = choose(0);
-  for (double ratio = 16; ratio < largestRatio; ratio *= 2) {
+  for (int halvings = fewestHalvings; halvings < mostHalvings; ++halvings) {
     if (TrainingBytes(description) <= options.memoryLimit / 2) {
       break; // half of the memory is left to the data
     }
-    description = choose(ratio);
+    description = choose(std::ldexp(1.0, halvings));
   }
   return description;
 }
