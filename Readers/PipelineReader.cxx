@@ -2,10 +2,12 @@
 #include "PipelineReader.h"
 
 #include "Core/Error.h"
+#include "Upstream.h"
 
 #include <vtkAbstractArray.h>
 #include <vtkAlgorithm.h>
 #include <vtkAlgorithmOutput.h>
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
@@ -72,14 +74,44 @@ WholeImage WholeImage::Of(vtkInformation* input)
   return image;
 }
 
+void WholeImage::ask(vtkInformation* input, bool onlyFirst) const
+{
+  Extent wanted{};
+  std::copy_n(this->extent, 6, wanted.begin());
+  for (std::size_t axis = 0; axis < 3 && onlyFirst; ++axis) {
+    wanted[2 * axis + 1] = wanted[2 * axis];
+  }
+  input->Set(Pipeline::UPDATE_EXTENT(), wanted.data(), 6);
+}
+
+PipelineReader::PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
+                               Finder finder)
+    : Consumer(consumer), Whole(whole), Type(finder(&first).data.type), Find(std::move(finder))
+{
+  for (vtkDataSetAttributes* data : {static_cast<vtkDataSetAttributes*>(first.GetPointData()),
+                                     static_cast<vtkDataSetAttributes*>(first.GetCellData())}) {
+    for (int k = 0; k < data->GetNumberOfArrays(); ++k) {
+      const vtkAbstractArray* array = data->GetAbstractArray(k);
+      this->BytesPerVoxel +=
+          std::int64_t{array->GetDataTypeSize()} * array->GetNumberOfComponents();
+    }
+  }
+}
+
 vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) const
 {
   const Extent extent = ExtentOf(box, this->Whole.extent);
+  const std::string rawProblem = FindBadRawFile(&this->Consumer); // it may have been cut since
+  if (!rawProblem.empty()) {
+    throw inr::Error(inr::ErrorCode::CannotRead, rawProblem);
+  }
+  const UpstreamErrors errors(&this->Consumer);
   vtkInformation* input = this->Consumer.GetInputInformation();
   input->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
   auto* producer = Pipeline::SafeDownCast(this->Consumer.GetInputExecutive());
   const int port = this->Consumer.GetInputConnection(0, 0)->GetIndex();
   const bool updated = producer && producer->Update(port) != 0;
+  errors.check();
   auto* image = vtkImageData::SafeDownCast(this->Consumer.GetInputDataObject(0, 0));
   const unsigned long problem = producer ? producer->GetAlgorithm()->GetErrorCode() : 0;
   if (!updated || problem != 0 || !image || !Contains(image->GetExtent(), extent)) {

@@ -22,6 +22,9 @@ struct WholeImage
 
   /// Of what is connected to an algorithm. No dims where that is no image.
   static WholeImage Of(vtkInformation* input);
+
+  /// Has the pipeline update all of it, or the first voxel.
+  void ask(vtkInformation* input, bool onlyFirst) const;
 };
 
 /// Reads boxes of an algorithm's first input by asking the pipeline for them, from within the
@@ -32,13 +35,13 @@ public:
   /// Finds what is to be trained on in an image, or throws.
   using Finder = std::function<TrainingInput(vtkImageData*)>;
 
-  PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, inr::ScalarType type,
-                 Finder finder)
-      : Consumer(consumer), Whole(whole), Type(type), Find(std::move(finder))
-  {}
+  /// `first`: a voxel of it, as the source gives it.
+  PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
+                 Finder finder);
 
   const glm::i64vec3& dims() const override { return this->Whole.dims; }
   inr::ScalarType type() const override { return this->Type; }
+  std::int64_t bytesPerVoxel() const override { return this->BytesPerVoxel; }
 
   /// Throws inr::Error(CannotRead) when the pipeline fails.
   inr::VolumePiece read(const inr::VoxelBox& box) override;
@@ -49,6 +52,7 @@ private:
   vtkAlgorithm& Consumer;
   WholeImage Whole;
   inr::ScalarType Type;
+  std::int64_t BytesPerVoxel = 0; ///< of all arrays
   Finder Find;
   TrainingInput Piece; ///< keeps the values alive
 };

@@ -9,7 +9,14 @@ namespace {
 // Lock-free, so that a signal handler may write it.
 std::atomic<int> ReceivedSignal{0};
 
-void Remember(int signal) { ReceivedSignal = signal; }
+/// The second one ends the process: whatever is to look for the first does not come to it.
+void Remember(int signal)
+{
+  if (ReceivedSignal.exchange(signal) != 0) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
 
 } // namespace
 

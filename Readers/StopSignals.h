@@ -3,7 +3,8 @@
 
 /// While one exists, SIGINT and SIGTERM ask a long computation to stop instead of ending the
 /// process. The destructor restores the handlers that were there and delivers what came meanwhile,
-/// so that Python raises its KeyboardInterrupt and a batch job ends. One at a time.
+/// so that Python raises its KeyboardInterrupt and a batch job ends. A second signal ends the
+/// process at once. One at a time.
 class StopSignals
 {
 public:

@@ -5,6 +5,7 @@
 #include "Scalars.h"
 
 #include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
@@ -34,9 +35,12 @@ vtkSmartPointer<vtkDataArray> Contiguous(vtkDataArray* array)
 
 } // namespace
 
-TrainingInput MakeTrainingInput(vtkImageData* image, vtkDataArray* array)
+TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
 {
-  const std::string name = array->GetName() ? array->GetName() : "Scalars";
+  const std::string name = values->GetName() ? values->GetName() : "Scalars";
+  auto* array = vtkDataArray::SafeDownCast(values);
+  Require(array != nullptr,
+          "array '" + name + "' is a " + values->GetClassName() + ", which does not hold numbers");
   int dims[3];
   image->GetDimensions(dims);
   TrainingInput input;
@@ -80,4 +84,17 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkDataArray* array)
   input.data.type = *type;
   input.data.dims = input.info.dims;
   return input;
+}
+
+std::string NoSuchArray(vtkDataSetAttributes& data, const char* chosen)
+{
+  std::string text = chosen && *chosen
+                         ? "the image has no point array '" + std::string(chosen) + "'"
+                         : std::string("no point array is chosen");
+  text += data.GetNumberOfArrays() > 0 ? "; Scalars takes one of" : ", and the image has none";
+  for (int k = 0; k < data.GetNumberOfArrays(); ++k) {
+    const char* name = data.GetArrayName(k);
+    text += std::string(k > 0 ? ", '" : " '") + (name ? name : "") + "'";
+  }
+  return text;
 }

@@ -6,7 +6,11 @@
 
 #include <vtkSmartPointer.h>
 
+#include <string>
+
+class vtkAbstractArray;
 class vtkDataArray;
+class vtkDataSetAttributes;
 class vtkImageData;
 
 /// An image's scalars as the trainer wants them.
@@ -18,6 +22,9 @@ struct TrainingInput
 };
 
 /// The image's geometry, with the origin at the first point of its extent, its time step, if any,
-/// and the values of `array`, copied only where they do not lie in memory one after the other.
+/// and the `values`, copied only where they do not lie in memory one after the other.
 /// Throws inr::Error(InvalidArgument) that says what is wrong with the array.
-TrainingInput MakeTrainingInput(vtkImageData* image, vtkDataArray* array);
+TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values);
+
+/// For the user: that `chosen` (may be null) is none of the point arrays, and which there are.
+std::string NoSuchArray(vtkDataSetAttributes& data, const char* chosen);

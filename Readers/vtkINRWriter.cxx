@@ -15,8 +15,8 @@
 #include "TrainingCheckpoint.h"
 #include "TrainingInput.h"
 #include "TrainingReport.h"
+#include "Upstream.h"
 #include "VTKCompat.h"
-#include "WholeFileReaders.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
@@ -46,11 +46,13 @@ constexpr std::int64_t MiB = std::int64_t{1} << 20;
 class vtkINRWriter::Internals
 {
 public:
-  StepSequence Steps;      ///< those of WriteTimeSteps
-  std::string Problem;     ///< why there are none
-  std::string Target;      ///< the file that is being written
-  WholeImage Whole;        ///< the input
-  bool InPieces = false;   ///< whether it is read so
+  StepSequence Steps;                     ///< those of WriteTimeSteps
+  std::string Problem;                    ///< why there are none
+  std::string Target;                     ///< the file that is being written
+  WholeImage Whole;                       ///< the input
+  bool InPieces = false;                  ///< whether it is read so
+  std::unique_ptr<UpstreamErrors> Errors; ///< while the input is updated
+  std::string RawProblem;                 ///< what is wrong with a raw file
   std::string WholeReader; ///< the class of a reader that must not be asked for pieces
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
@@ -128,17 +130,21 @@ std::int64_t vtkINRWriter::MemoryLimitInBytes() const
   return this->MemoryLimit > 0 ? MiB * this->MemoryLimit : PhysicalMemory() / 2;
 }
 
-/// Asks for the whole input, or for one voxel of it where the rest is going to be read in pieces.
+/// Asks for the whole input, or for one voxel of it where the rest is going to be read in pieces or
+/// not at all.
 void vtkINRWriter::PlanReading(vtkInformation* input)
 {
+  this->Internal->Errors = std::make_unique<UpstreamErrors>(this);
+  this->Internal->RawProblem = FindBadRawFile(this);
   const WholeImage whole = WholeImage::Of(input);
   this->Internal->Whole = whole;
   this->Internal->InPieces = false;
   if (whole.dims.x * whole.dims.y * whole.dims.z == 0) {
     return;
   }
+  const bool isShort = !this->Internal->RawProblem.empty();
   const ControllerGroup group(this->Internal->Controller);
-  if (group.size() > 1) {
+  if (group.size() > 1 && !isShort) {
     RequestPiece(input, whole, FindWholeFileReader(this).empty(), group);
     return;
   }
@@ -146,12 +152,7 @@ void vtkINRWriter::PlanReading(vtkInformation* input)
   const bool isLarge = whole.bytes > limit / 2 && !whole.isInMemory;
   this->Internal->WholeReader = isLarge ? FindWholeFileReader(this) : std::string();
   this->Internal->InPieces = isLarge && this->Internal->WholeReader.empty();
-  int extent[6];
-  std::copy_n(whole.extent, 6, extent);
-  for (int axis = 0; axis < 3 && this->Internal->InPieces; ++axis) {
-    extent[2 * axis + 1] = extent[2 * axis];
-  }
-  input->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
+  whole.ask(input, this->Internal->InPieces || isShort);
 }
 
 void vtkINRWriter::WriteData()
@@ -173,12 +174,15 @@ void vtkINRWriter::WriteData()
 
 void vtkINRWriter::WriteInput(const StopSignals& signals)
 {
+  const auto errors = std::move(this->Internal->Errors);
   std::string& fileName = this->Internal->Target;
   if (fileName.empty()) {
     throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
   }
-  if (!this->Internal->Problem.empty()) {
-    throw inr::Error(inr::ErrorCode::InvalidArgument, this->Internal->Problem);
+  for (const std::string& problem : {this->Internal->Problem, this->Internal->RawProblem}) {
+    if (!problem.empty()) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument, problem);
+    }
   }
   const StepSequence& steps = this->Internal->Steps;
   if (!steps.isEmpty()) {
@@ -186,6 +190,7 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
     fileName = StepFileName(fileName, suffix, steps.number());
   }
   const ControllerGroup group(this->Internal->Controller);
+  group.together([&] { errors ? errors->check() : void(); });
   ParallelInput input;
   if (group.size() > 1) {
     input = FindPiece(
@@ -218,12 +223,13 @@ TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
   vtkAbstractArray* array = this->GetInputAbstractArrayToProcess(0, image, association);
   // Where nobody has seen the data, nobody could choose.
   const char* chosen = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-  if (!array && !(chosen && *chosen) && image->GetPointData()->GetNumberOfArrays() == 1) {
-    array = image->GetPointData()->GetAbstractArray(0);
+  if (!array && !(chosen && *chosen)) {
+    const bool single = image->GetPointData()->GetNumberOfArrays() == 1;
+    array =
+        single ? image->GetPointData()->GetAbstractArray(0) : image->GetPointData()->GetScalars();
   }
   if (!array) {
-    throw inr::Error(inr::ErrorCode::InvalidArgument,
-                     "the image has no such point array, or none is chosen");
+    throw inr::Error(inr::ErrorCode::InvalidArgument, NoSuchArray(*image->GetPointData(), chosen));
   }
   const std::string name = array->GetName() ? array->GetName() : "";
   if (association != vtkDataObject::FIELD_ASSOCIATION_POINTS) {
@@ -232,13 +238,7 @@ TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
                          "' is not point data; if it is cell data, use "
                          "CellDataToPointData first");
   }
-  auto* numbers = vtkDataArray::SafeDownCast(array);
-  if (!numbers) {
-    throw inr::Error(inr::ErrorCode::InvalidArgument, "array '" + name + "' is a " +
-                                                          array->GetClassName() +
-                                                          ", which does not hold numbers");
-  }
-  return MakeTrainingInput(image, numbers);
+  return MakeTrainingInput(image, array);
 }
 
 inr::ModelPointer vtkINRWriter::FindStart(const inr::VolumeInfo& volume) const
@@ -289,7 +289,7 @@ inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
   }
   vtkLog(INFO, << this->Internal->Target << ": the data take " << whole.bytes / MiB
                << " MiB and are read in pieces, within " << options.memoryLimit / MiB << " MiB");
-  PipelineReader reader(*this, whole, first.data.type,
+  PipelineReader reader(*this, whole, *image,
                         [this](vtkImageData* piece) { return this->FindInput(piece); });
   return inr::TrainModel(reader, first.info, options, observe);
 }

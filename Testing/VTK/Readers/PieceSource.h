@@ -3,16 +3,19 @@
 
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
+#include <vtkFloatArray.h>
 #include <vtkImageAlgorithm.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
+#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 /// A smooth field that is computed where it is asked for, and keeps account of that.
 class PieceSource : public vtkImageAlgorithm
@@ -24,8 +27,10 @@ public:
   int Extent[6] = {10, 329, -5, 314, 0, 159};
   int Type = VTK_FLOAT;
   bool GivesParts = true;
-  int FailingRequest = 0; ///< by number from 1; 0 = none
-  double Time = 0;        ///< of the last request
+  int FailingRequest = 0;     ///< by number from 1; 0 = none
+  bool OnlyComplains = false; ///< and succeeds, in place of failing
+  int MoreArrays = 0;         ///< besides the one
+  double Time = 0;            ///< of the last request
 
   int Requests = 0;
   vtkIdType LargestRequest = 0; ///< points
@@ -57,7 +62,9 @@ protected:
     vtkInformation* info = outputs->GetInformationObject(0);
     if (++this->Requests == this->FailingRequest) {
       vtkErrorMacro("the tape is torn");
-      return 0;
+      if (!this->OnlyComplains) {
+        return 0;
+      }
     }
     this->Time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
     int extent[6];
@@ -71,6 +78,12 @@ protected:
     vtkDataArray* values = image->GetPointData()->GetScalars();
     values->SetName("field");
     this->LargestRequest = std::max(this->LargestRequest, values->GetNumberOfTuples());
+    for (int k = 0; k < this->MoreArrays; ++k) {
+      vtkNew<vtkFloatArray> other;
+      other->SetName(("other" + std::to_string(k)).c_str());
+      other->SetNumberOfTuples(values->GetNumberOfTuples());
+      image->GetPointData()->AddArray(other);
+    }
     vtkIdType point = 0;
     for (int z = extent[4]; z <= extent[5]; ++z) {
       for (int y = extent[2]; y <= extent[3]; ++y) {

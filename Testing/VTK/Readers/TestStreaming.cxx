@@ -8,10 +8,12 @@
 #include "vtkINRWriter.h"
 
 #include <vtkCallbackCommand.h>
+#include <vtkImageReader.h>
 #include <vtkImageShiftScale.h>
 #include <vtkNew.h>
 
 #include <filesystem>
+#include <fstream>
 
 namespace {
 
@@ -120,10 +122,65 @@ TEST_F(Streaming, TellsOfASourceThatFails)
     std::filesystem::remove(this->path() + ".checkpoint");
     if (failing > 1) { // else there is nothing to be written, and nobody to say so
       EXPECT_NE(messages.text().find("Cannot save"), std::string::npos) << messages.text();
-      EXPECT_NE(messages.text().find("did not give the voxels"), std::string::npos);
+      EXPECT_NE(messages.text().find("could not be read: "), std::string::npos);
       EXPECT_NE(this->Writer->GetErrorCode(), 0u);
     }
   }
+}
+
+// As many readers do: they complain, and hand on memory that nobody has written to.
+TEST_F(Streaming, BelievesASourceThatComplainsAndSucceeds)
+{
+  this->Source->OnlyComplains = true;
+  for (const int limit : {120, 0}) {    // in pieces, and as a whole
+    for (const int failing : {1, 14}) { // at once, and while reading
+      if (limit == 0 && failing > 1) {
+        continue; // there is one request
+      }
+      this->Source->Requests = 0;
+      this->Source->FailingRequest = failing;
+      this->Source->Modified();
+      this->Writer->SetMemoryLimit(limit);
+      const MessageCapture messages;
+      this->Writer->Write();
+      EXPECT_NE(messages.text().find("could not be read: "), std::string::npos) << limit;
+      EXPECT_NE(this->Writer->GetErrorCode(), 0u);
+      EXPECT_FALSE(std::filesystem::exists(this->path()));
+    }
+  }
+}
+
+// ParaView's reader of raw files would try for ever.
+TEST_F(Streaming, RefusesARawFileThatIsTooShortOrGone)
+{
+  const std::string path = this->Folder / "short.raw";
+  std::ofstream(path) << std::string(1000, 'x');
+  vtkNew<vtkImageReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->SetFileDimensionality(3);
+  reader->SetDataExtent(0, 9, 0, 9, 0, 10);
+  reader->SetDataScalarTypeToUnsignedChar();
+  this->Writer->SetInputConnection(reader->GetOutputPort());
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_NE(messages.text().find("has 1000 bytes"), std::string::npos) << messages.text();
+  EXPECT_NE(messages.text().find("ask for 1100"), std::string::npos);
+  std::filesystem::remove(path);
+  reader->Modified();
+  this->Writer->Write();
+  EXPECT_NE(messages.text().find("cannot be opened"), std::string::npos) << messages.text();
+  EXPECT_NE(this->Writer->GetErrorCode(), 0u);
+  EXPECT_FALSE(std::filesystem::exists(this->path()));
+}
+
+TEST_F(Streaming, CountsAllArraysOfTheSource)
+{
+  this->Source->MoreArrays = 7;
+  this->Writer->SetMaximumSteps(2);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  EXPECT_LE(8 * 4 * this->Source->LargestRequest, 8 * MiB);
 }
 
 TEST_F(Streaming, WarnsOfASourceThatGivesNoParts)

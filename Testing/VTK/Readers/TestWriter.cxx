@@ -327,7 +327,7 @@ TEST_F(Writer, RefusesDataThatItCannotSave)
   choose(empty);
   this->expectRefusal(image, "0 values for 64 points");
   points->RemoveArray("bad");
-  this->expectRefusal(image, "no such point array");
+  this->expectRefusal(image, "no point array 'bad'");
 
   vtkNew<vtkFloatArray> cells;
   cells->SetName("cells");

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vtkWeakPointer.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkObject;
+
+/// All algorithms that an algorithm's inputs come from, and the readers that ParaView hides in
+/// those of file series.
+std::vector<vtkAlgorithm*> UpstreamOf(vtkAlgorithm* algorithm);
+
+/// The class of a reader upstream that must not be asked for a part of its file; empty where there
+/// is none. vtkMetaImageReader says that it gives parts, but writes the whole file into the memory
+/// of the part.
+std::string FindWholeFileReader(vtkAlgorithm* algorithm);
+
+/// Says what is wrong where a raw file upstream cannot be read, or is shorter than its reader was
+/// told: ParaView's complains and gives what it has, or tries for ever to read on. Empty where
+/// nothing is wrong.
+std::string FindBadRawFile(vtkAlgorithm* algorithm);
+
+/// Keeps what algorithms and executives upstream report as errors while it lives: many readers say
+/// so, and then hand on memory that nobody has written to. Messages are shown as ever.
+class UpstreamErrors
+{
+public:
+  explicit UpstreamErrors(vtkAlgorithm* algorithm);
+  ~UpstreamErrors();
+  UpstreamErrors(const UpstreamErrors&) = delete;
+  UpstreamErrors& operator=(const UpstreamErrors&) = delete;
+
+  /// Throws inr::Error(CannotRead) with the first of them, if there was one.
+  void check() const;
+
+private:
+  void watch(vtkObject* object);
+
+  std::vector<std::pair<vtkWeakPointer<vtkObject>, unsigned long>> Watched;
+  std::string First;
+};
