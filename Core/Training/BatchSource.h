@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <string>
 
 namespace inr {
 
@@ -28,6 +29,9 @@ class BatchSource
 {
 public:
   virtual ~BatchSource() = default;
+
+  /// What distinguishes its samples from those of another source of the same volume, for the user.
+  virtual std::string name() const { return "of the volume in memory"; }
 
   /// Called before the items of a step are drawn, by the thread that trains. May wait for data as
   /// long as `check` lets it.

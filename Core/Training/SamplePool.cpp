@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 
 namespace inr {
 
@@ -80,6 +81,12 @@ std::vector<double> SamplePool::sample(std::int64_t block, std::uint32_t round,
     SamplePiece(piece, this->Blocks.dims(), positions.data(), end - begin, &values[begin]);
   });
   return values;
+}
+
+std::string SamplePool::name() const
+{
+  return "a pool of " + std::to_string(this->samples()) + " of " +
+         std::to_string(this->Blocks.count()) + " blocks";
 }
 
 void SamplePool::put(std::int64_t block, const std::vector<double>& values)

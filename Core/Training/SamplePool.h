@@ -47,6 +47,7 @@ public:
   std::optional<std::int64_t> wanted();
   void offer(std::int64_t block, std::vector<double> values);
 
+  std::string name() const override;
   void prepare(const TrainingStep& step, const StopCheck& check) override;
   void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
             glm::vec3* positions, float* targets) const override;

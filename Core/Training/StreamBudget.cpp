@@ -31,7 +31,7 @@ std::int64_t CellBytes(const VolumeInfo& info, int macroCellSize)
   const int edge = macroCellSize > 0 ? macroCellSize : DefaultMacroCellSize(info.dims);
   const glm::i64vec3 cells =
       (info.dims + std::int64_t{edge} - std::int64_t{1}) / std::int64_t{edge};
-  return 24 * cells.x * cells.y * cells.z; // twice as floats, or once as doubles and once as floats
+  return 48 * cells.x * cells.y * cells.z; // of data and decoded ones as doubles, twice as floats
 }
 
 /// What is left for pieces and samples.
@@ -76,7 +76,8 @@ std::int64_t TrainingBytes(const Description& description)
          BatchSize * std::int64_t{4 * layout.encodedWidth + 16};
 }
 
-StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options)
+StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
+                        std::int64_t bytesPerVoxel)
 {
   StreamBudget budget{FittingDescription(info, options), 0, 0};
   const std::int64_t left = FreeBytes(info, options, budget.description);
@@ -91,7 +92,7 @@ StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options)
   }
   const std::int64_t block = std::clamp(left / (2 * CopiesOfBlock), SmallestShare, LargestBlock);
   const std::int64_t pool = std::min(left - CopiesOfBlock * block, LargestPool);
-  budget.blockVoxels = block / static_cast<std::int64_t>(ScalarSize(info.type));
+  budget.blockVoxels = block / bytesPerVoxel;
   budget.poolSamples = pool / static_cast<std::int64_t>(sizeof(double));
   return budget;
 }

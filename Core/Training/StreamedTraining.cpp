@@ -18,7 +18,7 @@ namespace {
 /// Share of the progress bar that the first reading gets.
 constexpr double ReadingShare = 0.1;
 
-/// Share of the time limit that reading again may take.
+/// Share of the time limit that reading again may take, where nothing but the clock is the end.
 constexpr double RereadingShare = 0.5;
 
 /// The default model is made to fit the limit; one that was asked for is left as it is.
@@ -32,9 +32,9 @@ TrainingOptions WithModel(TrainingOptions options, const StreamBudget& budget)
 
 double ShareToRead(const StreamedVolume& volume, const TrainingOptions& options)
 {
+  const bool byTheClock = options.timeLimit > 0 && options.maximumSteps == 0;
   const double seconds = RereadingShare * options.timeLimit;
-  const double affordable =
-      options.timeLimit > 0 ? seconds / std::max(volume.surveySeconds(), 1e-3) : 1.0;
+  const double affordable = byTheClock ? seconds / std::max(volume.surveySeconds(), 1e-3) : 1.0;
   return std::min(volume.mostRereads(), affordable);
 }
 
@@ -78,12 +78,14 @@ ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const Trai
   VolumeInfo whole = info;
   whole.dims = reader.dims();
   whole.type = reader.type();
-  const StreamBudget budget = PlanStream(whole, asked);
+  const StreamBudget budget = PlanStream(whole, asked, reader.bytesPerVoxel());
   const TrainingOptions options = WithModel(asked, budget);
   const Arena arena(options.threads);
   const auto say = [&](TrainingPhase phase, double fraction, std::uint64_t steps) {
     if (observer && !observer({phase, fraction, steps, 0})) {
-      throw Error(ErrorCode::Cancelled, "stopped on request while the data were read");
+      throw Error(ErrorCode::Cancelled, phase == TrainingPhase::Reading
+                                            ? "stopped on request while the data were read"
+                                            : "stopped while measuring the quality");
     }
   };
 
@@ -100,7 +102,7 @@ ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const Trai
 
   const double begin = ReadingShare + (1.0 - ReadingShare) * TrainingShare;
   const DecodedReport report =
-      volume.measure(*MakeEvaluator(trained, options.kernel), trained->volume, [&](double done) {
+      volume.measure(*MakeEvaluator(trained, options.kernel), *trained, [&](double done) {
         say(TrainingPhase::Measuring, begin + (1.0 - begin) * done, trained->training->steps);
       });
   trained->quality = report.quality;

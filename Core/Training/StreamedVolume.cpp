@@ -4,9 +4,12 @@
 #include "Core/Error.h"
 #include "Core/Random.h"
 #include "Core/Training/TrainingClock.h"
+#include "Core/Training/TrainingRun.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <sstream>
 #include <string>
 
 namespace inr {
@@ -35,6 +38,13 @@ std::vector<std::int64_t> ChooseBars(std::int64_t bars, std::int64_t count, std:
   return chosen;
 }
 
+std::string ToText(double value)
+{
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 std::string ToText(const VoxelBox& box)
 {
   const auto axis = [&](int a) {
@@ -48,7 +58,8 @@ std::string ToText(const VoxelBox& box)
 StreamedVolume::StreamedVolume(VolumeReader& reader, const StreamBudget& budget, int macroCellSize,
                                const TrainingOptions& options, const Arena& arena)
     : Reader(reader), Threads(arena), MacroCellSize(macroCellSize), Seed(options.seed),
-      MeasuredVoxels(options.measuredVoxels), Blocks(reader.dims(), budget.blockVoxels),
+      MeasuredVoxels(options.measuredVoxels), BlockVoxels(budget.blockVoxels),
+      Blocks(reader.dims(), budget.blockVoxels),
       Pool(this->Blocks, std::min(budget.poolSamples, 2 * Voxels(reader.dims())), options.seed),
       Ranges(reader.dims(), macroCellSize),
       EstimatePositions(
@@ -131,6 +142,17 @@ double StreamedVolume::mostRereads() const
   return std::clamp((MostReadings - measured - once) / once, 0.0, 1.0);
 }
 
+void StreamedVolume::requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const
+{
+  const VolumeStatistics now = MeasureBox(piece, box, this->Threads);
+  if (now.low < this->Statistics.low || now.high > this->Statistics.high) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the data changed while they were read: voxels " + ToText(box) + " were within " +
+                    ToText(this->Statistics.low) + " to " + ToText(this->Statistics.high) +
+                    " and now are " + ToText(now.low) + " to " + ToText(now.high));
+  }
+}
+
 void StreamedVolume::readAgain()
 {
   const std::optional<std::int64_t> block = this->Pool.wanted();
@@ -138,34 +160,32 @@ void StreamedVolume::readAgain()
     return;
   }
   const VolumePiece piece = this->read(this->Blocks.voxels(*block));
-  const VoxelBox own = this->Blocks.ownVoxels(*block);
-  const VolumeStatistics now = MeasureBox(piece, own, this->Threads);
-  if (now.low < this->Statistics.low || now.high > this->Statistics.high) {
-    throw Error(ErrorCode::InvalidArgument,
-                "the data changed while they were read: voxels " + ToText(own) + " were within " +
-                    std::to_string(this->Statistics.low) + " to " +
-                    std::to_string(this->Statistics.high) + " and now are " +
-                    std::to_string(now.low) + " to " + std::to_string(now.high));
-  }
+  this->requireKnownRange(piece, this->Blocks.ownVoxels(*block));
   this->Pool.offer(*block, this->Pool.sample(*block, 1, piece, this->Threads));
 }
 
-DecodedReport StreamedVolume::measure(const Evaluator& evaluator, const VolumeInfo& info,
+DecodedReport StreamedVolume::measure(const Evaluator& evaluator, const Model& model,
                                       const Progress& progress)
 {
   const bool all = this->measuresAll();
-  const BlockGrid boxes(this->Reader.dims(), all ? VoxelsOfMeasuredBlock : VoxelsOfBar);
+  const BlockGrid boxes(this->Reader.dims(),
+                        std::min(this->BlockVoxels, all ? VoxelsOfMeasuredBlock : VoxelsOfBar));
   const double share =
       static_cast<double>(this->MeasuredVoxels) / static_cast<double>(Voxels(this->Reader.dims()));
   const std::int64_t count =
       all ? boxes.count() : std::llround(std::ceil(share * static_cast<double>(boxes.count())));
-  QualityMeter meter(evaluator, info, this->Threads);
-  CellRanges decoded(this->Reader.dims(), this->MacroCellSize);
+  QualityMeter meter(evaluator, model.volume, this->Threads, BandSize(model.description));
+  std::optional<CellRanges> decoded;
+  if (all) {
+    decoded.emplace(this->Reader.dims(), this->MacroCellSize);
+  }
   std::int64_t done = 0;
   for (const std::int64_t box : ChooseBars(boxes.count(), count, this->Seed)) {
     const VoxelBox own = boxes.ownVoxels(box);
     if (own.voxels() > 0) {
-      meter.add(this->read(own), all ? &decoded : nullptr, [&](double part) {
+      const VolumePiece piece = this->read(own);
+      this->requireKnownRange(piece, own);
+      meter.add(piece, all ? &*decoded : nullptr, [&](double part) {
         progress((static_cast<double>(done) + part) / static_cast<double>(count));
       });
     }
@@ -173,10 +193,10 @@ DecodedReport StreamedVolume::measure(const Evaluator& evaluator, const VolumeIn
   }
   Quality quality = meter.quality();
   if (all) {
-    return {quality, decoded.cells(0.0, 1.0, 0.0, MacroCellProvenance::Decoded)};
+    return {quality, decoded->cells(0.0, 1.0, 0.0, MacroCellProvenance::Decoded)};
   }
   quality.sampledVoxels = static_cast<std::uint64_t>(meter.errors().voxels);
-  return {quality, this->Ranges.cells(info.low, info.high, meter.errors().largest,
+  return {quality, this->Ranges.cells(model.volume.low, model.volume.high, meter.errors().largest,
                                       MacroCellProvenance::Training)};
 }
 

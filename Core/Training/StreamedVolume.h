@@ -36,20 +36,20 @@ public:
   /// Lets the pool be trained from; the share `rereads` of it is to be read again.
   SamplePool& begin(double rereads);
 
-  /// The largest share that leaves no voxel read more than three times.
+  /// The largest share that leaves not more than three times the volume to be read in all.
   double mostRereads() const;
 
   /// Reads the block again that the pool wants, or waits a moment when there is none. Throws
   /// Error(InvalidArgument) where a value is outside the range that the survey found.
   void readAgain();
 
-  /// Compares all voxels, or some where they are many, with a model of them.
-  DecodedReport measure(const Evaluator& evaluator, const VolumeInfo& info,
-                        const Progress& progress);
+  /// Compares all voxels, or some where they are many, with a model of them. Throws as readAgain.
+  DecodedReport measure(const Evaluator& evaluator, const Model& model, const Progress& progress);
 
 private:
   bool measuresAll() const;
   VolumePiece read(const VoxelBox& box);
+  void requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const;
   void sampleEstimate(std::int64_t block, const VolumePiece& piece);
 
   VolumeReader& Reader;
@@ -57,6 +57,7 @@ private:
   int MacroCellSize;
   std::uint64_t Seed;
   std::int64_t MeasuredVoxels; ///< of more than four times as many
+  std::int64_t BlockVoxels;    ///< that may be read at a time
   BlockGrid Blocks;
   SamplePool Pool;
   VolumeStatistics Statistics;

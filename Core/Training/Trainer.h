@@ -87,12 +87,13 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
 ///
 /// One reading of the whole gives range, ranges of macro-cells and a pool of samples, the same
 /// number in every equal part of the volume. While another thread trains, this one reads blocks
-/// again in random order and draws their samples anew, as far as reading takes less than half of
-/// the time limit: no voxel is read more than three times. Without a time limit the result is
-/// repeatable. Where there are too many voxels, quality is measured in bars all over the volume,
-/// and ranges of macro-cells are those of the data, wider by the largest error
-/// that was found; otherwise as above. Throws what `reader` throws, and Error(InvalidArgument)
-/// when the limit is too low or a value leaves the range that the first reading found.
+/// again in random order and draws their samples anew: not more than three times the volume is read
+/// in all and, where the time limit is the only end, for not more than half of it. With
+/// maximumSteps the result is repeatable, whatever the speed of reading, unless the time ends it.
+/// Where there are too many voxels, quality is measured in bars all over the volume, and ranges of
+/// macro-cells are those of the data, wider by the largest error that was found; otherwise as
+/// above. Throws what `reader` throws, and Error(InvalidArgument) when the limit is too low or a
+/// value leaves the range that the first reading found.
 ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 

@@ -29,7 +29,7 @@ std::uint32_t ChecksumOf(const ModelPointer& start)
 } // namespace
 
 TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
-                            const PsnrEstimate& estimate, int processes)
+                            const PsnrEstimate& estimate, const BatchSource& batches, int processes)
 {
   if (options.checkpoint.path.empty()) {
     return {};
@@ -52,7 +52,7 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
           {"MaximumSteps", Text(options.maximumSteps)},
           {"PlannedSteps", Text(options.plannedSteps)},
           {"TimeLimit", Text(options.timeLimit)},
-          {"MemoryLimit", Text(options.memoryLimit)},
+          {"the samples", batches.name()},
           {"the precision of the file", NameOf(ParameterTypeNames, options.storedAs)}};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Training/BatchSource.h"
 #include "Core/Training/Checkpoint.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Trainer.h"
@@ -12,6 +13,7 @@ namespace inr {
 /// the values at the estimate's voxels. Its texts are ASCII. Empty when the options ask for no
 /// checkpoint.
 TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
-                            const PsnrEstimate& estimate, int processes);
+                            const PsnrEstimate& estimate, const BatchSource& batches,
+                            int processes);
 
 } // namespace inr

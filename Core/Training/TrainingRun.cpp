@@ -149,8 +149,9 @@ void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, cons
   StartFrom(this->Options.start, model, descent);
   descent.share(this->group());
   const bool first = this->group().rank() == 0;
-  CheckpointKeeper keeper(first ? this->Options.checkpoint : CheckpointOptions(),
-                          IdentityOf(model, this->Options, estimate, this->group().size()));
+  CheckpointKeeper keeper(
+      first ? this->Options.checkpoint : CheckpointOptions(),
+      IdentityOf(model, this->Options, estimate, batches, this->group().size()));
   TrainingLoop loop(this->Options, this->Observer, keeper, this->group());
   loop.run(descent, batches, estimate, EvaluateKernelFor(this->Set));
   model.training->steps = descent.steps();

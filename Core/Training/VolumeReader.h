@@ -16,6 +16,12 @@ public:
   virtual const glm::i64vec3& dims() const = 0; ///< voxels per axis
   virtual ScalarType type() const = 0;
 
+  /// That read() makes the source hold, which may have other arrays.
+  virtual std::int64_t bytesPerVoxel() const
+  {
+    return static_cast<std::int64_t>(ScalarSize(this->type()));
+  }
+
   /// The voxels of a box within the volume, good until the next call. Called by one thread, the
   /// one that asked for the training. Throws what the application has to say when it fails.
   virtual VolumePiece read(const VoxelBox& box) = 0;
