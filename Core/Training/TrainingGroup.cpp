@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 
+#include <exception>
 #include <new>
 
 namespace inr {
@@ -35,6 +36,8 @@ void TrainingGroup::together(const std::function<void()>& work) const
     mine = Described(error);
   } catch (const std::bad_alloc&) {
     mine = Described(Error(ErrorCode::TooLarge, "there is not enough memory"));
+  } catch (const std::exception& error) { // or the others would wait for ever
+    mine = Described(Error(ErrorCode::InvalidArgument, error.what()));
   }
   const std::vector<std::string> all = this->gather(mine);
   for (std::size_t rank = 0; rank < all.size(); ++rank) {

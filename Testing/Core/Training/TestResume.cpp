@@ -161,6 +161,10 @@ TEST_F(Resume, GivesTheModelThatTrainingFromPiecesWouldHaveGiven)
                inr::Error);
   EXPECT_EQ(trainFrom({})->parameters, whole->parameters);
   EXPECT_EQ(this->count(CheckpointEvent::Resumed), 1);
+  // It is of other samples than the volume in memory gives.
+  inr::TrainModel(field.data(), {}, options);
+  EXPECT_EQ(this->count(CheckpointEvent::Resumed), 1);
+  EXPECT_EQ(this->count(CheckpointEvent::Ignored), 1);
 }
 
 TEST_F(Resume, CountsTheTimeBefore)
