@@ -63,11 +63,16 @@ std::int64_t BlockGrid::blockAt(const glm::vec3& position) const
   return block;
 }
 
-VoxelBox BlockGrid::ownVoxels(std::int64_t block) const
+std::pair<glm::dvec3, glm::dvec3> BlockGrid::edges(std::int64_t block) const
 {
   const glm::dvec3 size(this->Dims);
   const glm::dvec3 low = glm::dvec3(this->corner(block)) * size - 0.5;
-  const glm::dvec3 high = low + glm::dvec3(this->extent()) * size;
+  return {low, low + glm::dvec3(this->extent()) * size};
+}
+
+VoxelBox BlockGrid::ownVoxels(std::int64_t block) const
+{
+  const auto [low, high] = this->edges(block);
   VoxelBox box;
   for (int axis = 0; axis < 3; ++axis) {
     box.first[axis] = static_cast<std::int64_t>(std::ceil(low[axis]));
@@ -78,9 +83,7 @@ VoxelBox BlockGrid::ownVoxels(std::int64_t block) const
 
 VoxelBox BlockGrid::voxels(std::int64_t block) const
 {
-  const glm::dvec3 size(this->Dims);
-  const glm::dvec3 low = glm::dvec3(this->corner(block)) * size - 0.5;
-  const glm::dvec3 high = low + glm::dvec3(this->extent()) * size;
+  const auto [low, high] = this->edges(block);
   VoxelBox box;
   for (int axis = 0; axis < 3; ++axis) {
     const auto first = static_cast<std::int64_t>(std::floor(low[axis]));

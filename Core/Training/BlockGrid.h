@@ -5,6 +5,7 @@
 #include "Core/Training/Volume.h"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace inr {
@@ -44,6 +45,9 @@ public:
   double readShare() const;
 
 private:
+  /// Of a block, in voxels: voxel i is at i.
+  std::pair<glm::dvec3, glm::dvec3> edges(std::int64_t block) const;
+
   glm::i64vec3 Dims;
   std::vector<int> Axes; ///< of the halvings
   HalvedCube Boxes;
