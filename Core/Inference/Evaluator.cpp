@@ -79,12 +79,15 @@ public:
 
   void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const override
   {
+    if (count == 0) { // then there need not be an array of positions
+      return;
+    }
     const ModelView& model = this->Network.view();
     const auto floats = static_cast<std::size_t>(this->Kernel.workspace(model));
     const std::unique_ptr<float[]> workspace(new float[floats]); // left as it is: no need for zeros
     OverflowWatch watch;
     this->Kernel.evaluate(model, &positions->x, count, values, workspace.get());
-    if (count > 0 && watch.overflowed()) {
+    if (watch.overflowed()) {
       this->widen(positions, count, values, workspace.get(), watch);
     }
   }
