@@ -79,7 +79,6 @@ bool IsEmpty(const int extent[6])
   return extent[1] < extent[0] || extent[3] < extent[2] || extent[5] < extent[4];
 }
 
-/// What the user knows better than the file.
 // Whether an upstream file may have been made of more voxels than it tells: training out of core
 // stores at most 1,024 along an axis.
 bool MayHideVoxels(const inr::Model& header)
@@ -90,6 +89,7 @@ bool MayHideVoxels(const inr::Model& header)
   return upstream && (dims.x == 1024 || dims.y == 1024 || dims.z == 1024);
 }
 
+/// What the user knows better than the file.
 inr::ModelOverrides OverridesOf(const int dims[3], const double range[2])
 {
   inr::ModelOverrides overrides;

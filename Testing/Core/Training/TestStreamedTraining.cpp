@@ -83,12 +83,15 @@ TEST(StreamedTraining, MeasuresBarsWhereVoxelsAreTooMany)
   EXPECT_LE(model->quality->maxError, report.quality.maxError);
   EXPECT_GT(model->quality->maxError, 0.5 * report.quality.maxError);
   EXPECT_EQ(model->macroCells.provenance, inr::MacroCellProvenance::Training);
-  const double error = report.quality.maxError / (model->volume.high - model->volume.low);
+  const double range = model->volume.high - model->volume.low;
+  const double error = report.quality.maxError / range;
+  const double found = model->quality->maxError / range;
   for (std::size_t k = 0; k < report.macroCells.ranges.size(); ++k) {
     const inr::ValueRange& decoded = report.macroCells.ranges[k];
     const inr::ValueRange& guessed = model->macroCells.ranges[k];
     EXPECT_LE(guessed.low, decoded.low);
     EXPECT_GE(guessed.high, decoded.high);
+    EXPECT_GE(guessed.high - guessed.low, 2 * found - 1e-6);
     EXPECT_LT(guessed.high - guessed.low, decoded.high - decoded.low + 4 * error + 1e-6);
   }
 }
