@@ -89,4 +89,20 @@ double ImageSsim(const Image& a, const Image& b)
   return sum / (windows * a.channels);
 }
 
+double ImageMaximumError(const Image& a, const Image& b)
+{
+  RequireSameShape(a, b);
+  double largest = 0;
+  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+    const double difference = std::abs(static_cast<double>(a.pixels[k]) - b.pixels[k]);
+    if (!(difference <= largest)) { // a NaN, too, after which no number is larger
+      largest = difference;
+    }
+    if (std::isnan(largest)) {
+      break;
+    }
+  }
+  return largest;
+}
+
 } // namespace inr

@@ -15,4 +15,8 @@ double ImagePsnr(const Image& a, const Image& b);
 /// Error(InvalidArgument) when sizes or channels differ or a side is under 7.
 double ImageSsim(const Image& a, const Image& b);
 
+/// The largest difference of two values, over all pixels and channels; NaN where a picture holds
+/// one. Throws Error(InvalidArgument) when sizes or channels differ.
+double ImageMaximumError(const Image& a, const Image& b);
+
 } // namespace inr

@@ -140,12 +140,29 @@ TEST(ImageSsim, SeesStructureNotOnlyLuminance)
   EXPECT_LT(inr::ImageSsim(stripes, inverse), -0.9);
 }
 
+TEST(ImageMaximumError, IsTheLargestOfAllChannelsAndPixels)
+{
+  const inr::Image a = RandomImage(8, 6, 4, 1);
+  EXPECT_EQ(inr::ImageMaximumError(a, a), 0.0);
+  for (const int channel : {0, 3}) {
+    inr::Image b = a;
+    b.pixel(2, 3)[1] += 0.125f;
+    b.pixel(7, 5)[channel] -= 0.25f;
+    EXPECT_NEAR(inr::ImageMaximumError(a, b), 0.25, 1e-6);
+    EXPECT_NEAR(inr::ImageMaximumError(b, a), 0.25, 1e-6);
+    b.pixel(4, 4)[channel] = std::nanf("");
+    EXPECT_TRUE(std::isnan(inr::ImageMaximumError(a, b)));
+    EXPECT_TRUE(std::isnan(inr::ImageMaximumError(b, b)));
+  }
+}
+
 TEST(ImageMetrics, RefuseDifferentShapes)
 {
   const inr::Image a = RandomImage(8, 8, 4, 1);
   EXPECT_THROW(inr::ImagePsnr(a, RandomImage(8, 9, 4, 1)), inr::Error);
   EXPECT_THROW(inr::ImagePsnr(RandomImage(8, 8, 3, 1), RandomImage(8, 8, 3, 1)), inr::Error);
   EXPECT_THROW(inr::ImageSsim(a, RandomImage(8, 8, 3, 1)), inr::Error);
+  EXPECT_THROW(inr::ImageMaximumError(a, RandomImage(9, 8, 4, 1)), inr::Error);
   EXPECT_THROW(inr::ImageSsim(RandomImage(6, 8, 4, 1), RandomImage(6, 8, 4, 1)), inr::Error);
 }
 
