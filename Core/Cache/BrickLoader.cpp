@@ -112,7 +112,10 @@ bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
   ++this->LayersBegun;
   this->Ready.notify_all();
   this->inferLayer(*brick, z, lock);
-  if (++brick->done == this->Layers) {
+  if (++brick->done == brick->layers) {
+    if (!brick->failed) {
+      this->Source->repeatLastLayer(brick->key, brick->values.data());
+    }
     this->finish(*brick);
   }
   return true;
@@ -122,7 +125,7 @@ bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
 BrickLoader::Brick* BrickLoader::claim()
 {
   for (const std::unique_ptr<Brick>& brick : this->InWork) {
-    if (brick->begun < this->Layers) {
+    if (brick->begun < brick->layers) {
       return brick.get();
     }
   }
@@ -137,6 +140,7 @@ BrickLoader::Brick* BrickLoader::begin()
   }
   auto brick = std::make_unique<Brick>();
   brick->key = this->Wanted.front();
+  brick->layers = this->Source->layersInside(brick->key);
   this->Wanted.pop_front();
   if (!this->Spare.empty()) {
     brick->values = std::move(this->Spare.back());
@@ -155,8 +159,8 @@ bool BrickLoader::inferTogether(std::unique_lock<std::mutex>& lock)
     if (brick == nullptr) {
       break;
     }
-    brick->begun = this->Layers; // none is left for other threads
-    this->LayersBegun += this->Layers;
+    brick->begun = brick->layers; // none is left for other threads
+    this->LayersBegun += brick->layers;
     bricks.push_back(brick);
   }
   if (bricks.empty()) {

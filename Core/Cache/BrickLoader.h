@@ -64,7 +64,8 @@ private:
   {
     BrickKey key;
     Values values;
-    std::int64_t begun = 0; ///< layers
+    std::int64_t layers;    ///< to infer
+    std::int64_t begun = 0; ///< of them
     std::int64_t done = 0;
     bool failed = false;
   };
@@ -85,7 +86,7 @@ private:
   std::int64_t holding() const;
 
   const std::shared_ptr<const BrickSource> Source;
-  const std::int64_t Layers; ///< of a brick
+  const std::int64_t Layers; ///< of a brick, inside its level or not
   const int ThreadCount;
 
   std::mutex Mutex;              ///< guards what follows, except the threads

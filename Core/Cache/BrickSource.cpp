@@ -5,6 +5,7 @@
 
 #include <glm/common.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace inr {
@@ -100,14 +101,42 @@ private:
 
 } // namespace
 
+std::int64_t BrickSource::points(BrickKey key) const
+{
+  const BrickId id = IdOf(key);
+  const glm::i64vec3 count = BoxOf(this->Levels, id).count;
+  return count.x * count.y * count.z * (id.level == 0 ? 1 : 8);
+}
+
 void BrickSource::infer(const BrickKey* keys, std::int64_t count, float* values,
                         const Arena& arena) const
 {
   const std::int64_t layers = this->Levels.brickDims().z;
   const std::int64_t layer = this->Levels.voxelsPerBrick() / layers;
   arena.forEachBlock(count * layers, 1, [&](std::int64_t k, std::int64_t) {
-    this->inferLayer(keys[k / layers], k % layers, values + k * layer);
+    const BrickKey key = keys[k / layers];
+    if (k % layers < this->layersInside(key)) {
+      this->inferLayer(key, k % layers, values + k * layer);
+    }
   });
+  for (std::int64_t k = 0; k < count; ++k) {
+    this->repeatLastLayer(keys[k], values + k * layers * layer);
+  }
+}
+
+std::int64_t BrickSource::layersInside(BrickKey key) const
+{
+  return BoxOf(this->Levels, IdOf(key)).count.z;
+}
+
+void BrickSource::repeatLastLayer(BrickKey key, float* values) const
+{
+  const std::int64_t layers = this->Levels.brickDims().z;
+  const std::int64_t layer = this->Levels.voxelsPerBrick() / layers;
+  const std::int64_t inside = this->layersInside(key);
+  for (std::int64_t z = inside; z < layers; ++z) {
+    std::copy_n(values + (inside - 1) * layer, layer, values + z * layer);
+  }
 }
 
 std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const Evaluator> field,

@@ -17,6 +17,9 @@ public:
 
   const Hierarchy& hierarchy() const { return this->Levels; }
 
+  /// Points at which the field is asked for a brick's voxels.
+  std::int64_t points(BrickKey key) const;
+
   /// One layer of a brick's voxels, the `z`-th of brickDims().z: normalised values in [0, 1], x
   /// fastest. Voxels beyond the level's last one repeat it.
   virtual void inferLayer(BrickKey key, std::int64_t z, float* values) const = 0;
@@ -28,6 +31,11 @@ public:
   /// All layers of `count` bricks, one brick after the other.
   virtual void infer(const BrickKey* keys, std::int64_t count, float* values,
                      const Arena& arena) const;
+
+  /// Layers of a brick that are in its level; all others are the last of them.
+  std::int64_t layersInside(BrickKey key) const;
+  /// Copies that one to all others. `values`: a whole brick.
+  void repeatLastLayer(BrickKey key, float* values) const;
 
 private:
   Hierarchy Levels;

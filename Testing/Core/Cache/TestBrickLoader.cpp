@@ -111,6 +111,26 @@ TEST_P(BrickLoaderTest, LoadsWhatIsRequested)
   EXPECT_TRUE(Receive(loader).empty());
 }
 
+// 40 voxels in bricks of 8 that share a layer: the last brick has five layers.
+TEST_P(BrickLoaderTest, InfersNoLayerBeyondTheVolume)
+{
+  inr::BrickLoader loader(this->Source, GetParam(), 100);
+  const inr::BrickKey last = inr::KeyOf({0, {0, 0, 5}});
+  loader.request({last});
+  loader.loadFor(Forever);
+  int received = 0;
+  loader.handOver([&](inr::BrickKey key, const float* values) {
+    EXPECT_EQ(key, last);
+    for (std::int64_t k = 0; k < 512; ++k) {
+      const std::int64_t inside = std::min<std::int64_t>(k, 4 * 64 + k % 64);
+      ASSERT_EQ(values[k], CountingSource::ValueOf(key, inside));
+    }
+    ++received;
+  });
+  EXPECT_EQ(received, 1);
+  EXPECT_EQ(this->Source->layers, 5);
+}
+
 TEST_P(BrickLoaderTest, WorksALayerAtLeastAndNoLongerThanItMay)
 {
   this->Source->delay = std::chrono::milliseconds(2);

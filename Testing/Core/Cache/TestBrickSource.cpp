@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 namespace {
 
 float Linear(const glm::vec3& u) { return 0.1f + 0.2f * u.x + 0.3f * u.y + 0.4f * u.z; }
@@ -65,6 +67,29 @@ TEST(BrickSource, ClampsToTheNormalisedRange)
   const auto wild = [](const glm::vec3& u) { return u.x < 0.5f ? -3.0f : 5.0f; };
   for (const float value : Infer(levels, wild, {0, {0, 0, 0}})) {
     EXPECT_TRUE(value == 0.0f || value == 1.0f);
+  }
+}
+
+// What is beyond a level's voxels is a copy and costs nothing, along z where layers are, too.
+TEST(BrickSource, AsksForEachPointOnce)
+{
+  const inr::Hierarchy levels({37, 22, 25}, 8);
+  for (int level = 0; level < levels.levels(); ++level) {
+    const inr::BrickId id{level, levels.bricks(level) - std::int64_t{1}};
+    std::atomic<std::int64_t> asked{0};
+    Infer(
+        levels,
+        [&](const glm::vec3&) {
+          ++asked;
+          return 0.5f;
+        },
+        id);
+    const glm::i64vec3 inside =
+        glm::min(glm::i64vec3(levels.brickDims()), levels.size(level) - levels.firstVoxel(id));
+    const std::int64_t points = inside.x * inside.y * inside.z * (level == 0 ? 1 : 8);
+    EXPECT_EQ(asked, points) << level;
+    const auto source = inr::MakeBrickSource(std::make_shared<FieldEvaluator>(Linear), levels);
+    EXPECT_EQ(source->points(inr::KeyOf(id)), points) << level;
   }
 }
 
