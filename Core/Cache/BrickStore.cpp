@@ -99,6 +99,9 @@ BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Are
     }
     const std::int64_t batch = std::min(atOnce, count - first);
     this->Source->infer(keys.data() + first, batch, values.data(), arena);
+    for (std::int64_t k = first; k < first + batch; ++k) {
+      this->countInferred(keys[static_cast<std::size_t>(k)]);
+    }
     for (std::int64_t k = 0; k < batch; ++k) {
       const BrickKey key = keys[static_cast<std::size_t>(first + k)];
       if (!this->insert(key, values.data() + k * voxels)) {
@@ -137,13 +140,25 @@ void BrickStore::loadFor(double seconds, const std::vector<BrickKey>& keys, cons
 void BrickStore::mapLoaded()
 {
   this->Loader->handOver([this](BrickKey key, const float* values) {
+    this->countInferred(key);
     if (this->Cache.find(key) == PageTable::Unmapped) {
       this->insert(key, values); // or not, where all is in use
     }
   });
 }
 
+void BrickStore::countInferred(BrickKey key) { this->Done.add({1, this->Source->points(key), 0}); }
+
 bool BrickStore::insert(BrickKey key, const float* values)
+{
+  const bool inserted = this->makeRoomAndInsert(key, values);
+  const std::int64_t bytes =
+      this->Cache.hierarchy().voxelsPerBrick() * BytesPerVoxel(this->Cache.precision());
+  this->Done.bytes += inserted ? bytes : 0;
+  return inserted;
+}
+
+bool BrickStore::makeRoomAndInsert(BrickKey key, const float* values)
 {
   const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
   const std::int64_t mapped = this->Cache.mapped();
@@ -260,6 +275,7 @@ BrickStore::Call::Turn::Turn(BrickStore& store) : Store(store)
                                 std::none_of(budget.Stores.begin(), budget.Stores.end(), isInUse));
   });
   store.User = self;
+  this->Before = store.Done;
 }
 
 BrickStore::Call::Turn::~Turn()

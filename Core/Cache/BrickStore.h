@@ -3,6 +3,7 @@
 
 #include "Core/Cache/BrickCache.h"
 #include "Core/Cache/BrickLoader.h"
+#include "Core/Cache/BrickWork.h"
 #include "Core/Cache/CacheBudget.h"
 
 #include <cstdint>
@@ -22,9 +23,10 @@ class BrickStore
 public:
   /// Cache, tables and the loader's queue stay within `bytes` together and share them with the
   /// other stores of `budget`; what is being inferred for who waits, two bricks of floats or a
-  /// single large one, and what the source infers at once where it does so, comes on top. Without `background`, and where the queue would need more than
-  /// an eighth of that, there is no loader, and bricks come in only while somebody waits.
-  /// `threads`: of the loader. Throws what BrickCache throws.
+  /// single large one, and what the source infers at once where it does so, comes on top. Without
+  /// `background`, and where the queue would need more than an eighth of that, there is no loader,
+  /// and bricks come in only while somebody waits. `threads`: of the loader. Throws what BrickCache
+  /// throws.
   BrickStore(std::shared_ptr<CacheBudget> budget, std::shared_ptr<const BrickSource> source,
              CachePrecision precision, std::int64_t bytes, bool background, int threads);
   ~BrickStore();
@@ -72,12 +74,16 @@ public:
     Call(const Call&) = delete;
     Call& operator=(const Call&) = delete;
 
+    /// What has come in since it began.
+    BrickWork done() const { return this->Mine.Store.Done.since(this->Mine.Before); }
+
   private:
     struct Turn
     {
       explicit Turn(BrickStore& store);
       ~Turn();
       BrickStore& Store;
+      BrickWork Before;
     };
     Turn Mine;
   };
@@ -87,6 +93,8 @@ private:
 
   void mapLoaded();
   bool insert(BrickKey key, const float* values);
+  bool makeRoomAndInsert(BrickKey key, const float* values);
+  void countInferred(BrickKey key);
   bool makeQueue(std::int64_t bricks);
 
   // The rest is for who holds the budget's mutex.
@@ -110,6 +118,7 @@ private:
   const std::int64_t LongestQueue;           ///< bricks
   const std::unique_ptr<BrickLoader> Loader; ///< may be null
   BrickCache Cache;
+  BrickWork Done;              ///< so far, for who has a call
   std::int64_t Queue = 0;      ///< bricks for which the loader has room
   std::uint64_t LostQueue = 0; ///< the latest frame that lost what the loader had for it
   std::thread::id User;        ///< of the present call

@@ -110,6 +110,7 @@ int BrickGradients::find(const SampleBatch& batch, const BrickKey* bricks, const
     }
     this->differentiate(batch, bricks, which, count, axis, values, offsets, gradients);
   }
+  this->Found += count;
   return count;
 }
 

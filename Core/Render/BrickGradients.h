@@ -31,6 +31,8 @@ public:
   int find(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count,
            Missing missing, float contribution, RequestList& requests, glm::vec3* gradients);
 
+  std::int64_t found() const { return this->Found; } ///< so far
+
 private:
   /// Samples are moved by one voxel along an axis, up or down.
   struct Move
@@ -68,6 +70,7 @@ private:
   const BrickKernel& Kernel;
   SampleBatch Moved{};                  ///< the samples one voxel along
   float Offsets[SampleBatch::Capacity]; ///< by how many voxels really, at the rim of the volume
+  std::int64_t Found = 0;
 };
 
 } // namespace inr

@@ -38,6 +38,14 @@ CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
   }
 }
 
+FrameStatistics CachedMarcher::statistics() const
+{
+  FrameStatistics statistics = this->Statistics;
+  statistics.work.gradients =
+      (this->Shader ? this->Shader->gradients() : 0) + (this->Probe ? this->Probe->gradients() : 0);
+  return statistics;
+}
+
 CachedRay CachedMarcher::begin(int x, int y)
 {
   CachedRay ray(this->Scene, x, y);
@@ -88,6 +96,7 @@ bool CachedMarcher::enterNextPart(CachedRay& state) const
 bool CachedMarcher::marchPart(CachedRay& state)
 {
   const bool projects = this->Scene.settings.projector.projects();
+  this->Visited = state.samples.visited();
   this->Ended = false;
   this->Waiting = false;
   this->Ways[0] = this->Ways[1] = {};
@@ -114,6 +123,7 @@ bool CachedMarcher::marchPart(CachedRay& state)
   }
   this->close(this->Runs[0], state.color.transmittance);
   this->close(this->Runs[1], state.color.transmittance);
+  this->Statistics.work.cells += state.samples.visited() - this->Visited;
   return this->Ended;
 }
 
@@ -351,6 +361,7 @@ void CachedMarcher::advanceShaded(CachedRay& state)
 void CachedMarcher::goBackTo(int sample, const CachedRay& before, CachedRay& state)
 {
   const Origin& origin = this->originOf(sample);
+  this->Statistics.work.cells += state.samples.visited() - before.samples.visited();
   state.samples = before.samples;
   state.samples.resume(origin.interval + (sample - origin.sample) * origin.steps, origin.stretch,
                        this->Scene.settings);

@@ -61,7 +61,7 @@ public:
   /// picture however often it had to wait. The coarsest level must be mapped.
   bool march(CachedRay& ray);
 
-  const FrameStatistics& statistics() const { return this->Statistics; }
+  FrameStatistics statistics() const;
   SampleTally tally() const { return {this->Statistics.samples, this->LevelSum}; }
   RequestList& requests() { return this->Requests; }
 
@@ -136,6 +136,7 @@ private:
   OnMiss Missing;
   FrameStatistics Statistics;
   std::int64_t LevelSum = 0;
+  std::int64_t Visited = 0; ///< macro-cells, by the present ray before it was marched
   RequestList Requests;
 
   BrickWay Ways[2]; ///< of even and of odd levels, along the present ray

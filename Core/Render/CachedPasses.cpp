@@ -107,8 +107,8 @@ void CompletePass::resume(ActiveTile& tile, CachedMarcher& marcher, const PassOu
   tile.waiting.erase(rest, tile.waiting.end());
 }
 
-void CompletePass::advance(const Arena& arena, const std::function<bool()>& keepGoing,
-                           const PassOutput& output, RequestRanking& requests)
+WorkDone CompletePass::advance(const Arena& arena, const std::function<bool()>& keepGoing,
+                               const PassOutput& output, RequestRanking& requests)
 {
   while (this->Active.size() < this->Window && this->Next < this->Tiles.count()) {
     this->Active.push_back({this->Next++, false, {}});
@@ -130,7 +130,9 @@ void CompletePass::advance(const Arena& arena, const std::function<bool()>& keep
     statistics[index] = marcher.statistics();
     lists[index] = std::move(marcher.requests());
   });
+  WorkDone work;
   for (std::size_t k = 0; k < lists.size(); ++k) {
+    work.add(statistics[k].work);
     this->Statistics.add(statistics[k]);
     requests.add(lists[k]);
   }
@@ -138,6 +140,7 @@ void CompletePass::advance(const Arena& arena, const std::function<bool()>& keep
   const auto finished = [](const ActiveTile& tile) { return tile.waiting.empty(); };
   this->Active.erase(std::remove_if(this->Active.begin(), this->Active.end(), finished),
                      this->Active.end());
+  return work;
 }
 
 void CompletePass::crowd(std::int64_t loaded)

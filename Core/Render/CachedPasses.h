@@ -37,9 +37,9 @@ public:
   explicit CompletePass(const CachedScene& scene) : Scene(scene), Tiles(Size(scene)) {}
 
   /// One round: marches every ray at hand as far as it comes and writes finished pixels. The bricks
-  /// that rays wait for come out of `requests`, in the order of their tiles.
-  void advance(const Arena& arena, const std::function<bool()>& keepGoing, const PassOutput& output,
-               RequestRanking& requests);
+  /// that rays wait for come out of `requests`, in the order of their tiles. The round's work.
+  WorkDone advance(const Arena& arena, const std::function<bool()>& keepGoing,
+                   const PassOutput& output, RequestRanking& requests);
   /// Says that only `loaded` of the latest requests fitted, for the rest of the cache holds what
   /// rays that wait have used. Few: fewer tiles go on. None: the first ray does, alone until it has
   /// come further; the last request is then for its next sample.

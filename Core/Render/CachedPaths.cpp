@@ -100,6 +100,7 @@ void CachedSampler::findCoarser(const FieldPoint& point, Cell& cell)
 void CachedSampler::infer(const FieldPoint* points, float* values)
 {
   this->Missed += static_cast<std::int64_t>(this->Absent.size());
+  this->Inferred += static_cast<std::int64_t>(this->Absent.size());
   this->AbsentPoints.clear();
   for (const std::int64_t k : this->Absent) {
     this->AbsentPoints.push_back(points[k]);
@@ -216,6 +217,7 @@ TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
     traced.tiles[k] = round.tracer.trace(tile, stoppable, round.output.rgba, round.output.depth);
     traced.tiles[k].missed = sampler.missed();
     traced.tiles[k].levels = sampler.levels();
+    traced.tiles[k].work.networkSamples = sampler.inferred();
     lists[k] = sampler.requests();
   };
   const std::size_t atOnce = limit != nullptr ? tilesBetweenLooks : round.tiles.size();
@@ -248,6 +250,7 @@ TracedTiles TraceWithNetwork(const PathRound& round, const Evaluator& field,
     StoppableSampler stoppable(sampler, keepGoing);
     const Tile tile = tiling.tile(round.tiles[k]);
     traced.tiles[k] = round.tracer.trace(tile, stoppable, round.output.rgba, round.output.depth);
+    traced.tiles[k].work.networkSamples = traced.tiles[k].samples;
   });
   traced.seconds = timer.seconds();
   return traced;

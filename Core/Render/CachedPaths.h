@@ -34,6 +34,8 @@ public:
 
   /// Points so far that the cache did not have at the level they asked for.
   std::int64_t missed() const { return this->Missed; }
+  /// Points so far at which the field itself was asked.
+  std::int64_t inferred() const { return this->Inferred; }
   /// Levels that points came from so far.
   const LevelSpan& levels() const { return this->Served; }
   /// The bricks wished for so far, each as often as it was, by their keys.
@@ -77,6 +79,7 @@ private:
   std::int64_t StrideZ;
   glm::ivec3 LastCell;
   std::int64_t Missed = 0;
+  std::int64_t Inferred = 0;
   LevelSpan Served;
   std::vector<BrickKey> Wishes;
 

@@ -83,6 +83,7 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
                                        const WorkLimit& limit, const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
 {
+  this->Work = {};
   if (this->Unfinished && limit.isLimited() && this->Unfinished->continues(frame)) {
     return this->refine(limit, output, keepGoing);
   }
@@ -91,6 +92,15 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
   const BrickCache& cache = this->Store->cache();
   const CachedScene scene{frame, geometry,     majorants,       colors,   steps,
                           cache, this->Kernel, FormatOf(cache), settings, shading};
+  FrameStatistics statistics = this->renderFrame(scene, limit, output, keepGoing);
+  statistics.work = this->Work;
+  return statistics;
+}
+
+FrameStatistics CachedRenderer::renderFrame(const CachedScene& scene, const WorkLimit& limit,
+                                            const PassOutput& output,
+                                            const std::function<bool()>& keepGoing)
+{
   if (this->Options.onlyWhatFits) {
     return this->renderWhatFits(scene, limit, output, keepGoing);
   }
@@ -107,7 +117,7 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
     const Timer march;
     this->beginFrame();
     RequestRanking requests;
-    pass.advance(this->Threads, keepGoing, output, requests);
+    this->Work.add(pass.advance(this->Threads, keepGoing, output, requests));
     marching += march.seconds();
     if (pass.done()) {
       break;
@@ -162,6 +172,7 @@ FrameStatistics CachedRenderer::march(const CachedScene& scene, const PassOutput
   this->beginFrame();
   FrameStatistics statistics = MarchOnce(scene, onMiss, this->Threads, keepGoing, output, requests);
   statistics.marchSeconds = timer.seconds();
+  this->Work.add(statistics.work);
   return statistics;
 }
 
@@ -227,7 +238,7 @@ FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput&
     const Timer march;
     this->beginFrame();
     RequestRanking requests;
-    this->Unfinished->advance(this->Threads, keepGoing, requests);
+    this->Work.add(this->Unfinished->advance(this->Threads, keepGoing, requests));
     marching += march.seconds();
     if (this->Unfinished->done() ||
         (!inTime() && this->Unfinished->statistics().samples > before)) {
@@ -239,6 +250,7 @@ FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput&
   FrameStatistics statistics = this->Unfinished->statistics();
   statistics.complete = this->Unfinished->done();
   statistics.marchSeconds = marching;
+  statistics.work = this->Work;
   return statistics;
 }
 

@@ -77,6 +77,8 @@ public:
   const std::shared_ptr<BrickStore>& sharedStore() const { return this->Store; }
 
 private:
+  FrameStatistics renderFrame(const CachedScene& scene, const WorkLimit& limit,
+                              const PassOutput& output, const std::function<bool()>& keepGoing);
   void beginFrame();
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
@@ -107,6 +109,7 @@ private:
   std::shared_ptr<const Evaluator> Field;
   std::shared_ptr<BrickStore> Store;
   std::uint64_t Latest = BrickCache::Pinned; ///< of this renderer's frames in the store
+  WorkDone Work;                             ///< of rays, in the present call
   std::optional<StepTable> Steps;
   /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
   std::optional<Refinement> Unfinished;

@@ -68,6 +68,8 @@ public:
   /// another: the outermost cells reach as far as any ray.
   INR_HOST_DEVICE double enter() const { return glm::max(this->Cells.enter(), this->Begin); }
   INR_HOST_DEVICE double exit() const { return glm::min(this->Cells.exit(), this->End); }
+  /// Cells looked at so far, on all rays.
+  INR_HOST_DEVICE std::int64_t visited() const { return this->Cells.visited(); }
 
 private:
   /// t up to which a grid bounds what LevelOfDetail chooses.

@@ -6,6 +6,7 @@
 #include "Core/Render/Lights.h"
 #include "Core/Render/PathOptions.h"
 #include "Core/Render/TranslucentLayers.h"
+#include "Core/Render/WorkDone.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
@@ -125,7 +126,7 @@ struct LevelSpan
 };
 
 /// What making a picture took; of path tracing, one path through each pixel, the latest, but for
-/// the wall time.
+/// the wall time and the work.
 struct FrameStatistics
 {
   std::int64_t rays = 0;    ///< that met the volume
@@ -139,6 +140,7 @@ struct FrameStatistics
   LevelSpan levels;        ///< of the cache, that samples came from
   double seconds = 0;      ///< wall time
   double marchSeconds = 0; ///< of these, without what was loaded into the cache in between
+  WorkDone work;           ///< of the call
 
   /// Adds what was counted in another part of the picture; times are not counts.
   void add(const FrameStatistics& part)
@@ -148,6 +150,7 @@ struct FrameStatistics
     this->missed += part.missed;
     this->clamped += part.clamped;
     this->levels.add(part.levels);
+    this->work.add(part.work);
   }
 };
 

@@ -75,13 +75,20 @@ public:
   /// Where the ray enters the cell and where it leaves it.
   INR_HOST_DEVICE double enter() const { return this->Way.enter(); }
   INR_HOST_DEVICE double exit() const { return this->Way.exit(); }
+  /// Cells looked at so far, on all rays.
+  INR_HOST_DEVICE std::int64_t visited() const { return this->Visited; }
 
 private:
-  INR_HOST_DEVICE void findIndex() { this->Index = this->Cells->index(this->Way.cell()); }
+  INR_HOST_DEVICE void findIndex()
+  {
+    this->Index = this->Cells->index(this->Way.cell());
+    ++this->Visited;
+  }
 
   const MajorantGrid* Cells = nullptr;
   LatticeWalker Way;
   std::int64_t Index = 0;
+  std::int64_t Visited = 0;
 };
 
 } // namespace inr

@@ -52,6 +52,7 @@ void PathPicture::finishTiles(const TracedTiles& traced)
   for (std::size_t k = 0; k < traced.tiles.size(); ++k) {
     const bool finished = traced.final || traced.tiles[k].missed == 0;
     (finished ? this->Finished : unfinished).add(traced.tiles[k]);
+    this->Work.add(traced.tiles[k].work);
     if (!finished) {
       this->Pending[pending++] = this->Pending[k];
     }
@@ -111,6 +112,7 @@ FrameStatistics PathPicture::advance(const Frame& frame, const PathMedium& mediu
   if (!this->continues(frame)) {
     this->start(frame);
   }
+  this->Work = {};
   bool inTime = true;
   while (inTime && this->Colors.samples() < frame.samplesPerPixel) {
     const Timer round;
@@ -121,6 +123,7 @@ FrameStatistics PathPicture::advance(const Frame& frame, const PathMedium& mediu
   FrameStatistics statistics = this->Latest;
   statistics.paths = this->Colors.samples();
   statistics.complete = this->Colors.samples() == frame.samplesPerPixel;
+  statistics.work = this->Work;
   return statistics;
 }
 

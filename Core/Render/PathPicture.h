@@ -79,6 +79,7 @@ private:
   bool Traced = false;               ///< any tile of the picture
   FrameStatistics Finished;          ///< of the sample's other tiles
   FrameStatistics Latest;            ///< of the latest sample, as far as it is traced
+  WorkDone Work;                     ///< of the present call
 };
 
 } // namespace inr

@@ -102,6 +102,10 @@ public:
       this->Statistics.samples += count;
       this->collide();
     }
+    for (const PathState& path : this->Paths) {
+      this->Statistics.work.scatterings += path.bounces;
+      this->Statistics.work.cells += path.walker.visited();
+    }
   }
 
   void write(Image& rgba, Image* depth) const
@@ -161,9 +165,11 @@ private:
     for (std::size_t live = 0; live < this->Live.size(); ++live) {
       const int k = this->Live[live];
       const PathSample& sample = this->Samples[live];
+      PathState& path = this->Paths[static_cast<std::size_t>(k)];
       float value = this->Values[live];
       this->Statistics.clamped += ClampToRange(sample.range, value) ? 1 : 0;
-      if (Collide(this->Scene, this->Paths[static_cast<std::size_t>(k)], sample.majorant, value)) {
+      this->Statistics.work.lightSteps += path.towardsLight ? 1 : 0;
+      if (Collide(this->Scene, path, sample.majorant, value)) {
         this->Live[alive++] = k;
       }
     }

@@ -24,6 +24,8 @@ public:
   /// The gradient where `find` was last, per voxel of level 0; false as above.
   bool findGradient(float contribution, RequestList& requests, glm::vec3& gradient);
 
+  std::int64_t gradients() const { return this->Gradients.found(); } ///< so far
+
 private:
   bool open(const Ray& ray, int level, double place, float contribution, RequestList& requests);
 

@@ -27,10 +27,10 @@ Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
                                        : Image(soFar.rgba.width, soFar.rgba.height, 2))
 {}
 
-void Refinement::advance(const Arena& arena, const std::function<bool()>& keepGoing,
-                         RequestRanking& requests)
+WorkDone Refinement::advance(const Arena& arena, const std::function<bool()>& keepGoing,
+                             RequestRanking& requests)
 {
-  this->Pass.advance(arena, keepGoing, {this->Rgba, &this->Depth, &this->Samples}, requests);
+  return this->Pass.advance(arena, keepGoing, {this->Rgba, &this->Depth, &this->Samples}, requests);
 }
 
 void Refinement::copyTo(const PassOutput& output) const

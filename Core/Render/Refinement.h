@@ -23,9 +23,9 @@ public:
   /// Whether `frame` asks for the same picture.
   bool continues(const Frame& frame) const { return IsSamePicture(this->Picture, frame); }
 
-  /// One round of the complete pass; the bricks that it waits for come out of `requests`.
-  void advance(const Arena& arena, const std::function<bool()>& keepGoing,
-               RequestRanking& requests);
+  /// One round of the complete pass; the bricks that it waits for come out of `requests`. Its work.
+  WorkDone advance(const Arena& arena, const std::function<bool()>& keepGoing,
+                   RequestRanking& requests);
   /// For what it waits for.
   CompletePass& pass() { return this->Pass; }
   bool done() const { return this->Pass.done(); }

@@ -188,8 +188,11 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   }
   const BrickStore::Call call = this->Cached->call();
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
-  return this->Cached->render(frame, geometry, this->Cells, this->Colors->lookup(), settings, lit,
-                              limit, output, keepGoing);
+  FrameStatistics statistics =
+      this->Cached->render(frame, geometry, this->Cells, this->Colors->lookup(), settings, lit,
+                           limit, output, keepGoing);
+  statistics.work.bricks = call.done();
+  return statistics;
 }
 
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
@@ -213,7 +216,9 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
   const TraceTiles trace = [&](const PathRound& round) {
     return cached.tracePaths(round, limit, keepGoing);
   };
-  return this->Paths->advance(frame, medium, trace, limit, output);
+  FrameStatistics statistics = this->Paths->advance(frame, medium, trace, limit, output);
+  statistics.work.bricks = call.done();
+  return statistics;
 }
 
 FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,

@@ -34,6 +34,8 @@ public:
   int shade(const SampleBatch& batch, int count, const Request& request, RequestList& requests,
             glm::vec4* colors);
 
+  std::int64_t gradients() const { return this->Gradients.found(); } ///< so far
+
 private:
   const Shading& Lighting;
   const ColorLookup& Colors;

@@ -146,6 +146,7 @@ public:
   INR_HOST_DEVICE double end() const { return this->End; }         ///< place where the ray ends
   INR_HOST_DEVICE const SampleStretch& stretch() const { return this->Stretch; }
   INR_HOST_DEVICE const LevelOfDetail& detail() const { return this->Detail; }
+  INR_HOST_DEVICE std::int64_t visited() const { return this->Cells.visited(); } ///< macro-cells
 
   /// Goes back to `interval` of a stretch, from where this walk came by when it was as it is.
   INR_HOST_DEVICE void resume(std::int64_t interval, const SampleStretch& stretch,

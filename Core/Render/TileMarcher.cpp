@@ -22,6 +22,10 @@ FrameStatistics TileMarcher::march(const Tile& tile, Image& rgba, Image* depth)
     this->composite();
   }
   this->writePixels(tile, rgba, depth);
+  for (const MarchState& state : this->Rays) {
+    this->Statistics.work.cells += state.samples.visited();
+  }
+  this->Statistics.work.networkSamples = this->Statistics.samples;
   return this->Statistics;
 }
 
@@ -98,6 +102,7 @@ void TileMarcher::inferGradients()
   this->Neighbors.resize(this->Positions.size());
   this->Scene.evaluator.evaluate(this->Positions.data(), count, this->Neighbors.data());
   this->Statistics.samples += count;
+  this->Statistics.work.gradients += static_cast<std::int64_t>(this->Visible.size());
 }
 
 void TileMarcher::shade()
@@ -215,6 +220,7 @@ bool TileMarcher::enterNextPart(int k, bool goesOn)
   if (state.halfOpaqueAt >= 0 && state.halfOpaqueDepth < 0) {
     state.halfOpaqueDepth = this->Scene.geometry.windowDepth(state.ray.at(state.halfOpaqueAt));
   }
+  this->Statistics.work.cells += state.samples.visited();
   state.ray = this->Scene.geometry.ray(x, y, ++state.part);
   state.samples = SampleWalker(this->Scene.majorants, this->Scene.settings, state.ray, 0, 1,
                                JitterOf(this->Scene.settings, PixelStream(frame, x, y)));

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Only what a scene requires: what a frame must not do.
+#include "Testing/Core/Render/RecordingField.h"
+
+#include <set>
+#include <tuple>
+
+namespace {
+
+constexpr std::int64_t Stride = 8; // of bricks of 9 voxels
+
+/// Places along x or y of the bricks of level 0 that the field was asked for.
+std::set<std::int64_t> BricksAlong(const RecordedScene& scene, int axis)
+{
+  std::set<std::int64_t> places;
+  for (const RecordingField::Box& box : scene.field->layers(0)) {
+    places.insert(std::lround(box.low[axis]) / Stride);
+  }
+  return places;
+}
+
+/// Voxels along z of the layers of level 0 that the field was asked for, in bricks between two
+/// voxels along x.
+std::set<std::int64_t> Layers(const RecordedScene& scene, double low = 0, double high = 72)
+{
+  std::set<std::int64_t> places;
+  for (const RecordingField::Box& box : scene.field->layers(0)) {
+    if (box.low.x > low - 0.5 && box.high.x < high + 0.5) {
+      places.insert(std::lround(box.low.z));
+    }
+  }
+  return places;
+}
+
+std::set<std::int64_t> From(std::int64_t first, std::int64_t last)
+{
+  std::set<std::int64_t> places;
+  for (std::int64_t k = first; k <= last; ++k) {
+    places.insert(k);
+  }
+  return places;
+}
+
+/// The whole of a volume of 73^3 voxels, 9 bricks along each axis, along +z.
+inr::Frame FromBelow(const glm::dvec2& low = {0, 0}, const glm::dvec2& high = {72, 72})
+{
+  inr::Frame frame = ParallelFrame(80, low, high, -10, 100);
+  frame.levelOfDetailScale = 0;
+  return frame;
+}
+
+constexpr glm::i64vec3 Cube(73, 73, 73);
+
+TEST(WorkSpared, NoGradientsWithoutShading)
+{
+  for (const bool cached : {false, true}) {
+    RecordedScene scene(SmallBricks(cached));
+    EXPECT_EQ(scene.render(Oblique(glm::dvec3(scene.dims))).gradients, 0);
+    EXPECT_EQ(scene.render(PathView(scene.dims)).gradients, 0);
+    EXPECT_GT(scene.render(ShadedView(scene.dims)).gradients, 0);
+  }
+}
+
+TEST(WorkSpared, NoBrickOutsideTheView)
+{
+  RecordedScene scene(SmallBricks(), Waves, Cube);
+  scene.renderer.setTransferFunction(UniformMedium(1e-4f));
+  scene.render(FromBelow({20.5, 33}, {39.5, 47.9}));
+  EXPECT_EQ(BricksAlong(scene, 0), From(2, 4));
+  EXPECT_EQ(BricksAlong(scene, 1), From(4, 5));
+  EXPECT_EQ(Layers(scene), From(0, 72));
+}
+
+TEST(WorkSpared, NoBrickBehindTheCameraOrAPlane)
+{
+  for (const bool planes : {false, true}) {
+    RecordedScene scene(SmallBricks(), Waves, Cube);
+    scene.renderer.setTransferFunction(UniformMedium(1e-4f));
+    inr::Frame frame = FromBelow();
+    if (planes) {
+      frame.clippingPlanes = {{0, 0, 1, -30.5}, {0, 0, -1, 60.5}};
+    } else {
+      frame = ParallelFrame(80, {0, 0}, {72, 72}, 30.5, 60.5);
+      frame.levelOfDetailScale = 0;
+    }
+    scene.render(frame);
+    EXPECT_EQ(Layers(scene), From(24, 64)) << planes;
+  }
+}
+
+TEST(WorkSpared, NoBrickOfTransparentSpace)
+{
+  const auto ramp = [](const glm::vec3& u) { return u.x; };
+  inr::MacroCells cells = inr::MakeMacroCells(Cube, 8);
+  cells.apron = 1.0 / glm::dvec3(Cube);
+  for (std::size_t k = 0; k < cells.ranges.size(); ++k) {
+    const auto x = static_cast<double>(static_cast<std::int64_t>(k) % cells.dims.x);
+    cells.ranges[k] = {static_cast<float>((8 * x - 1.5) / 73),
+                       static_cast<float>((8 * x + 9.5) / 73)};
+  }
+  RecordedScene scene(SmallBricks(), ramp, Cube, cells);
+  inr::TransferFunction function = UniformMedium(0);
+  function.table.resize(74, function.table[0]);
+  function.table[73 - 18].w = 1e-3f; // seen between 1/73 on either side of x = 55 / 73
+  scene.renderer.setTransferFunction(function);
+  scene.render(FromBelow());
+  EXPECT_EQ(BricksAlong(scene, 0), From(6, 7));
+  EXPECT_EQ(BricksAlong(scene, 1), From(0, 8));
+}
+
+TEST(WorkSpared, NoBrickAtAllWhereNothingCanBeSeen)
+{
+  for (const auto& view : {FromBelow(), PathView(Cube)}) {
+    RecordedScene scene(SmallBricks(), Waves, Cube);
+    scene.renderer.setTransferFunction(UniformMedium(0));
+    scene.render(view);
+    EXPECT_TRUE(scene.field->layers(0).empty());
+    EXPECT_EQ(scene.statistics.samples, 0);
+  }
+}
+
+TEST(WorkSpared, NoBrickBehindOpaqueGeometry)
+{
+  RecordedScene scene(SmallBricks(), Waves, Cube);
+  scene.renderer.setTransferFunction(UniformMedium(1e-4f));
+  inr::Frame frame = FromBelow();
+  const std::vector<float> depth(std::size_t{80} * 80, (30.5f + 10) / 110);
+  frame.opaqueDepth = depth.data();
+  scene.render(frame);
+  EXPECT_EQ(Layers(scene), From(0, 32));
+}
+
+/// Views that want each and every brick: a frame of each mode.
+std::vector<inr::Frame> Views(const glm::i64vec3& dims)
+{
+  return {Oblique(glm::dvec3(dims)), ShadedView(dims), PathView(dims)};
+}
+
+TEST(WorkSpared, NothingIsInferredOfWhatTheCacheHas)
+{
+  for (const inr::Frame& view : Views({47, 41, 44})) {
+    RecordedScene scene(SmallBricks());
+    scene.render(view);
+    const std::int64_t asked = scene.field->inGrids();
+    inr::Frame again = view;
+    again.seed = 1; // other samples of the same
+    const inr::WorkDone work = scene.render(again);
+    EXPECT_EQ(work.networkSamples, 0);
+    EXPECT_TRUE(work.bricks == inr::BrickWork{});
+    EXPECT_EQ(scene.field->inGrids(), asked);
+    EXPECT_EQ(scene.field->scattered(), 0);
+  }
+}
+
+TEST(WorkSpared, NothingIsInferredForOtherColoursOrLights)
+{
+  for (const inr::Frame& view : Views({47, 41, 44})) {
+    RecordedScene scene(SmallBricks());
+    scene.renderer.setTransferFunction(UniformMedium(0.01f));
+    scene.render(view);
+    const std::int64_t asked = scene.field->inGrids();
+    inr::Frame frame = view;
+    frame.lights[0].color = glm::vec3(0.1f, 0.5f, 2.0f);
+    frame.lights[0].direction = glm::dvec3(1, 1, -0.2);
+    scene.render(frame);
+    scene.renderer.setTransferFunction(OpacityRamp(0.02f));
+    scene.render(frame);
+    scene.renderer.setTransferFunction(UniformMedium(0.3f, glm::vec3(0.4f)));
+    scene.render(frame);
+    frame.unitDistance *= 3;
+    frame.paths.anisotropy = 0.5;
+    if (frame.shading) {
+      frame.shading->specular = 0.7f;
+    }
+    scene.render(frame);
+    EXPECT_EQ(scene.field->inGrids(), asked);
+    EXPECT_EQ(scene.field->scattered(), 0);
+  }
+}
+
+TEST(WorkSpared, ThePicturesOfPathsGoOnWithNothingWhenTheyAreDone)
+{
+  for (const bool cached : {false, true}) {
+    RecordedScene scene(SmallBricks(cached));
+    const inr::Frame frame = PathView(scene.dims);
+    EXPECT_FALSE(scene.render(frame) == inr::WorkDone{});
+    EXPECT_TRUE(scene.render(frame) == inr::WorkDone{});
+    EXPECT_TRUE(scene.statistics.complete);
+    EXPECT_EQ(scene.statistics.paths, 2);
+  }
+}
+
+/// One of `count` views around the volume.
+inr::Frame Around(inr::Frame frame, const glm::dvec3& dims, int k, int count)
+{
+  const double angle = 2 * 3.14159265358979 * k / count;
+  const glm::dvec3 eye =
+      0.5 * dims + 1.5 * glm::length(dims) * glm::dvec3(std::sin(angle), 0.3, std::cos(angle));
+  frame.clipToWorld =
+      glm::inverse(glm::perspective(glm::radians(30.0), 48.0 / 37, 0.2 * glm::length(dims),
+                                    5 * glm::length(dims)) *
+                   glm::lookAt(eye, 0.5 * dims, glm::dvec3(0, 1, 0)));
+  frame.levelOfDetailScale = 1;
+  return frame;
+}
+
+TEST(WorkSpared, AnOrbitInfersNothingTheSecondTimeRound)
+{
+  constexpr int views = 7;
+  for (const inr::Frame& view : Views({150, 130, 140})) {
+    RecordedScene scene(SmallBricks(), Waves, {150, 130, 140});
+    std::int64_t asked = 0;
+    for (int k = 0; k < 2 * views; ++k) {
+      asked = k == views ? scene.field->inGrids() : asked;
+      scene.render(Around(view, glm::dvec3(scene.dims), k % views, views));
+      EXPECT_EQ(scene.statistics.missed, 0);
+    }
+    EXPECT_GT(asked, 0);
+    EXPECT_EQ(scene.field->inGrids(), asked);
+    EXPECT_EQ(scene.field->scattered(), 0);
+  }
+}
+
+} // namespace
