@@ -13,7 +13,7 @@ Document ScanBson(const InputFile& file);
 
 /// The same for a model spelled as JSON text (comments allowed), where a blob is an object with an
 /// array `bytes`.
-Document ScanJsonText(const std::string& path);
+Document ScanJsonText(const InputFile& file);
 
 /// The first key of the BSON root document that starts with these bytes; empty when they cannot be
 /// one.

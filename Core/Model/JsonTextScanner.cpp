@@ -2,9 +2,11 @@
 #include "Core/Error.h"
 #include "Core/Model/BsonScanner.h"
 
-#include <cmath>
-#include <fstream>
+#include <algorithm>
+#include <array>
+#include <istream>
 #include <limits>
+#include <streambuf>
 #include <utility>
 
 namespace inr {
@@ -12,6 +14,32 @@ namespace {
 
 using nlohmann::json;
 using Container = DocumentBuilder::Container;
+
+// The file as a stream, through a small window of it.
+class FileBuffer : public std::streambuf
+{
+public:
+  explicit FileBuffer(const InputFile& file) : File(file) {}
+
+protected:
+  int_type underflow() override
+  {
+    const std::int64_t left = this->File.size() - this->Position;
+    const auto bytes = std::min(left, static_cast<std::int64_t>(this->Window.size()));
+    if (bytes == 0) {
+      return traits_type::eof();
+    }
+    this->File.read(this->Position, this->Window.data(), static_cast<std::size_t>(bytes));
+    this->Position += bytes;
+    this->setg(this->Window.data(), this->Window.data(), this->Window.data() + bytes);
+    return traits_type::to_int_type(this->Window[0]);
+  }
+
+private:
+  const InputFile& File;
+  std::int64_t Position = 0;
+  std::array<char, 1 << 14> Window{};
+};
 
 // Receives nlohmann's parsing events. An array under the key "bytes" goes straight into bytes: as
 // JSON values it would take many times the file's size.
@@ -118,12 +146,10 @@ private:
 
 } // namespace
 
-Document ScanJsonText(const std::string& path)
+Document ScanJsonText(const InputFile& file)
 {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    throw Error(ErrorCode::CannotRead, "the file cannot be opened");
-  }
+  FileBuffer buffer(file);
+  std::istream stream(&buffer);
   TextHandler handler;
   json::sax_parse(stream, &handler, json::input_format_t::json, /*strict=*/true,
                   /*ignore_comments=*/true);

@@ -56,7 +56,7 @@ bool StartsWithItsSize(const std::string& start, const InputFile& file)
   return start.size() >= 4 && FromBytes<std::int32_t>(start.data()) == file.size();
 }
 
-Document Scan(const InputFile& file, const std::string& path)
+Document Scan(const InputFile& file)
 {
   if (file.size() == 0) {
     throw Error(ErrorCode::Malformed, "the file is empty");
@@ -75,7 +75,7 @@ Document Scan(const InputFile& file, const std::string& path)
     throw Error(ErrorCode::Malformed, "this is not a model file: it starts neither as BSON with a "
                                       "known key nor as JSON text");
   }
-  return text ? ScanJsonText(path) : ScanBson(file);
+  return text ? ScanJsonText(file) : ScanBson(file);
 }
 
 void RequireChecksum(const ModelHeader& header, std::uint32_t found)
@@ -106,9 +106,9 @@ Model LoadBlobs(const InputFile& file, ModelHeader header)
   return std::move(model);
 }
 
-ModelPointer Load(const InputFile& file, const std::string& path, const ModelOverrides& overrides)
+ModelPointer Load(const InputFile& file, const ModelOverrides& overrides)
 {
-  const Document document = Scan(file, path);
+  const Document document = Scan(file);
   return std::make_shared<const Model>(LoadBlobs(file, ParseModelHeader(document, overrides)));
 }
 
@@ -145,7 +145,7 @@ Model ReadModelHeader(const std::string& path, const ModelOverrides& overrides)
 {
   return Reading(path, [&] {
     const InputFile file(path);
-    const Document document = Scan(file, path);
+    const Document document = Scan(file);
     Model model = ParseModelHeader(document, overrides).model;
     model.macroCells = {};
     return model;
@@ -154,13 +154,13 @@ Model ReadModelHeader(const std::string& path, const ModelOverrides& overrides)
 
 ModelPointer ReadModel(const std::string& path, const ModelOverrides& overrides)
 {
-  return Reading(path, [&] { return Load(InputFile(path), path, overrides); });
+  return Reading(path, [&] { return Load(InputFile(path), overrides); });
 }
 
 ModelPointer ModelFromBytes(std::string bytes)
 {
   const char* const name = "a model that was sent";
-  return Reading(name, [&] { return Load(InputFile::OfBytes(std::move(bytes)), name, {}); });
+  return Reading(name, [&] { return Load(InputFile::OfBytes(std::move(bytes)), {}); });
 }
 
 } // namespace inr

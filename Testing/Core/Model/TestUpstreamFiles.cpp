@@ -3,6 +3,7 @@
 // Files as instantvnr and cINR write them, and compact ones as FORMAT.md describes them, made by
 // make_upstream_files.py.
 #include "Core/Error.h"
+#include "Core/Model/ModelBytes.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 
 #include <nlohmann/json.hpp>
@@ -55,6 +56,13 @@ TEST_P(UpstreamFiles, TellTheirRanges)
     }
   }
   EXPECT_EQ(model->macroCells.provenance, inr::MacroCellProvenance::File);
+}
+
+// Text, too, which once was looked for in a file of the bytes' name.
+TEST_P(UpstreamFiles, OpenWhenTheyAreSent)
+{
+  const inr::ModelPointer sent = inr::ModelFromBytes(ReadBytes(this->path()));
+  EXPECT_EQ(sent->parameters, inr::ReadModel(this->path())->parameters);
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, UpstreamFiles, testing::ValuesIn(CaseNames()),
