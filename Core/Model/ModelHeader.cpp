@@ -9,6 +9,7 @@
 #include "Core/Model/Quantised.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace inr {
@@ -104,8 +105,9 @@ void ReadParameterSection(const JsonSection& root, const Document& document, Mod
   const std::string path = ParametersPath(root);
   const JsonSection section = path.empty() ? root : root.section("parameters");
   const std::int64_t count = section.integer("n_params");
-  if (count < 1) {
-    section.refuse("n_params", "must be positive");
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+  if (count < 1 || count > most) { // more could not be multiplied by a size
+    section.refuse("n_params", "must be positive and under 2^31");
   }
   const auto parameterCount = static_cast<std::uint64_t>(count);
   header.parameters = &RequireBlob(document, (path.empty() ? "" : "/" + path) + "/params_binary");
