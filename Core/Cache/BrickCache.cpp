@@ -5,6 +5,7 @@
 #include "Core/Random.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iomanip>
@@ -91,23 +92,24 @@ std::uint64_t BrickCache::lastCandidate(std::uint64_t frame) const
   if (stride < 2) {
     return ~std::uint64_t{0};
   }
-  std::vector<std::uint64_t> sample;
+  std::array<std::uint64_t, samples> sample; // whoever needs a place may have no memory to ask for
+  std::size_t count = 0;
   for (std::int64_t k = 0; k < samples; ++k) {
     // Not evenly: what is in use may be, too.
     const std::uint64_t within = MixBits(static_cast<std::uint64_t>(k));
     const auto offset = static_cast<std::int64_t>(within % static_cast<std::uint64_t>(stride));
     const auto slot = static_cast<std::int32_t>(k * stride + offset);
     if (this->lastUse(slot) < frame) {
-      sample.push_back(this->candidate(slot));
+      sample[count++] = this->candidate(slot);
     }
   }
   const std::size_t wanted =
       static_cast<std::size_t>(std::max<std::int64_t>(samples / 32, 1024 / stride));
-  if (sample.size() <= wanted) {
+  if (count <= wanted) {
     return ~std::uint64_t{0};
   }
   const auto last = sample.begin() + static_cast<std::ptrdiff_t>(wanted);
-  std::nth_element(sample.begin(), last, sample.end());
+  std::nth_element(sample.begin(), last, sample.begin() + static_cast<std::ptrdiff_t>(count));
   return *last;
 }
 
@@ -172,6 +174,7 @@ bool BrickCache::insert(BrickKey key, const float* values)
   if (this->mapped() == this->Capacity) {
     return this->replace(key, values);
   }
+  this->Table.makeRoomForOne();
   const auto slot = static_cast<std::int32_t>(this->mapped());
   this->resize(slot + 1);
   this->fill(slot, key, values);
@@ -180,6 +183,7 @@ bool BrickCache::insert(BrickKey key, const float* values)
 
 bool BrickCache::replace(BrickKey key, const float* values)
 {
+  this->Table.makeRoomForOne(); // before a brick goes for this one
   const std::int32_t slot = this->oldest(this->Frame);
   if (slot >= 0) {
     this->unmap(slot);

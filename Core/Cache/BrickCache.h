@@ -56,6 +56,7 @@ public:
   std::uint64_t frame() const { return this->Frame; }
   /// Stores and maps an unmapped brick. Without room, evicts the least recently used one that is
   /// neither of the current frame nor pinned; false, and nothing has changed, when there is none.
+  /// Nothing has changed, either, where std::bad_alloc comes; all else takes no memory.
   bool insert(BrickKey key, const float* values);
   /// The same in the place of another one even where there is room.
   bool replace(BrickKey key, const float* values);

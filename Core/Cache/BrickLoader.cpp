@@ -2,6 +2,7 @@
 #include "Core/Cache/BrickLoader.h"
 
 #include <algorithm>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -92,9 +93,22 @@ void BrickLoader::work()
   LowerPriority();
   std::unique_lock<std::mutex> lock(this->Mutex);
   while (!this->Ended) {
-    if (this->Paused || !this->inferOne(lock)) {
+    if (this->Paused || !this->tryToInferOne(lock)) {
       this->Wake.wait(lock);
     }
+  }
+}
+
+/// The same where nobody would catch what it throws: no memory for another brick.
+bool BrickLoader::tryToInferOne(std::unique_lock<std::mutex>& lock)
+{
+  try {
+    return this->inferOne(lock);
+  } catch (...) {
+    this->Failure = std::current_exception();
+    this->Wanted.clear(); // or it would be tried for ever
+    this->Ready.notify_all();
+    return false;
   }
 }
 
@@ -139,6 +153,8 @@ BrickLoader::Brick* BrickLoader::begin()
     return nullptr;
   }
   auto brick = std::make_unique<Brick>();
+  this->InWork.reserve(this->InWork.size() + 1); // what takes memory comes first: all or nothing
+  this->Finished.reserve(this->InWork.size() + this->Finished.size() + 1);
   brick->key = this->Wanted.front();
   brick->layers = this->Source->layersInside(brick->key);
   this->Wanted.pop_front();
@@ -154,14 +170,21 @@ BrickLoader::Brick* BrickLoader::begin()
 bool BrickLoader::inferTogether(std::unique_lock<std::mutex>& lock)
 {
   std::vector<Brick*> bricks;
-  for (std::int64_t k = 0; k < this->Source->bricksAtOnce(); ++k) {
-    Brick* const brick = this->begin();
-    if (brick == nullptr) {
-      break;
+  bricks.reserve(static_cast<std::size_t>(this->Source->bricksAtOnce()));
+  try {
+    while (static_cast<std::int64_t>(bricks.size()) < this->Source->bricksAtOnce()) {
+      Brick* const brick = this->begin();
+      if (brick == nullptr) {
+        break;
+      }
+      brick->begun = brick->layers; // none is left for other threads
+      this->LayersBegun += brick->layers;
+      bricks.push_back(brick);
     }
-    brick->begun = brick->layers; // none is left for other threads
-    this->LayersBegun += brick->layers;
-    bricks.push_back(brick);
+  } catch (const std::bad_alloc&) {
+    if (bricks.empty()) {
+      throw;
+    } // else those that are begun have to be finished
   }
   if (bricks.empty()) {
     return false;
@@ -314,6 +337,8 @@ void BrickLoader::handOver(const std::function<void(BrickKey, const float*)>& re
     if (this->Failure) {
       std::rethrow_exception(std::exchange(this->Failure, nullptr));
     }
+    bricks.reserve(this->InWork.size() + this->Finished.size()); // which finish() relies on
+    this->Spare.reserve(this->Spare.size() + this->Finished.size());
     bricks.swap(this->Finished);
     this->HandingOver = bricks.size();
   }

@@ -76,6 +76,7 @@ private:
   void waitFor(Clock::time_point deadline, std::unique_lock<std::mutex>& lock);
   bool hasWork() const;
   bool inferOne(std::unique_lock<std::mutex>& lock);
+  bool tryToInferOne(std::unique_lock<std::mutex>& lock);
   bool inferTogether(std::unique_lock<std::mutex>& lock);
   Brick* claim();
   Brick* begin();

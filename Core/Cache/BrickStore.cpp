@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <utility>
 
 namespace inr {
@@ -142,7 +143,10 @@ void BrickStore::mapLoaded()
   this->Loader->handOver([this](BrickKey key, const float* values) {
     this->countInferred(key);
     if (this->Cache.find(key) == PageTable::Unmapped) {
-      this->insert(key, values); // or not, where all is in use
+      try {
+        this->insert(key, values);      // or not, where all is in use
+      } catch (const std::bad_alloc&) { // nor without memory: who wants it asks again
+      }
     }
   });
 }
@@ -293,7 +297,10 @@ BrickStore::Call::Call(BrickStore& store, const Arena& arena) : Mine(store)
 {
   if (store.Loader) {
     store.Loader->pause();
-    store.mapLoaded();
+    try {
+      store.mapLoaded();
+    } catch (const std::bad_alloc&) { // between two pictures: this one asks for the same again
+    }
   }
   const BrickKey coarsest = store.Cache.hierarchy().coarsest();
   if (store.Cache.find(coarsest) == PageTable::Unmapped) {

@@ -4,6 +4,7 @@
 #include "Core/Random.h"
 
 #include <algorithm>
+#include <new>
 
 namespace inr {
 
@@ -80,12 +81,17 @@ void PageTable::eraseBucket(std::size_t hole)
   this->Directory[hole] = {};
 }
 
+void PageTable::makeRoomForOne()
+{
+  if (2 * (static_cast<std::size_t>(this->pages()) + 1) > this->Directory.size()) {
+    this->resizeDirectory(2 * this->Directory.size());
+  }
+}
+
 std::int32_t PageTable::makePage(BrickKey page)
 {
   const auto at = static_cast<std::int32_t>(this->pages());
-  if (2 * (static_cast<std::size_t>(at) + 1) > this->Directory.size()) {
-    this->resizeDirectory(2 * this->Directory.size());
-  }
+  this->makeRoomForOne();
   this->Keys.resize(at + 1);
   this->Mapped.resize(at + 1);
   this->Entries.resize((at + 1) * EntriesPerPage);
@@ -113,7 +119,10 @@ void PageTable::dropPage(std::int32_t at)
   this->Entries.resize(last * EntriesPerPage);
   const std::size_t size = this->Directory.size();
   if (size > SmallestDirectory && 8 * static_cast<std::size_t>(last) < size) {
-    this->resizeDirectory(size / 2);
+    try {
+      this->resizeDirectory(size / 2);
+    } catch (const std::bad_alloc&) { // then it stays as large as it is
+    }
   }
 }
 

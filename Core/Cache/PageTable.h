@@ -28,6 +28,9 @@ public:
     const std::int32_t page = this->pageOf(PageKey(key));
     return page < 0 ? Unmapped : this->Entries[EntryOf(page, key)];
   }
+  /// Takes what memory mapping another brick may take; all else that changes the table then takes
+  /// none, and cannot fail.
+  void makeRoomForOne();
   /// `key` must not be mapped yet, and no more bricks than there is room for.
   void map(BrickKey key, std::int32_t slot);
   /// For a mapped `key` whose brick has moved.

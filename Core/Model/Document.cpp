@@ -25,7 +25,21 @@ void RequireShort(const std::string& text, std::int64_t offset)
   }
 }
 
+// From the leaves on: a json takes memory to destroy what holds something, and ends the process
+// where there is none. No deeper than a document is.
+void Dismantle(json& node)
+{
+  if (node.is_structured()) {
+    for (json& child : node) {
+      Dismantle(child);
+    }
+    node.clear();
+  }
+}
+
 } // namespace
+
+Document::~Document() { Dismantle(this->header); }
 
 void DocumentBuilder::begin(Container kind, const std::string& key, std::int64_t offset)
 {

@@ -22,6 +22,11 @@ struct Blob
 /// A model file taken apart: a small header, and the blobs by their place in it.
 struct Document
 {
+  Document() = default;
+  ~Document();
+  Document(Document&&) = default;
+  Document& operator=(Document&&) = delete;
+
   nlohmann::json header;
   std::map<std::string, Blob> blobs; ///< by JSON pointer ("/parameters/params_binary")
 };

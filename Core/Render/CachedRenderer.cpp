@@ -6,6 +6,7 @@
 #include "Core/Render/WorkLimit.h"
 
 #include <algorithm>
+#include <new>
 #include <unistd.h>
 
 namespace inr {
@@ -85,7 +86,12 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
 {
   this->Work = {};
   if (this->Unfinished && limit.isLimited() && this->Unfinished->continues(frame)) {
-    return this->refine(limit, output, keepGoing);
+    try {
+      return this->refine(limit, output, keepGoing);
+    } catch (const std::bad_alloc&) { // in the midst of its rays: nobody knows how far they are
+      this->Unfinished.reset();
+      throw;
+    }
   }
   this->Unfinished.reset(); // before the table that it reads may change
   const StepLookup& steps = this->stepsFor(colors, settings.step * settings.unitsPerT);

@@ -25,6 +25,7 @@ bool PathPicture::continues(const Frame& frame) const
 
 void PathPicture::start(const Frame& frame)
 {
+  this->Begun = false; // memory may run out before all is of the new picture
   this->OpaqueDepth = CopyOfDepth(frame);
   this->Picture = frame;
   this->Picture.opaqueDepth = this->OpaqueDepth.empty() ? nullptr : this->OpaqueDepth.data();

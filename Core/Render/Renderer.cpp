@@ -74,6 +74,7 @@ struct Renderer::Implementation
   Majorants Cells;
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
+  bool Built = false;                   ///< the majorants, for the colours and for `Seen`
   Blending Seen;                        ///< how pictures are blended that the majorants are for
   std::vector<float> Surfaces;          ///< of these pictures
   std::optional<CachedRenderer> Cached; ///< where there is to be a cache
@@ -124,25 +125,29 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
     return;
   }
   ColorTable colors(transferFunction, self.Volume); // before anything changes: it may throw
-  self.Colors.emplace(std::move(colors));
-  self.Function = transferFunction;
+  self.Function.reset();                            // nor is anything known while it changes
   self.Paths.reset();
+  self.Colors.emplace(std::move(colors));
   self.build();
+  self.Function = transferFunction;
 }
 
 void Renderer::Implementation::build()
 {
+  this->Built = false; // until it is: memory may run out
   if (this->Cached) {
     this->Cached->forgetColors();
   }
   this->Surfaces = VisibleSurfaces(this->Seen.isosurfaces, this->Volume, this->Colors->lookup());
   this->Cells.update(VisibilityFor(this->projector(), *this->Colors), this->Threads);
   ++this->MajorantBuilds;
+  this->Built = true;
 }
 
 void Renderer::Implementation::buildFor(const Blending& blending)
 {
-  if (this->Seen != blending) {
+  if (!this->Built || this->Seen != blending) {
+    this->Built = false;
     this->Seen = blending;
     this->build();
   }
