@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Thousands of damaged files, the same on every run: each must load or give an inr::Error.
+// Thousands of damaged files, the same on every run: each must load or give an inr::Error. What
+// loads is decoded and drawn, some of it.
 #include "Core/Error.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
+#include "Testing/Fuzzing/FuzzScene.h"
+
+#include <cmath>
 
 namespace {
 
@@ -21,15 +25,47 @@ struct Mutations : testing::TestWithParam<bool>
     WriteBytes(path, bytes);
     static_cast<void>(inr::IsModelFile(path));
     try {
-      inr::ReadModel(path);
+      const inr::ModelPointer model = inr::ReadModel(path);
+      if (this->Loaded++ < 60) {
+        inr::Model shown = *model;
+        shown.volume.spacing = glm::dvec3(1.0); // as it is, a ray would be of 10^11 voxels
+        this->draw(std::make_shared<inr::Model>(std::move(shown)));
+      }
       return true;
     } catch (const inr::Error&) {
       return false;
     }
   }
 
+  /// From somewhere, in some way.
+  void draw(const inr::ModelPointer& model)
+  {
+    std::vector<std::uint8_t> random(SceneSize);
+    for (std::size_t k = 0; k < SceneSize; ++k) {
+      random[k] = static_cast<std::uint8_t>(inr::RandomBits(this->Loaded, k));
+    }
+    SceneBytes bytes(random.data());
+    const FuzzScene scene = MakeFuzzScene(model->volume, bytes);
+    if (!scene.quick) {
+      return;
+    }
+    try {
+      inr::Renderer renderer(model, scene.options);
+      renderer.setTransferFunction(scene.colors);
+      inr::Image image;
+      renderer.render(scene.frame, image);
+      ++this->Drawn;
+      for (const float value : image.pixels) {
+        ASSERT_TRUE(std::isfinite(value)) << "picture " << this->Drawn;
+      }
+    } catch (const inr::Error&) { // a cache too small, a singular matrix
+    }
+  }
+
   TemporaryFolder Folder;
   std::string Good;
+  std::uint64_t Loaded = 0;
+  int Drawn = 0;
 };
 
 TEST_P(Mutations, OfRandomBytes)
@@ -48,6 +84,7 @@ TEST_P(Mutations, OfRandomBytes)
     loaded += this->loads(bytes) ? 1 : 0;
   }
   EXPECT_LT(loaded, 1500); // most damage is noticed
+  EXPECT_GT(this->Drawn, 5);
 }
 
 TEST_P(Mutations, OfAWindowThatSlidesOverTheHeader)
