@@ -67,6 +67,19 @@ inline inr::Frame View(const inr::VolumeInfo& volume, double degrees = 30)
   return frame;
 }
 
+/// The same for path tracing, with a headlight and some light from everywhere.
+inline inr::Frame Lit(inr::Frame frame)
+{
+  frame.mode = inr::RenderMode::PathTracing;
+  frame.paths.ambientLight = glm::vec3(0.5f);
+  inr::Light light;
+  const glm::dvec4 from = frame.clipToWorld * glm::dvec4(0, 0, -1, 1);
+  const glm::dvec4 to = frame.clipToWorld * glm::dvec4(0, 0, 1, 1);
+  light.direction = glm::dvec3(to) / to.w - glm::dvec3(from) / from.w;
+  frame.lights = {light};
+  return frame;
+}
+
 inline void Report(const std::string& name, double value, const std::string& unit,
                    const std::string& better, const std::string& more = "")
 {

@@ -9,18 +9,11 @@
 
 namespace {
 
-/// The view with a headlight and some light from everywhere; one path through each pixel.
+/// The lit view; one path through each pixel.
 inr::Frame Lit(const inr::VolumeInfo& volume, double degrees = 30)
 {
-  inr::Frame frame = View(volume, degrees);
-  frame.mode = inr::RenderMode::PathTracing;
+  inr::Frame frame = ::Lit(View(volume, degrees));
   frame.samplesPerPixel = 1;
-  frame.paths.ambientLight = glm::vec3(0.5f);
-  inr::Light light;
-  const glm::dvec4 from = frame.clipToWorld * glm::dvec4(0, 0, -1, 1);
-  const glm::dvec4 to = frame.clipToWorld * glm::dvec4(0, 0, 1, 1);
-  light.direction = glm::dvec3(to) / to.w - glm::dvec3(from) / from.w;
-  frame.lights = {light};
   return frame;
 }
 

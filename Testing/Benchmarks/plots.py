@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws what the result files hold: protocol.json, frame time and hit rate over frames from an
-empty cache on; rate-distortion.json, PSNR over the ratio of volume and file.
+empty cache on; rate-distortion.json, PSNR over the ratio of volume and file; tradeoff.json, error
+over time.
 
     Testing/Benchmarks/plots.py Testing/Benchmarks/results/MACHINE
 
@@ -15,6 +16,8 @@ import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402  (the backend comes first)
+
+import tradeoff_plots  # noqa: E402
 
 
 def results_in(folder, topic):
@@ -94,6 +97,8 @@ def main():
         curves = curves_of(results_in(folder, topic))
         if curves:
             draw(folder, curves)
+    if results_in(folder, "tradeoff"):
+        tradeoff_plots.draw(folder, results_in(folder, "tradeoff"))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What each setting buys and costs: trains models, runs bench_tradeoff, writes tradeoff.json.
+
+    cmake --preset core -DINR_BUILD_BENCHMARKS=ON
+    cmake --build --preset core --target bench_train bench_tradeoff
+    Testing/Benchmarks/tradeoff.py build-core/Testing/Benchmarks WORK VOLUMES [PART...]
+    Testing/Benchmarks/plots.py Testing/Benchmarks/results/MACHINE
+
+VOLUMES is the folder of the .vti files. What was trained and measured stays in the folder WORK, and
+a PART ("knobs", "loading", ...: those whose name has it) measures anew just that; without one, all is
+measured. Times are of the processor, beside those of the default settings in turn.
+"""
+import json
+import math
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+import results_file
+import volumes
+from inr_files import Writer
+
+STEPS = 4000
+SIZES = {"default": 0, "small": 4, "large": 1 / 4}  # ratio of volume and file, over the default's
+VOLUMES = ("rm_mixing", "heptane_fire", "les_vorticity")
+# Volume, model, what is measured, view.
+PARTS = ([(volume, size, "volume", "whole") for volume in VOLUMES for size in SIZES]
+         + [("rm_mixing", "default", "knobs+loading+grid", "whole"),
+            ("heptane_fire", "default", "knobs", "whole"),
+            ("les_vorticity", "default", "knobs", "whole"),
+            ("rm_mixing", "default", "knobs", "near"), ("rm_mixing", "default", "knobs", "far")]
+         + [(volume, size, "model", "whole") for volume in ("rm_mixing", "les_vorticity")
+            for size in ("small", "large")]
+         + [("rm_mixing", "default", "paths", "whole")])
+
+
+class Bench:
+    def __init__(self, programs, work, data):
+        self.programs, self.work, self.data = Path(programs), Path(work), Path(data)
+        self.work.mkdir(parents=True, exist_ok=True)
+
+    def model(self, volume, size, raw):
+        """The path of a model, trained if there is none yet; its JSON is what bench_train said."""
+        path = self.work / f"{volume}-{size}.inr"
+        about = Path(f"{path}.json")
+        if not about.exists():
+            ratio = 0
+            if SIZES[size]:
+                ratio = SIZES[size] * self.ratio(self.model(volume, "default", raw))
+            about.write_text(json.dumps(
+                Writer(self.programs / "bench_train", STEPS, raw, path).save(ratio)))
+        return path
+
+    @staticmethod
+    def ratio(path):
+        return json.loads(Path(f"{path}.json").read_text())["ratio"]
+
+    def measure(self, volume, size, what, view):
+        with volumes.raw_file(volumes.read(self.data / f"{volume}.vti")) as raw:
+            model = self.model(volume, size, raw)
+            usual = [self.model(volume, "default", raw)] if what == "model" else []
+            run = subprocess.run([self.programs / "bench_tradeoff", model, volume, *raw, what, view,
+                                  *usual], check=True, stdout=subprocess.PIPE, text=True)
+        lines = [json.loads(line) for line in run.stdout.splitlines()]
+        for line in lines:
+            line["ratio"] = round(self.ratio(model), 1)
+            if what == "volume":
+                line["name"] += f", {size} model"
+            if what == "model" and "knob" in line:
+                line["parameters"], line["setting"] = int(line["setting"]), size
+                line["knob"] = line["knob"].replace("parameters", "model size")
+                line["name"] = f"{line['scene']}, {line['knob']} {size}"
+        self.file(volume, size, what, view).write_text(
+            json.dumps({"commit": results_file.commit(), "lines": lines}))
+
+    def file(self, *part):
+        return self.work / f"{'-'.join(part)}.json"
+
+    def measured(self, parts):
+        for part in parts:
+            if self.file(*part).exists():
+                stored = json.loads(self.file(*part).read_text())
+                for line in stored["lines"]:
+                    yield {**line, "commit": stored["commit"]}
+
+
+def rounded(figures):
+    return {key: float(f"{value:.4g}") if isinstance(value, float) else value
+            for key, value in figures.items()}
+
+
+def result_of(line):
+    """A line of bench_tradeoff as a result: what it is about first."""
+    line = dict(line)
+    name = line.pop("name").rstrip()
+    for key, what in (("psnr", "decoded against original voxels"),
+                      ("psnr_a_c", "the decoded voxels' picture against the data's"),
+                      ("psnr_a_without_cache", "the decoded voxels' with and without a cache")):
+        if key in line:
+            return results_file.result(f"{name}, PSNR", line.pop(key), "dB", "higher", what, **line)
+    return results_file.result(
+        f"{name}, time", line["cpu_ms"] / line["default_cpu_ms"], "of the default's", "lower",
+        "processor time, 2 threads, 256x256; from far and of paths 128x128", **line)
+
+
+def summaries(lines):
+    """Over all scenes: what a setting buys and costs."""
+    points = {}
+    for line in lines:
+        if line.get("part") in ("knobs", "loading", "model", "paths"):
+            key = (line["part"] == "paths", line["knob"], line["setting"])
+            points.setdefault(key, []).append(line)
+    for (paths, knob, setting), lines in points.items():
+        if knob == "defaults":
+            yield from usual_quality(lines)
+            continue
+        ratios = [line["cpu_ms"] / line["default_cpu_ms"] for line in lines]
+        first = [line["first_cpu_ms"] / line["default_first_cpu_ms"] for line in lines
+                 if "first_cpu_ms" in line]
+        more = {"first_picture": geometric_mean(first)} if first else {}
+        for reference in "abc":
+            for key, worst in ((f"psnr_{reference}", min), (f"flip_{reference}", max)):
+                values = [line[key] for line in lines]
+                more[key], more[f"worst_{key}"] = statistics.median(values), worst(values)
+        more["worst_psnr_default"] = min(line["psnr_default"] for line in lines)
+        kind = "paths, " if paths else ""
+        yield results_file.result(f"{kind}{knob} {setting}, time in the mean", geometric_mean(ratios),
+                                  "of the default's", "lower",
+                                  f"geometric mean over {len(lines)} scenes; the median error", **more)
+
+
+def usual_quality(lines):
+    for reference, what in (("a", "the decoded voxels"), ("b", "the network"),
+                            ("c", "the original voxels")):
+        for key, unit, better in (("psnr", "dB", "higher"), ("flip", "", "lower"),
+                                  ("ssim", "", "higher"), ("max", "", "lower")):
+            values = [line[f"{key}_{reference}"] for line in lines]
+            yield results_file.result(
+                f"default settings against {what}, {key}", statistics.median(values), unit, better,
+                f"median over {len(lines)} scenes", smallest=min(values), largest=max(values))
+
+
+def geometric_mean(values):
+    return math.exp(statistics.fmean(map(math.log, values)))
+
+
+def main():
+    programs, work, data, *wanted = sys.argv[1:]
+    bench = Bench(programs, work, data)
+    for part in PARTS:
+        if not wanted or any(name in "-".join(part) for name in wanted):
+            print("-".join(part), flush=True)
+            bench.measure(*part)
+    lines = list(bench.measured(PARTS))
+    results = [*summaries(lines), *map(result_of, lines)]
+    results_file.write("tradeoff", [rounded(result) for result in results])
+
+
+if __name__ == "__main__":
+    main()
