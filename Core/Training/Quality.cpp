@@ -77,9 +77,8 @@ private:
     const T* const row = values + stride * (at.x + size.x * (at.y + size.y * at.z));
     const double range = this->Info.high - this->Info.low; // its inverse may be infinite
     for (std::int64_t x = 0; x < this->Box.size.x; ++x) {
-      const auto value = static_cast<double>(row[x * stride]);
       this->Reference[static_cast<std::size_t>(y * this->Box.size.x + x)] =
-          (value - this->Info.low) / range;
+          Above(row[x * stride], this->Info.low) / range;
     }
   }
 

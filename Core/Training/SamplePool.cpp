@@ -78,7 +78,7 @@ std::vector<double> SamplePool::sample(std::int64_t block, std::uint32_t round,
     for (std::int64_t k = begin; k < end; ++k) {
       positions.push_back(this->position(block, round, k));
     }
-    SamplePiece(piece, this->Blocks.dims(), positions.data(), end - begin, &values[begin]);
+    SamplePiece(piece, this->Blocks.dims(), positions.data(), end - begin, 0, &values[begin]);
   });
   return values;
 }

@@ -48,12 +48,13 @@ private:
 
 /// Values of type T around a position, interpolated in double so that no type loses digits.
 template <class T>
-double Trilinear(const T* values, const AxisTaps& x, const AxisTaps& y, const AxisTaps& z)
+double Trilinear(const T* values, const AxisTaps& x, const AxisTaps& y, const AxisTaps& z,
+                 double origin)
 {
   const auto mix = [](double a, double b, double weight) { return a + weight * (b - a); };
+  const auto at = [&](std::int64_t offset) { return Above(values[offset], origin); };
   const auto row = [&](std::int64_t offset) {
-    return mix(static_cast<double>(values[offset + x.first]),
-               static_cast<double>(values[offset + x.second]), x.weight);
+    return mix(at(offset + x.first), at(offset + x.second), x.weight);
   };
   const auto plane = [&](std::int64_t offset) {
     return mix(row(offset + y.first), row(offset + y.second), y.weight);
@@ -62,12 +63,13 @@ double Trilinear(const T* values, const AxisTaps& x, const AxisTaps& y, const Ax
 }
 
 template <class T>
-double Nearest(const T* values, const AxisTaps& x, const AxisTaps& y, const AxisTaps& z)
+double Nearest(const T* values, const AxisTaps& x, const AxisTaps& y, const AxisTaps& z,
+               double origin)
 {
   const auto offset = [](const AxisTaps& axis) {
     return axis.weight < 0.5 ? axis.first : axis.second;
   };
-  return static_cast<double>(values[offset(x) + offset(y) + offset(z)]);
+  return Above(values[offset(x) + offset(y) + offset(z)], origin);
 }
 
 } // namespace
@@ -84,7 +86,7 @@ glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64ve
 }
 
 void SamplePiece(const VolumePiece& piece, const glm::i64vec3& dims, const glm::vec3* positions,
-                 std::int64_t count, double* values)
+                 std::int64_t count, double origin, double* values)
 {
   const glm::i64vec3 size = piece.data.dims;
   const std::int64_t stride = piece.data.stride;
@@ -95,9 +97,9 @@ void SamplePiece(const VolumePiece& piece, const glm::i64vec3& dims, const glm::
     for (std::int64_t k = 0; k < count; ++k) {
       const std::array<AxisTaps, 3> taps = {x.taps(positions[k].x), y.taps(positions[k].y),
                                             z.taps(positions[k].z)};
-      values[k] = Trilinear(voxels, taps[0], taps[1], taps[2]);
+      values[k] = Trilinear(voxels, taps[0], taps[1], taps[2], origin);
       if (!std::isfinite(values[k])) { // inf - inf and 0 * inf make it NaN, too
-        values[k] = Nearest(voxels, taps[0], taps[1], taps[2]);
+        values[k] = Nearest(voxels, taps[0], taps[1], taps[2], origin);
       }
     }
   });
@@ -120,9 +122,10 @@ void InMemorySource::sample(const glm::vec3* positions, std::int64_t count, floa
   std::array<double, blockSize> values{};
   for (std::int64_t first = 0; first < count; first += blockSize) {
     const std::int64_t size = std::min(blockSize, count - first);
-    SamplePiece(this->Volume, this->dims(), positions + first, size, values.data());
-    std::transform(values.begin(), values.begin() + size, targets + first,
-                   [this](double value) { return NormalisedTarget(value, this->Low, this->High); });
+    SamplePiece(this->Volume, this->dims(), positions + first, size, this->Low, values.data());
+    std::transform(values.begin(), values.begin() + size, targets + first, [this](double value) {
+      return NormalisedTarget(value, 0, this->High - this->Low);
+    });
   }
 }
 

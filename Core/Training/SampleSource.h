@@ -30,9 +30,10 @@ public:
 glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64vec3& dims);
 
 /// What SampleSource gives of a volume of `dims` voxels before it is normalised, at positions
-/// whose voxels `piece` holds.
+/// whose voxels `piece` holds: above `origin`, which is subtracted first, so that small differences
+/// of large values are interpolated as exactly as if they were those of small ones.
 void SamplePiece(const VolumePiece& piece, const glm::i64vec3& dims, const glm::vec3* positions,
-                 std::int64_t count, double* values);
+                 std::int64_t count, double origin, double* values);
 
 /// (value - low)/(high - low) as a target; NaN for one that is not finite.
 float NormalisedTarget(double value, double low, double high);

@@ -4,9 +4,42 @@
 #include "Core/Error.h"
 #include "Core/Training/Volume.h"
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 
 namespace inr {
+
+/// Integers of 64 bits, which a double may have to round.
+template <class T> constexpr bool IsVast = std::is_integral_v<T> && sizeof(T) == 8;
+
+/// value - origin, rounded once: vast integers that are close together differ by what they differ.
+/// (As far as long double holds them; where it is a double, they are rounded first.)
+template <class T> double Above(T value, double origin)
+{
+  if constexpr (IsVast<T>) {
+    return static_cast<double>(static_cast<long double>(value) - static_cast<long double>(origin));
+  } else {
+    return static_cast<double>(value) - origin;
+  }
+}
+
+/// The nearest doubles that are not above and not below a value.
+template <class T> double DoubleBelow(T value)
+{
+  const auto nearest = static_cast<double>(value);
+  return Above(value, nearest) < 0
+             ? std::nextafter(nearest, -std::numeric_limits<double>::infinity())
+             : nearest;
+}
+template <class T> double DoubleAbove(T value)
+{
+  const auto nearest = static_cast<double>(value);
+  return Above(value, nearest) > 0
+             ? std::nextafter(nearest, std::numeric_limits<double>::infinity())
+             : nearest;
+}
 
 /// Calls `function` with a typed pointer to the volume's first value and returns what it returns.
 template <class Function> decltype(auto) VisitScalars(const VolumeData& volume, Function&& function)

@@ -110,7 +110,7 @@ void StreamedVolume::survey(const Progress& progress)
 void StreamedVolume::sampleEstimate(std::int64_t block, const VolumePiece& piece)
 {
   for (const std::size_t k : this->EstimatesOfBlocks[static_cast<std::size_t>(block)]) {
-    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1,
+    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, 0,
                 &this->EstimateValues[k]);
   }
 }

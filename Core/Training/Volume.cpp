@@ -15,13 +15,13 @@ template <class T>
 void MeasureRow(const T* values, std::int64_t stride, std::int64_t count, VolumeStatistics& result)
 {
   for (std::int64_t k = 0; k < count; ++k) {
-    const double value = static_cast<double>(values[k * stride]);
-    if (!std::isfinite(value)) {
+    const T value = values[k * stride];
+    if (!std::isfinite(static_cast<double>(value))) {
       ++result.nonFinite;
       continue;
     }
-    result.low = std::min(result.low, value);
-    result.high = std::max(result.high, value);
+    result.low = std::min(result.low, DoubleBelow(value));
+    result.high = std::max(result.high, DoubleAbove(value));
   }
 }
 

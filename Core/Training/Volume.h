@@ -42,7 +42,8 @@ struct VolumePiece
 /// What one pass over the data tells.
 struct VolumeStatistics
 {
-  /// Smallest and largest finite value; low > high when there is none.
+  /// Smallest and largest finite value; low > high when there is none. Of integers that no double
+  /// is, the next double beyond.
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
   std::int64_t nonFinite = 0;

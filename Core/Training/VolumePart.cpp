@@ -113,9 +113,9 @@ void VolumePart::sample(const glm::vec3* positions, std::int64_t count, double l
   std::array<double, blockSize> values{};
   for (std::int64_t first = 0; first < count; first += blockSize) {
     const std::int64_t size = std::min(blockSize, count - first);
-    SamplePiece(this->Piece, this->Dims, positions + first, size, values.data());
+    SamplePiece(this->Piece, this->Dims, positions + first, size, low, values.data());
     std::transform(values.begin(), values.begin() + size, targets + first,
-                   [&](double value) { return NormalisedTarget(value, low, high); });
+                   [&](double value) { return NormalisedTarget(value, 0, high - low); });
   }
 }
 
