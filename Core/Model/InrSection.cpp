@@ -196,7 +196,7 @@ glm::i64vec3 ParseDims(const JsonSection& section)
   return dims;
 }
 
-InrSection ParseInrSection(const JsonSection& section)
+std::int64_t ParseVersion(const JsonSection& section)
 {
   const std::int64_t version = section.integer("format_version");
   if (version != PlainVersion && version != CompactVersion) {
@@ -205,6 +205,12 @@ InrSection ParseInrSection(const JsonSection& section)
                                             std::to_string(PlainVersion) + " and " +
                                             std::to_string(CompactVersion));
   }
+  return version;
+}
+
+InrSection ParseInrSection(const JsonSection& section)
+{
+  const std::int64_t version = ParseVersion(section);
   section.choice("transform", TransformNames);
   InrSection result;
   result.compact = version == CompactVersion;

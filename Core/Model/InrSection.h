@@ -25,6 +25,9 @@ struct InrSection
   std::optional<TrainingRecord> training;
 };
 
+/// The format's version, of those that are known; Error(Unsupported) names another.
+std::int64_t ParseVersion(const JsonSection& section);
+
 /// Throws Error(Unsupported) for a later version or another transform, Error(InvalidModel) for
 /// values out of range.
 InrSection ParseInrSection(const JsonSection& section);

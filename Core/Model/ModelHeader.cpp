@@ -167,6 +167,10 @@ void ReadOwnSection(const JsonSection& root, ModelHeader& header)
     throw Error(ErrorCode::InvalidModel,
                 "format version 2 and quantised parameters belong together, and only one is there");
   }
+  const JsonSection dims = root.section("volume").section("dims");
+  if (dims.present() && ParseDims(dims) != own.volume.dims) {
+    throw Error(ErrorCode::InvalidModel, "'volume.dims' and 'inr.dims' contradict each other");
+  }
   header.model.volume = std::move(own.volume);
   header.model.description.grid.rule = own.rule;
   header.model.macroCells.provenance = own.provenance;
@@ -227,6 +231,9 @@ ModelHeader ParseModelHeader(const Document& document, const ModelOverrides& ove
   if (!root.has("model") && !root.has("encoding") && !root.has("network")) {
     throw Error(ErrorCode::Malformed,
                 "this is not a model file: it has neither 'model' nor 'encoding' and 'network'");
+  }
+  if (root.has("inr")) { // first: a later version may be anything else, too
+    ParseVersion(root.section("inr"));
   }
   ModelHeader header;
   ReadParameterSection(root, document, header);

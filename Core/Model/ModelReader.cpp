@@ -136,7 +136,7 @@ bool IsModelFile(const std::string& path)
     const std::string start = StartOf(file);
     return IsRootKey(FirstBsonKey(start)) ||
            (LooksLikeText(start) && IsRootKey(FirstTextKey(start)));
-  } catch (const Error&) {
+  } catch (const std::exception&) { // Error, or no memory
     return false;
   }
 }
