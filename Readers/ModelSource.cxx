@@ -7,6 +7,18 @@
 #include <cerrno>
 #include <sys/stat.h>
 #include <system_error>
+#include <utility>
+
+namespace {
+
+bool IsSameVolume(const inr::VolumeInfo& a, const inr::VolumeInfo& b)
+{
+  return a.dims == b.dims && a.spacing == b.spacing && a.origin == b.origin &&
+         a.direction == b.direction && a.type == b.type && a.low == b.low && a.high == b.high &&
+         a.arrayName == b.arrayName;
+}
+
+} // namespace
 
 ModelSource::FileStamp ModelSource::StampOf(const std::string& path)
 {
@@ -57,7 +69,14 @@ inr::VolumeInfo ModelSource::Volume()
 const inr::ModelPointer& ModelSource::Model()
 {
   if (!this->Loaded) {
-    this->Loaded = inr::ReadModel(this->Path, this->Overrides);
+    inr::ModelPointer loaded = inr::ReadModel(this->Path, this->Overrides);
+    // What was told of the grid and its values is the header's, of an earlier reading.
+    if (!IsSameVolume(loaded->volume, this->Header().volume)) {
+      throw inr::Error(inr::ErrorCode::CannotRead, "'" + this->Path +
+                                                       "' has become another file while it was "
+                                                       "being opened; open it again");
+    }
+    this->Loaded = std::move(loaded);
   }
   if (!this->Scaled) {
     this->Scaled = inr::ScaledModel(this->Loaded, this->Factor);

@@ -26,7 +26,7 @@ public:
   /// The scaled volume. Throws inr::Error.
   inr::VolumeInfo Volume();
 
-  /// The whole model, scaled. Throws inr::Error.
+  /// The whole model, scaled. Throws inr::Error, also where it is not the header's any more.
   const inr::ModelPointer& Model();
 
   /// Goes with Model(): another one for another model.

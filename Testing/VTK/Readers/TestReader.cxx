@@ -12,7 +12,9 @@
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
 
+#include <filesystem>
 #include <fstream>
+#include <functional>
 
 namespace {
 
@@ -372,6 +374,51 @@ TEST_F(Reader, SeesThatTheFileHasChanged)
   this->write(*MakeModel({5, 6, 7}));
   this->Algorithm->Modified();
   EXPECT_EQ(this->open(path)->GetDimensions()[0], 5);
+}
+
+// What the pipeline was told of a file is no longer so when the data are asked for.
+TEST_F(Reader, SaysWhenTheFileChangesWhileItIsBeingOpened)
+{
+  const auto model = MakeModel(Dims);
+  const auto refuses = [&](const char* words) {
+    const MessageCapture messages;
+    this->Algorithm->Update();
+    EXPECT_TRUE(messages.onlyError(words)) << messages.text();
+    EXPECT_EQ(this->Algorithm->GetOutput()->GetNumberOfPoints(), 0);
+  };
+  const std::string path = this->write(*model);
+  const auto changed = [&](const std::function<void()>& change, const char* words) {
+    this->write(*model);
+    this->Algorithm->SetFileName(path.c_str());
+    this->Algorithm->Modified();
+    this->Algorithm->UpdateInformation();
+    change();
+    refuses(words);
+  };
+  changed([&] { this->write(*MakeModel({25, 6, 7})); }, "another file");
+  changed([&] { std::filesystem::resize_file(path, 3000); }, "truncated");
+  changed([&] { std::filesystem::remove(path); }, "No such file");
+
+  this->write(*model);
+  const MessageCapture messages;
+  this->Algorithm->Modified();
+  this->open(path);
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  this->expectTruth(model);
+}
+
+TEST_F(Reader, KeepsWhatItHasOpenedWhateverBecomesOfTheFile)
+{
+  const auto model = MakeModel(Dims);
+  const std::string path = this->write(*model);
+  const MessageCapture messages;
+  this->open(path);
+  std::filesystem::resize_file(path, 100);
+  this->expectTruth(model);
+  std::filesystem::remove(path);
+  this->Algorithm->Update();
+  this->expectTruth(model);
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
 }
 
 namespace {
