@@ -179,7 +179,7 @@ protected:
 
 TEST_P(FramesWithoutMemory, FailAndAreRightTheNextTime)
 {
-  const std::int64_t tries = std::getenv("INR_ALL_ALLOCATIONS") != nullptr ? 1 << 20 : 60;
+  const std::int64_t tries = std::getenv("INR_ALL_ALLOCATIONS") != nullptr ? 1 << 20 : 40;
   const std::int64_t count = this->allocations();
   ASSERT_GT(count, 50);
   const std::int64_t before = BlocksInUse();
