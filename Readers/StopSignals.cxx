@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <new>
 
 namespace {
 
@@ -26,9 +27,13 @@ struct StopSignals::Handlers
   struct sigaction Terminate;
 };
 
-StopSignals::StopSignals() : Previous(new Handlers)
+StopSignals::StopSignals() : Previous(new (std::nothrow) Handlers)
 {
   ReceivedSignal = 0;
+  if (this->Previous == nullptr) {
+    return; // a signal ends the process, as it does without this; no memory will be said soon
+            // enough
+  }
   struct sigaction action = {};
   action.sa_handler = Remember;
   sigemptyset(&action.sa_mask);
@@ -38,9 +43,11 @@ StopSignals::StopSignals() : Previous(new Handlers)
 
 StopSignals::~StopSignals()
 {
-  sigaction(SIGINT, &this->Previous->Interrupt, nullptr);
-  sigaction(SIGTERM, &this->Previous->Terminate, nullptr);
-  delete this->Previous;
+  if (this->Previous != nullptr) {
+    sigaction(SIGINT, &this->Previous->Interrupt, nullptr);
+    sigaction(SIGTERM, &this->Previous->Terminate, nullptr);
+    delete this->Previous;
+  }
   if (const int signal = ReceivedSignal.exchange(0)) {
     std::raise(signal);
   }

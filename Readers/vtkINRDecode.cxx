@@ -93,7 +93,7 @@ int vtkINRDecode::RequestInformation(vtkInformation*, vtkInformationVector**,
     if (this->DescribeOutput(outInfo)) {
       return 1;
     }
-  } catch (const inr::Error& error) {
+  } catch (const std::exception& error) { // inr::Error, or no memory
     vtkErrorMacro("Cannot decode: " << error.what());
   }
   outInfo->Set(Pipeline::WHOLE_EXTENT(), EmptyExtent, 6);

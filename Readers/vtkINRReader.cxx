@@ -164,7 +164,11 @@ vtkINRReader::~vtkINRReader()
 
 int vtkINRReader::CanReadFile(const char* fileName)
 {
-  return fileName && inr::IsModelFile(fileName) ? 1 : 0;
+  try {
+    return fileName && inr::IsModelFile(fileName) ? 1 : 0;
+  } catch (const std::exception&) { // not even for its name
+    return 0;
+  }
 }
 
 int vtkINRReader::RequestInformation(vtkInformation*, vtkInformationVector**,

@@ -120,7 +120,7 @@ void vtkINRWriter::PlanSteps(vtkInformation* input)
     this->Internal->Steps =
         StepSequence(std::vector<double>(times, times + count), this->MinTimeStep,
                      this->MaxTimeStep, this->TimeStepStride);
-  } catch (const inr::Error& error) {
+  } catch (const std::exception& error) { // inr::Error, or no memory
     this->Internal->Problem = error.what(); // to be told when it is to be written
   }
 }

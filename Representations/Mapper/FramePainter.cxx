@@ -263,6 +263,9 @@ bool FramePainter::render(const Frame& scene, const Viewport& viewport, const Su
       return false;
     }
     throw;
+  } catch (...) { // no memory
+    last = {};
+    throw;
   }
   const int threads = this->Caster->threads();
   last.backend = "CPU " + this->Caster->kernel() + ", " + std::to_string(threads) +

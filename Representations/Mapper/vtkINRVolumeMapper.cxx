@@ -20,6 +20,7 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <new>
 
 vtkStandardNewMacro(vtkINRVolumeMapper);
 
@@ -208,6 +209,9 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   std::string problem;
   try {
     problem = this->Self->Painter.paint(this, renderer, volume, this->Settings());
+  } catch (const std::bad_alloc&) {
+    problem =
+        "There is not enough memory to draw the volume; make the picture or CacheSize smaller.";
   } catch (const std::exception& exception) {
     problem = exception.what();
   }
