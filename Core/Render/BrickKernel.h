@@ -86,9 +86,12 @@ struct SampleBatch
 /// What a ray has gathered.
 struct RayColor
 {
-  float rgb[3]; ///< premultiplied
-  float transmittance;
+  double rgb[3]; ///< premultiplied
+  double transmittance;
+  /// More samples than float sums are good for: n of them lose up to n 2^-25 of all light.
+  bool ofMany = false;
 };
+constexpr double ManySamples = 1 << 14;
 
 /// The inner loops of cached ray marching, for one instruction set.
 struct BrickKernel

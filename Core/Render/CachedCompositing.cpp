@@ -39,6 +39,9 @@ void CachedMarcher::composite(CachedRay& state)
     }
     state.halfOpaqueAt = this->timeOf(state, k);
   }
+  if (this->isDone(state)) {
+    this->Needed = used;
+  }
   if (this->LastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
     this->Batch.value[this->Count] = last;
     this->compositeLast(state);
@@ -56,10 +59,14 @@ void CachedMarcher::compositeLast(CachedRay& state)
 
 void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
 {
-  const float alpha = 1.0f - std::pow(1.0f - color.w, length);
-  const float weight = state.color.transmittance * alpha;
+  this->addLight(state, color, OpacityOver(length, color.w), t);
+}
+
+void CachedMarcher::addLight(CachedRay& state, const glm::vec4& color, float opacity, double t)
+{
+  const double weight = state.color.transmittance * opacity;
   for (int channel = 0; channel < 3; ++channel) {
-    state.color.rgb[channel] += color[channel] * weight;
+    state.color.rgb[channel] += weight * color[channel];
   }
   state.color.transmittance -= weight;
   if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
@@ -77,19 +84,21 @@ void CachedMarcher::clampToRanges()
   }
 }
 
-void CachedMarcher::compositeShaded(CachedRay& state, const glm::vec4* colors, const double* t,
-                                    int count)
+int CachedMarcher::findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const
 {
   const double step = this->Scene.settings.step * this->Scene.settings.unitsPerT;
-  for (int k = 0; k < count && state.color.transmittance > OpaqueTransmittance; ++k) {
+  double transmittance = state.color.transmittance;
+  int k = 0;
+  for (; k < this->Count && transmittance > OpaqueTransmittance; ++k) {
     const bool isLast = this->LastLength > 0 && k + 1 == this->Count;
     const float length =
         isLast ? this->LastLength
                : static_cast<float>(step * static_cast<double>(StepsOf(this->Batch.length[k])));
-    if (colors[k].w > 0.0f) {
-      this->compositeColor(state, colors[k], length, t[k]);
-    }
+    colors[k] = this->Scene.colors.at(this->Batch.value[k]);
+    opacities[k] = colors[k].w > 0.0f ? OpacityOver(length, colors[k].w) : 0.0f;
+    transmittance -= transmittance * opacities[k];
   }
+  return k;
 }
 
 } // namespace inr

@@ -24,7 +24,9 @@ SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t s
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
     : ray(scene.geometry.ray(x, y, 0)), stream(PixelStream(scene.frame, x, y)),
       samples(SamplesOf(scene, this->ray, this->stream)), x(x), y(y)
-{}
+{
+  this->color.ofMany = this->samples.end() > ManySamples;
+}
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
     : Scene(scene), Missing(onMiss),
@@ -33,8 +35,7 @@ CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
   if (scene.settings.projector.findsSurfaces()) {
     this->Probe.emplace(scene, onMiss);
   } else if (scene.shading != nullptr) {
-    this->Shader.emplace(*scene.shading, scene.colors,
-                         BrickGradients(scene.cache, scene.format, scene.kernel));
+    this->Shader.emplace(*scene.shading, BrickGradients(scene.cache, scene.format, scene.kernel));
   }
 }
 
@@ -89,6 +90,7 @@ bool CachedMarcher::enterNextPart(CachedRay& state) const
   }
   state.ray = this->Scene.geometry.ray(state.x, state.y, ++state.part);
   state.samples = SamplesOf(this->Scene, state.ray, state.stream);
+  state.color.ofMany = state.color.ofMany || state.samples.end() > ManySamples;
   state.known = {};
   return true;
 }
@@ -117,12 +119,14 @@ bool CachedMarcher::marchPart(CachedRay& state)
       projects ? this->project(state) : this->composite(state);
     }
     this->Ended = this->Ended || this->isDone(state);
+    this->requestWishes(state);
   }
   if (projects && this->Ended) {
     this->finishProjection(state);
   }
   this->close(this->Runs[0], state.color.transmittance);
   this->close(this->Runs[1], state.color.transmittance);
+  this->requestWishes(state);
   this->Statistics.work.cells += state.samples.visited() - this->Visited;
   return this->Ended;
 }
@@ -133,8 +137,10 @@ void CachedMarcher::place(CachedRay& state)
   this->RunCount = 0;
   this->Paths = 0;
   this->LastLength = 0;
+  this->Needed = SampleBatch::Capacity + 1;
   for (BrickRun& run : this->Runs) {
     if (run.level() >= 0) {
+      run.setFirst(-1);
       this->enlist(run);
     }
   }
@@ -214,7 +220,11 @@ inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& 
   for (int k = 0; k < count; ++k) {
     const std::int64_t interval = state.samples.next() + k * alike.steps();
     const bool isFine = detail.dithered(state.stream, this->ditherOf(interval)) == fine.level();
-    (isFine ? fine : coarse).count(1);
+    BrickRun& run = isFine ? fine : coarse;
+    if (run.count() == 0) {
+      run.setFirst(this->Count - count + k);
+    }
+    run.count(1);
   }
 }
 
@@ -280,7 +290,7 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
   if (slot >= 0) {
     run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
   } else if (this->Missing == OnMiss::Stop) {
-    this->Requests.add(key, 1.0f);
+    this->Wishes.push_back({key, 1.0f, this->Count});
     return false;
   } else {
     slot = this->openCoarser(run, ray, wanted, t);
@@ -327,9 +337,21 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
   }
   if (run.count() > 0 && !run.exact()) {
     this->Statistics.missed += run.count();
-    this->Requests.add(run.wish(), static_cast<float>(run.count()) * transmittance);
+    this->Wishes.push_back(
+        {run.wish(), static_cast<float>(run.count()) * transmittance, run.first()});
   }
   run.close();
+}
+
+void CachedMarcher::requestWishes(const CachedRay& state)
+{
+  const bool done = this->isDone(state);
+  for (const Wish& wish : this->Wishes) {
+    if (!done || wish.sample < this->Needed) {
+      this->Requests.add(wish.key, wish.contribution);
+    }
+  }
+  this->Wishes.clear();
 }
 
 void CachedMarcher::advanceShaded(CachedRay& state)
@@ -338,21 +360,28 @@ void CachedMarcher::advanceShaded(CachedRay& state)
   this->place(state);
   this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
   this->clampToRanges();
+  glm::vec4 colors[SampleBatch::Capacity];
+  float opacities[SampleBatch::Capacity];
+  const int needed = this->findOpacities(state, colors, opacities);
   double t[SampleBatch::Capacity];
-  for (int k = 0; k < this->Count; ++k) {
+  for (int k = 0; k < needed; ++k) {
     t[k] = this->timeOf(state, k);
   }
   const bool stops = this->Missing == OnMiss::Stop;
   const SampleShader::Request request{
       state.ray, stops ? BrickGradients::Missing::Stop : BrickGradients::Missing::OneSided,
-      state.color.transmittance, this->Bricks, t};
+      static_cast<float>(state.color.transmittance), this->Bricks, t};
   const std::size_t asked = this->Requests.entries().size();
-  glm::vec4 colors[SampleBatch::Capacity];
-  const int known = this->Shader->shade(this->Batch, this->Count, request, this->Requests, colors);
+  const int known = this->Shader->shade(this->Batch, needed, request, this->Requests, colors);
   if (!stops) {
     this->Statistics.missed += static_cast<std::int64_t>(this->Requests.entries().size() - asked);
   }
-  this->compositeShaded(state, colors, t, known);
+  for (int k = 0; k < known; ++k) {
+    if (opacities[k] > 0.0f) {
+      this->addLight(state, colors[k], opacities[k], t[k]);
+    }
+  }
+  this->Needed = needed;
   if (known < this->Count && state.color.transmittance > OpaqueTransmittance) {
     this->goBackTo(known, before, state);
   }
@@ -369,6 +398,7 @@ void CachedMarcher::goBackTo(int sample, const CachedRay& before, CachedRay& sta
   for (int k = sample; k < this->Count; ++k) {
     this->LevelSum -= this->originOf(k).level;
   }
+  this->Wishes.clear(); // it waits for something nearer
   this->Waiting = true;
   this->Ended = false;
 }

@@ -21,8 +21,10 @@ void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
                 const PassOutput& output)
 {
   float* pixel = output.rgba.pixel(x, y);
-  std::copy_n(scene.frame.layers ? &ray.light.seen().x : ray.color.rgb, 3, pixel);
-  pixel[3] = 1.0f - ray.color.transmittance;
+  const double* rgb = ray.color.rgb;
+  const glm::vec3 seen = scene.frame.layers ? ray.light.seen() : glm::vec3(rgb[0], rgb[1], rgb[2]);
+  std::copy_n(&seen.x, 3, pixel);
+  pixel[3] = static_cast<float>(1.0 - ray.color.transmittance);
   if (output.depth != nullptr) {
     *output.depth->pixel(x, y) = static_cast<float>(HalfOpaqueDepth(scene, ray));
   }

@@ -24,6 +24,7 @@ void CachedMarcher::project(CachedRay& state)
     settings.projector.add(this->Scene.colors, this->Batch.value[k], length, this->timeOf(state, k),
                            state.projection);
   }
+  this->Needed = this->Count;
 }
 
 void CachedMarcher::finishProjection(CachedRay& state) const
@@ -33,7 +34,7 @@ void CachedMarcher::finishProjection(CachedRay& state) const
   }
   const glm::vec4 color =
       this->Scene.settings.projector.color(this->Scene.colors, state.projection);
-  state.color = {{color.x, color.y, color.z}, 1.0f - color.w};
+  state.color = {{color.x, color.y, color.z}, 1.0f - color.w, state.color.ofMany};
   state.halfOpaqueAt = color.w >= 0.5f ? state.projection.at : -1.0;
 }
 

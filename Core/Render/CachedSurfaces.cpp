@@ -16,6 +16,7 @@ void CachedMarcher::advanceSurfaces(CachedRay& state)
       this->goBackTo(k, before, state);
       return;
     }
+    this->Needed = k + 1;
   }
 }
 

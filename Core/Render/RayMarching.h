@@ -21,7 +21,7 @@ struct MarchState
 {
   Ray ray;
   SampleWalker samples;
-  glm::vec4 color{0};          ///< premultiplied, so far
+  glm::dvec4 color{0};         ///< premultiplied, so far: of any number of samples
   double halfOpaqueAt = -1;    ///< t where opacity reached one half; -1 = not yet
   Projection projection{};     ///< instead, of values that are projected
   double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
@@ -114,6 +114,15 @@ INR_HOST_DEVICE inline bool ClampToRange(const ValueRange& range, float& value)
   return outside;
 }
 
+/// Opacity over a length of what has `opacity` over the unit length: 1 - (1 - opacity)^length.
+INR_HOST_DEVICE inline float OpacityOver(float length, float opacity)
+{
+  // The power is faster, but what is faint or short it loses to rounding.
+  const bool isFaint = opacity < 0x1p-8f || length < 0x1p-6f;
+  return isFaint ? -std::expm1(length * std::log1p(-opacity))
+                 : 1.0f - std::pow(1.0f - opacity, length);
+}
+
 /// Front-to-back over operator with opacity corrected for the sample's length:
 /// 1 - (1 - alpha)^length.
 INR_HOST_DEVICE inline void Composite(const glm::vec4& entry, const MarchSample& sample,
@@ -122,9 +131,9 @@ INR_HOST_DEVICE inline void Composite(const glm::vec4& entry, const MarchSample&
   if (entry.w <= 0.0f) {
     return;
   }
-  const float alpha = 1.0f - std::pow(1.0f - entry.w, sample.length);
-  const float weight = (1.0f - state.color.w) * alpha;
-  state.color += glm::vec4(entry.x, entry.y, entry.z, 1.0f) * weight;
+  const float alpha = OpacityOver(sample.length, entry.w);
+  const double weight = (1.0 - state.color.w) * alpha;
+  state.color += glm::dvec4(entry.x, entry.y, entry.z, 1.0) * weight;
   if (state.halfOpaqueAt < 0 && state.color.w >= 0.5f) {
     state.halfOpaqueAt = sample.t;
   }

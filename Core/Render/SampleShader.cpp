@@ -11,7 +11,6 @@ int SampleShader::shade(const SampleBatch& batch, int count, const Request& requ
   int visible[SampleBatch::Capacity];
   int seen = 0;
   for (int k = 0; k < count; ++k) {
-    colors[k] = this->Colors.at(batch.value[k]);
     if (colors[k].w > 0.0f) {
       visible[seen++] = k;
     }

@@ -2,20 +2,19 @@
 #pragma once
 
 #include "Core/Render/BrickGradients.h"
-#include "Core/Render/ColorTable.h"
 #include "Core/Render/Shading.h"
 
 #include <glm/vec4.hpp>
 
 namespace inr {
 
-/// Colours of samples from the cache, lit by the scene's lights. Only what can be seen gets a
+/// Lights samples from the cache by the scene's lights. Only what can be seen gets a
 /// gradient.
 class SampleShader
 {
 public:
-  SampleShader(const Shading& shading, const ColorLookup& colors, BrickGradients gradients)
-      : Lighting(shading), Colors(colors), Gradients(gradients)
+  SampleShader(const Shading& shading, BrickGradients gradients)
+      : Lighting(shading), Gradients(gradients)
   {}
 
   /// How a ray's samples are looked at.
@@ -28,9 +27,8 @@ public:
     const double* t;        ///< of the samples
   };
 
-  /// Straight RGB and opacity per unit distance of the first `count` samples of `batch`, whose
-  /// values have been found and moved into their ranges. Returns for how many of them it is known:
-  /// fewer only with Missing::Stop.
+  /// Lights `colors`, straight RGB and opacity per unit distance of the first `count` samples of
+  /// `batch`. Returns for how many of them that was possible: fewer only with Missing::Stop.
   int shade(const SampleBatch& batch, int count, const Request& request, RequestList& requests,
             glm::vec4* colors);
 
@@ -38,7 +36,6 @@ public:
 
 private:
   const Shading& Lighting;
-  const ColorLookup& Colors;
   BrickGradients Gradients;
 };
 

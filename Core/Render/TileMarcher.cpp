@@ -75,26 +75,39 @@ void TileMarcher::inferValues()
   this->Statistics.samples += count;
 }
 
+/// The samples of which something is seen; those behind which a ray is opaque are the last.
+void TileMarcher::listVisible()
+{
+  this->Lit.resize(this->Samples.size());
+  this->Visible.clear();
+  std::size_t k = 0;
+  for (std::size_t live = 0; live < this->Live.size(); ++live) {
+    double opacity = this->Rays[static_cast<std::size_t>(this->Live[live])].color.w;
+    for (; k < static_cast<std::size_t>(this->SampleEnds[live]); ++k) {
+      float value = this->Values[k];
+      ClampToRange(this->Samples[k].range, value); // counted when it is composited
+      this->Lit[k] = this->Scene.colors.at(value);
+      if (this->Lit[k].w > 0.0f && opacity < OpaqueEnough) {
+        this->Visible.push_back(k);
+        opacity += (1.0 - opacity) * OpacityOver(this->Samples[k].length, this->Lit[k].w);
+      }
+    }
+  }
+}
+
 void TileMarcher::inferGradients()
 {
   const glm::vec3 voxel(1.0 / this->Scene.settings.dims);
   const glm::vec3 low = 0.5f * voxel;
-  this->Lit.resize(this->Samples.size());
-  this->Visible.clear();
+  this->listVisible();
   this->Positions.clear();
-  for (std::size_t k = 0; k < this->Samples.size(); ++k) {
-    float value = this->Values[k];
-    ClampToRange(this->Samples[k].range, value); // counted when it is composited
-    this->Lit[k] = this->Scene.colors.at(value);
-    if (this->Lit[k].w > 0.0f) {
-      this->Visible.push_back(k);
-      for (int axis = 0; axis < 3; ++axis) {
-        for (const float side : {-1.0f, 1.0f}) {
-          glm::vec3 position = this->Samples[k].position;
-          position[axis] =
-              glm::clamp(position[axis] + side * voxel[axis], low[axis], 1.0f - low[axis]);
-          this->Positions.push_back(position);
-        }
+  for (const std::size_t k : this->Visible) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const float side : {-1.0f, 1.0f}) {
+        glm::vec3 position = this->Samples[k].position;
+        position[axis] =
+            glm::clamp(position[axis] + side * voxel[axis], low[axis], 1.0f - low[axis]);
+        this->Positions.push_back(position);
       }
     }
   }
@@ -183,12 +196,12 @@ glm::vec4 TileMarcher::colorOf(const MarchState& state) const
   const Projector& projector = this->Scene.settings.projector;
   if (this->Scene.frame.layers) {
     LayeredLight light = state.light;
-    light.gather(glm::vec3(state.color), 1.0f - state.color.w);
-    return {light.seen(), state.color.w};
+    light.gather(glm::vec3(state.color), static_cast<float>(1.0 - state.color.w));
+    return {light.seen(), static_cast<float>(state.color.w)};
   }
   return projector.projects() && state.ray.length > 0
              ? projector.color(this->Scene.colors, state.projection)
-             : state.color;
+             : glm::vec4(state.color);
 }
 
 double TileMarcher::depthOf(const MarchState& state) const
@@ -215,7 +228,7 @@ bool TileMarcher::enterNextPart(int k, bool goesOn)
   if (frame.layers->depth(state.part, pixel) >= 1.0f) {
     return false;
   }
-  state.light.gather(glm::vec3(state.color), 1.0f - state.color.w);
+  state.light.gather(glm::vec3(state.color), static_cast<float>(1.0 - state.color.w));
   state.light.pass(frame.layers->color(state.part, pixel));
   if (state.halfOpaqueAt >= 0 && state.halfOpaqueDepth < 0) {
     state.halfOpaqueDepth = this->Scene.geometry.windowDepth(state.ray.at(state.halfOpaqueAt));

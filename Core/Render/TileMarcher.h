@@ -51,6 +51,7 @@ private:
   void generateRays(const Tile& tile);
   void placeSamples();
   void inferValues();
+  void listVisible();
   void inferGradients();
   void shade();
   /// Makes samples of the surfaces in a round's samples: the ones that are shaded and composited.

@@ -131,6 +131,80 @@ TEST(WorkSpared, NoBrickBehindOpaqueGeometry)
   EXPECT_EQ(Layers(scene), From(0, 32));
 }
 
+/// A medium that is opaque within half a voxel from z = 12 on, further on from z = 52 on, for who
+/// looks along +z: while rays on one side have not ended, those on the other long have.
+struct Wall
+{
+  explicit Wall(const inr::RendererOptions& options) : scene(options, Field, Cube)
+  {
+    inr::TransferFunction function;
+    function.table = {glm::vec4(1, 1, 1, 1e-4f), glm::vec4(1, 1, 1, 1)};
+    this->scene.renderer.setTransferFunction(function);
+  }
+
+  static float Field(const glm::vec3& u)
+  {
+    const glm::vec3 voxel = u * 73.0f - 0.5f;
+    return voxel.z < (voxel.x < 40 ? 12 : 52) ? 0.0f : 1.0f;
+  }
+
+  /// The last layers that were inferred on either side. Bricks along the edge are needed for
+  /// gradients next to it.
+  std::int64_t lastOfNear() const { return *Layers(this->scene, 0, 32).rbegin(); }
+  std::int64_t lastOfFar() const { return *Layers(this->scene, 40, 72).rbegin(); }
+
+  RecordedScene scene;
+};
+
+TEST(WorkSpared, NoBrickBehindAnOpaqueMedium)
+{
+  for (const bool shaded : {false, true}) {
+    SCOPED_TRACE(shaded);
+    Wall wall(SmallBricks());
+    inr::Frame frame = FromBelow();
+    if (shaded) {
+      frame.shading = inr::Material{};
+      frame.lights = {Headlight()};
+    }
+    wall.scene.render(frame);
+    EXPECT_EQ(wall.lastOfNear(), 16);
+    EXPECT_EQ(wall.lastOfFar(), 56);
+  }
+}
+
+TEST(WorkSpared, NoBrickBehindAnOpaqueMediumInALimitedTime)
+{
+  for (const bool preloading : {false, true}) {
+    SCOPED_TRACE(preloading);
+    inr::RendererOptions options = SmallBricks();
+    options.deterministic = true;
+    options.cache.preloading = preloading;
+    Wall wall(options);
+    inr::Frame frame = FromBelow();
+    frame.timeLimit = 1;
+    for (int k = 0; k < 1000 && (k == 0 || !wall.scene.statistics.complete); ++k) {
+      wall.scene.render(frame);
+    }
+    EXPECT_TRUE(wall.scene.statistics.complete);
+    // At first the wall is as blurred as the coarsest level, by nine voxels.
+    EXPECT_LE(wall.lastOfNear(), 24);
+    EXPECT_LE(wall.lastOfFar(), 64);
+  }
+}
+
+TEST(WorkSpared, NoGradientBehindAnOpaqueMedium)
+{
+  for (const bool cached : {false, true}) {
+    RecordedScene scene(SmallBricks(cached), Waves, Cube);
+    scene.renderer.setTransferFunction(UniformMedium(1));
+    inr::Frame frame = FromBelow();
+    frame.shading = inr::Material{};
+    frame.lights = {Headlight()};
+    scene.render(frame);
+    EXPECT_EQ(scene.render(frame).gradients, 80 * 80) << cached; // of the first sample of each ray
+  }
+}
+
 /// Views that want each and every brick: a frame of each mode.
 std::vector<inr::Frame> Views(const glm::i64vec3& dims)
 {
