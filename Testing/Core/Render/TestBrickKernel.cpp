@@ -3,7 +3,8 @@
 // Runs of samples, laid out and interpolated by every kernel, against double precision one sample
 // at a time.
 #include "Core/Random.h"
-#include "Core/Render/BrickKernel.h"
+#include "Core/Render/ColorTable.h"
+#include "Core/Render/StepTable.h"
 #include "Testing/Core/Kernels.h"
 
 #include <gtest/gtest.h>
@@ -188,6 +189,46 @@ TEST_P(BrickKernels, LayOutRuns)
     }
   }
   EXPECT_GT(second, 1000);
+}
+
+// A million samples of an even medium, of several lengths: in float as good as is said, in double
+// as good as the entries are.
+TEST_P(BrickKernels, CompositeAnyNumberOfSamples)
+{
+  const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
+  inr::TransferFunction medium;
+  medium.table = {glm::vec4(0.25f, 0.5f, 1, 0.3f), glm::vec4(0.25f, 0.5f, 1, 0.3f)};
+  const inr::ColorTable colors(medium, inr::VolumeInfo{});
+  constexpr int lengths = 4;
+  const inr::StepTable table(colors.lookup(), 5e-7, lengths);
+  for (const bool ofMany : {false, true}) {
+    inr::RayColor color{{0, 0, 0}, 1, ofMany};
+    long double transmittance = 1;
+    const auto batch = std::make_unique<inr::SampleBatch>();
+    std::int64_t samples = 0;
+    std::int64_t clamped = 0;
+    for (int round = 0; round < 16384; ++round) {
+      for (int k = 0; k < inr::SampleBatch::Capacity; ++k) {
+        batch->value[k] = 0.5f;
+        batch->low[k] = 0;
+        batch->high[k] = 1;
+        batch->length[k] = (k * round) % lengths;
+        const auto row = std::int64_t{batch->length[k]} * table.lookup().rows + 3;
+        transmittance *= 1 - static_cast<long double>(table.lookup().entries[4 * row + 3]);
+      }
+      samples += kernel.composite(table.lookup(), *batch, inr::SampleBatch::Capacity, 0.001f, color,
+                                  clamped);
+    }
+    EXPECT_EQ(samples, std::int64_t{16384} * inr::SampleBatch::Capacity);
+    const auto truth = static_cast<double>(transmittance);
+    EXPECT_LT(truth, 0.9); // by as much as a picture shows
+    const auto count = static_cast<double>(samples);
+    const double bound = ofMany ? 1e-11 : count * 0x1p-25;
+    EXPECT_NEAR(color.transmittance, truth, bound);
+    EXPECT_NEAR(color.rgb[0], 0.25 * (1 - truth), bound);
+    EXPECT_NEAR(color.rgb[2], 1 - truth, bound);
+    EXPECT_EQ(clamped, 0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Sets, BrickKernels, testing::ValuesIn(UsableKernels()),
