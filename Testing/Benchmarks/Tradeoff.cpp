@@ -27,7 +27,7 @@
 
 namespace {
 
-constexpr int PathPictureSize = 128;
+constexpr int PathPictureSize = 64;
 constexpr int ReferencePaths = 512;
 
 /// What the model made of the data, voxel by voxel.

@@ -151,8 +151,8 @@ inline std::vector<Point> Grid(const inr::Frame& frame)
 {
   std::vector<Point> points;
   for (const auto precision : {inr::CachePrecision::Bits16, inr::CachePrecision::Bits8}) {
-    for (const double scale : {1.0, 2.0, 4.0}) {
-      for (const double step : {0.5, 1.0, 2.0}) {
+    for (const double scale : {0.5, 1.0, 2.0}) {
+      for (const double step : {0.25, 0.5, 1.0, 2.0}) {
         Point point{"grid", "scale " + Text(scale) + " step " + Text(step) + " " + Name(precision),
                     Cached(), frame, false};
         point.options.cache.precision = precision;

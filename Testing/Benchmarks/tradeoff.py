@@ -27,7 +27,8 @@ SIZES = {"default": 0, "small": 4, "large": 1 / 4}  # ratio of volume and file, 
 VOLUMES = ("rm_mixing", "heptane_fire", "les_vorticity")
 # Volume, model, what is measured, view.
 PARTS = ([(volume, size, "volume", "whole") for volume in VOLUMES for size in SIZES]
-         + [("rm_mixing", "default", "knobs+loading+grid", "whole"),
+         + [("rm_mixing", "default", "knobs+loading", "whole"),
+            ("rm_mixing", "default", "grid", "whole"), ("les_vorticity", "default", "grid", "whole"),
             ("heptane_fire", "default", "knobs", "whole"),
             ("les_vorticity", "default", "knobs", "whole"),
             ("rm_mixing", "default", "knobs", "near"), ("rm_mixing", "default", "knobs", "far")]
@@ -66,9 +67,9 @@ class Bench:
         lines = [json.loads(line) for line in run.stdout.splitlines()]
         for line in lines:
             line["ratio"] = round(self.ratio(model), 1)
-            if what == "volume":
+            if what == "volume" or (what == "model" and "knob" not in line):
                 line["name"] += f", {size} model"
-            if what == "model" and "knob" in line:
+            elif what == "model":
                 line["parameters"], line["setting"] = int(line["setting"]), size
                 line["knob"] = line["knob"].replace("parameters", "model size")
                 line["name"] = f"{line['scene']}, {line['knob']} {size}"
@@ -79,11 +80,14 @@ class Bench:
         return self.work / f"{'-'.join(part)}.json"
 
     def measured(self, parts):
+        references = set()
         for part in parts:
             if self.file(*part).exists():
                 stored = json.loads(self.file(*part).read_text())
                 for line in stored["lines"]:
-                    yield {**line, "commit": stored["commit"]}
+                    if "part" in line or line["name"] not in references:  # which two parts may have
+                        references.add(line["name"])
+                        yield {**line, "commit": stored["commit"]}
 
 
 def rounded(figures):
@@ -102,7 +106,7 @@ def result_of(line):
             return results_file.result(f"{name}, PSNR", line.pop(key), "dB", "higher", what, **line)
     return results_file.result(
         f"{name}, time", line["cpu_ms"] / line["default_cpu_ms"], "of the default's", "lower",
-        "processor time, 2 threads, 256x256; from far and of paths 128x128", **line)
+        "processor time, 2 threads, 256x256; from far 128x128, of paths 64x64", **line)
 
 
 def summaries(lines):
@@ -112,34 +116,25 @@ def summaries(lines):
         if line.get("part") in ("knobs", "loading", "model", "paths"):
             key = (line["part"] == "paths", line["knob"], line["setting"])
             points.setdefault(key, []).append(line)
-    for (paths, knob, setting), lines in points.items():
-        if knob == "defaults":
-            yield from usual_quality(lines)
-            continue
-        ratios = [line["cpu_ms"] / line["default_cpu_ms"] for line in lines]
-        first = [line["first_cpu_ms"] / line["default_first_cpu_ms"] for line in lines
+    for (paths, knob, setting), same in points.items():
+        ratios = [line["cpu_ms"] / line["default_cpu_ms"] for line in same]
+        first = [line["first_cpu_ms"] / line["default_first_cpu_ms"] for line in same
                  if "first_cpu_ms" in line]
         more = {"first_picture": geometric_mean(first)} if first else {}
-        for reference in "abc":
-            for key, worst in ((f"psnr_{reference}", min), (f"flip_{reference}", max)):
-                values = [line[key] for line in lines]
-                more[key], more[f"worst_{key}"] = statistics.median(values), worst(values)
-        more["worst_psnr_default"] = min(line["psnr_default"] for line in lines)
-        kind = "paths, " if paths else ""
-        yield results_file.result(f"{kind}{knob} {setting}, time in the mean", geometric_mean(ratios),
+        for look in ("sparse", "dense"):
+            more.update(errors([line for line in same if look in line["scene"]], look))
+        more["least_psnr_default"] = min(line["psnr_default"] for line in same)
+        name = f"{'paths, ' if paths else ''}{knob} {setting}".strip()
+        yield results_file.result(f"{name}, time in the mean", geometric_mean(ratios),
                                   "of the default's", "lower",
-                                  f"geometric mean over {len(lines)} scenes; the median error", **more)
+                                  f"geometric mean over {len(same)} scenes; the median error", **more)
 
 
-def usual_quality(lines):
-    for reference, what in (("a", "the decoded voxels"), ("b", "the network"),
-                            ("c", "the original voxels")):
-        for key, unit, better in (("psnr", "dB", "higher"), ("flip", "", "lower"),
-                                  ("ssim", "", "higher"), ("max", "", "lower")):
-            values = [line[f"{key}_{reference}"] for line in lines]
-            yield results_file.result(
-                f"default settings against {what}, {key}", statistics.median(values), unit, better,
-                f"median over {len(lines)} scenes", smallest=min(values), largest=max(values))
+def errors(lines, look):
+    """Medians over scenes, against every reference."""
+    return {f"{look}_{key}_{reference}":
+            statistics.median(line[f"{key}_{reference}"] for line in lines)
+            for reference in "abc" for key in ("psnr", "ssim", "flip", "max")}
 
 
 def geometric_mean(values):

@@ -47,8 +47,12 @@ def draw_curve(plot, knob, points, usual):
               label=knob)
     for point in curve:
         if point is not usual and knob in ("LevelOfDetailScale", "SampleDistance", "ErrorTolerance"):
+            if knob == "LevelOfDetailScale" and point["setting"] == "0":
+                continue  # hardly to be told from 0.5
+            left = knob == "LevelOfDetailScale"
             plot.annotate(point["setting"], (point["value"], point["psnr_a"]), fontsize=7,
-                          color=colour, xytext=(4, 3), textcoords="offset points")
+                          color=colour, ha="right" if left else "left",
+                          xytext=(-5 if left else 5, 2), textcoords="offset points")
 
 
 def setting_of(point, knob):
@@ -100,7 +104,7 @@ def draw_levels(folder, results):
     rows = (("psnr_a", "PSNR against decoded voxels, dB"), ("flip_a", "mean FLIP"),
             ("first_cpu_ms", "first picture, processor ms"), ("cache_mib", "cache, MiB"))
     figure, axes = pyplot.subplots(1, 4, figsize=(14, 3.6))
-    for scene, colour in (("rm_mixing sparse", "#2a78d6"), ("rm_mixing sparse far", "#86b6ef"),
+    for scene, colour in (("rm_mixing sparse", "#2a78d6"), ("rm_mixing far sparse", "#86b6ef"),
                           ("rm_mixing dense", "#eb6834"), ("heptane_fire sparse", "#1baf7a"),
                           ("heptane_fire dense", "#4a3aa7")):
         knobs = single[scene]
