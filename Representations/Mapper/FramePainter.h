@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,7 +67,27 @@ struct PaintedFrame
   bool converged = false; ///< shown, and complete
 };
 
-/// Turns VTK's scene into a Frame, has it rendered and blends the picture into the window.
+/// What a picture depends on beyond its renderer, to tell whether the next one is the same.
+class PictureKey
+{
+public:
+  /// `colors`: Renderer::majorantBuilds(), which rises whenever they change.
+  PictureKey(const Frame& frame, bool countsSamples, std::int64_t colors);
+  PictureKey(const PictureKey&) = delete;
+  PictureKey& operator=(const PictureKey&) = delete;
+
+  bool matches(const Frame& frame, bool countsSamples, std::int64_t colors) const;
+
+private:
+  std::vector<float> OpaqueDepth;
+  Frame Picture; ///< with its depth there
+  bool CountsSamples;
+  std::int64_t Colors;
+};
+
+/// Turns VTK's scene into a Frame, has it rendered and blends the picture into the window. A
+/// picture that is complete is not rendered again while everything stays as it is: windows are
+/// drawn anew for many reasons.
 class FramePainter
 {
 public:
@@ -106,6 +127,8 @@ private:
   Surroundings surroundings(vtkRenderer* renderer, const Viewport& viewport, bool meetsLayers);
   bool render(const Frame& scene, const Viewport& viewport, const Surroundings& around,
               int reduction, const std::function<bool()>& keepGoing);
+  /// Shows the picture of the call before if that is the one `frame` asks for.
+  bool showAgain(const Frame& frame);
   double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;
   /// Sees to it that an unfinished still picture goes on.
   void refineLater(vtkRenderWindow* window, RenderMode mode);
@@ -122,6 +145,8 @@ private:
   TranslucentPeeler Peeler;
   RefinementTimer Refine;
   PaintedFrame Last;
+  PaintedFrame Before;           ///< of the call before, until there is another
+  std::optional<PictureKey> Key; ///< of what was drawn last, if it is complete
 };
 
 } // namespace inr

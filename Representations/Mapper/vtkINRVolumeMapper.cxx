@@ -73,6 +73,21 @@ vtkIdType vtkINRVolumeMapper::GetNumberOfClampedSamples() const
   return this->Self->Painter.last().statistics.clamped;
 }
 
+vtkIdType vtkINRVolumeMapper::GetNumberOfNetworkSamples() const
+{
+  return this->Self->Painter.last().statistics.work.networkSamples;
+}
+
+vtkIdType vtkINRVolumeMapper::GetNumberOfDecodedBricks() const
+{
+  return this->Self->Painter.last().statistics.work.bricks.bricks;
+}
+
+vtkIdType vtkINRVolumeMapper::GetNumberOfVisitedCells() const
+{
+  return this->Self->Painter.last().statistics.work.cells;
+}
+
 int vtkINRVolumeMapper::GetImageReduction() const { return this->Self->Painter.last().reduction; }
 
 bool vtkINRVolumeMapper::GetConverged() const { return this->Self->Painter.last().converged; }
@@ -295,6 +310,9 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "FrameTime: " << this->GetFrameTime() << "\n"
      << indent << "NumberOfSamples: " << this->GetNumberOfSamples() << "\n"
      << indent << "NumberOfClampedSamples: " << this->GetNumberOfClampedSamples() << "\n"
+     << indent << "NumberOfNetworkSamples: " << this->GetNumberOfNetworkSamples() << "\n"
+     << indent << "NumberOfDecodedBricks: " << this->GetNumberOfDecodedBricks() << "\n"
+     << indent << "NumberOfVisitedCells: " << this->GetNumberOfVisitedCells() << "\n"
      << indent << "Converged: " << this->GetConverged() << "\n"
      << indent << "CacheHitRate: " << this->GetCacheHitRate() << "\n"
      << indent << "CacheUsed: " << this->GetCacheUsed() << "\n"

@@ -304,6 +304,18 @@ public:
 
   ///@{
   /**
+   * What the last call had to do: points at which the network was asked one by one, bricks that it
+   * decoded (those that come in behind the application belong to the next call), and macro-cells
+   * that rays looked at. All 0 where nothing had changed since a picture that is complete: it is
+   * shown again.
+   */
+  vtkIdType GetNumberOfNetworkSamples() const;
+  vtkIdType GetNumberOfDecodedBricks() const;
+  vtkIdType GetNumberOfVisitedCells() const;
+  ///@}
+
+  ///@{
+  /**
    * About the last frame and the cache: whether it was shown and every sample came from the level
    * it asked for and, of path tracing, SamplesPerPixel were taken (false before the first frame and
    * when one is refused or aborted); the part of the samples that did (0 to 1; 1 where the view

@@ -130,6 +130,7 @@ Measured Measure(vtkVolumeMapper* mapper, const inr::VolumeInfo& info, const Opa
   window->Render(); // makes what there is to make
   std::vector<double> times;
   for (int frame = 0; frame < Frames; ++frame) {
+    renderer->GetActiveCamera()->Azimuth(frame % 2 == 0 ? 0.01 : -0.01); // a still one is kept
     window->Render();
     times.push_back(1000 * mapper->GetTimeToDraw());
   }

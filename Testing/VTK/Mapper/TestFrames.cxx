@@ -10,7 +10,10 @@
 #include <vtkActor.h>
 #include <vtkActor2D.h>
 #include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
 #include <vtkCubeSource.h>
+#include <vtkPiecewiseFunction.h>
 #include <vtkPlane.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
@@ -19,6 +22,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <string>
 
 namespace {
 
@@ -75,6 +80,59 @@ TEST(Frames, SayWhatTheyTook)
   EXPECT_GT(one.mapper->GetNumberOfSamples(), 10000);
   EXPECT_EQ(one.mapper->GetImageReduction(), 1);
   EXPECT_EQ(std::string(one.mapper->GetBackendInUse()).substr(0, 4), "CPU ");
+}
+
+/// Something that makes for another picture.
+struct Change
+{
+  const char* name;
+  std::function<void(OneVolume&)> make;
+};
+
+TEST(Frames, AreNotMadeAgainWhileNothingChanges)
+{
+  const Change changes[] = {
+      {"camera", [](OneVolume& one) { one.renderer->GetActiveCamera()->Azimuth(3); }},
+      {"colours",
+       [](OneVolume& one) {
+         one.volume->GetProperty()->GetRGBTransferFunction()->AddRGBPoint(0.4, 0.1, 0.9, 0.3);
+       }},
+      {"opacity",
+       [](OneVolume& one) { one.volume->GetProperty()->GetScalarOpacity()->AddPoint(0.4, 0.35); }},
+      {"unit distance",
+       [](OneVolume& one) { one.volume->GetProperty()->SetScalarOpacityUnitDistance(0.7); }},
+      {"sample distance", [](OneVolume& one) { one.mapper->SetSampleDistance(0.8); }},
+      {"samples per pixel", [](OneVolume& one) { one.mapper->SetSamplesPerPixel(3); }},
+      {"cache", [](OneVolume& one) { one.mapper->SetCachePrecision(0); }},
+      {"surface in it", [](OneVolume& one) { one.addCube(); }},
+      {"place", [](OneVolume& one) { one.volume->AddPosition(1, 2, 3); }},
+      {"window", [](OneVolume& one) { one.scene.window->SetSize(200, 160); }}};
+  for (const int mode : {0, 1}) { // ray marching, path tracing
+    OneVolume one;
+    one.mapper->SetRenderMode(mode);
+    one.mapper->SetSamplesPerPixel(2);
+    inr::Image shown = one.scene.capture();
+    EXPECT_TRUE(one.mapper->GetConverged());
+    EXPECT_GT(one.mapper->GetNumberOfVisitedCells(), 0);
+    for (const Change& change : changes) {
+      SCOPED_TRACE(change.name);
+      const vtkIdType samples = one.mapper->GetNumberOfSamples();
+      EXPECT_EQ(one.scene.capture().pixels, shown.pixels);
+      EXPECT_EQ(one.mapper->GetNumberOfVisitedCells(), 0);
+      EXPECT_EQ(one.mapper->GetNumberOfNetworkSamples(), 0);
+      EXPECT_EQ(one.mapper->GetNumberOfDecodedBricks(), 0);
+      EXPECT_EQ(one.mapper->GetNumberOfSamples(), samples); // the picture's, as before
+      EXPECT_TRUE(one.mapper->GetConverged());
+      change.make(one);
+      const inr::Image next = one.scene.capture();
+      const std::string name = change.name;
+      const bool matters = mode == 1 || name != "samples per pixel";
+      const bool shows = name != "cache" && (mode == 0 || name != "sample distance");
+      EXPECT_EQ(one.mapper->GetNumberOfVisitedCells() > 0, matters);
+      EXPECT_TRUE(!matters || !shows || next.pixels != shown.pixels);
+      shown = next;
+    }
+  }
 }
 
 TEST(Frames, GiveWayToCoarserOnesWhenTheyComeTooLate)
