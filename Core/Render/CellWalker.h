@@ -62,6 +62,7 @@ public:
     return true;
   }
 
+  INR_HOST_DEVICE std::int64_t index() const { return this->Cells.index(); }
   INR_HOST_DEVICE float extinction() const { return this->Cells.extinction(); }
   INR_HOST_DEVICE const ValueRange& range() const { return this->Cells.range(); }
   /// Where the ray enters the cell, or begins to go by it; and where it leaves it or goes on by

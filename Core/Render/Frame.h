@@ -94,6 +94,13 @@ struct Frame
   /// pixel, 0 reads the full resolution everywhere; not negative.
   double levelOfDetailScale = 1;
 
+  /// Takes the place of levelOfDetailScale and adaptiveSampling where it is given: by how many
+  /// 255ths a channel of the picture may differ from the one with all samples, each from the full
+  /// resolution. 0: not at all; not negative. Where nothing is lit, cropped or projected, samples
+  /// come from coarser levels and are further apart wherever that stays within it; see
+  /// LevelChooser. Everything else, and paths, is drawn as with 0. Ignored without a cache.
+  std::optional<double> errorTolerance;
+
   /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones
   /// are not there yet; what is missing is loaded in the time that is left. 0: as long as it takes
   /// to be complete. Ignored without a cache.

@@ -71,6 +71,7 @@ public:
 
   INR_HOST_DEVICE float extinction() const { return this->Cells->extinction(this->Index); }
   INR_HOST_DEVICE const ValueRange& range() const { return this->Cells->range(this->Index); }
+  INR_HOST_DEVICE std::int64_t index() const { return this->Index; } ///< of the cell
   INR_HOST_DEVICE const glm::i64vec3& cell() const { return this->Way.cell(); }
   /// Where the ray enters the cell and where it leaves it.
   INR_HOST_DEVICE double enter() const { return this->Way.enter(); }

@@ -43,6 +43,16 @@ public:
     this->Fraction = between ? static_cast<float>(footprint / this->Voxel - 1.0) : 0.0f;
   }
 
+  /// From here on this level everywhere.
+  INR_HOST_DEVICE void fix(int level)
+  {
+    this->Level = level;
+    this->Voxel = static_cast<double>(std::int64_t{1} << level);
+    this->Footprint = this->Voxel;
+    this->Growth = 0;
+    this->Fraction = 0.0f;
+  }
+
   /// t up to which level() and coarsest() stay as they are, while t grows.
   INR_HOST_DEVICE double exit() const
   {

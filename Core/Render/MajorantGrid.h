@@ -28,6 +28,7 @@ public:
 
   const glm::i64vec3& dims() const { return this->Cells.dims; }
   const glm::dvec3& spacing() const { return this->Cells.spacing; }
+  std::int64_t count() const { return static_cast<std::int64_t>(this->Cells.ranges.size()); }
   /// Cells are numbered x fastest.
   std::int64_t index(const glm::i64vec3& at) const { return this->Cells.index(at.x, at.y, at.z); }
   const ValueRange& range(std::int64_t cell) const

@@ -107,6 +107,8 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture
   }
   Require(frame.sampleDistance >= SmallestStep && frame.sampleDistance <= LargestStep,
           "the sample distance must be between 1/1000 and 1,000,000 voxels");
+  Require(!frame.errorTolerance || *frame.errorTolerance >= 0,
+          "the error tolerance must not be negative");
   Require(frame.levelOfDetailScale >= 0 && std::isfinite(frame.levelOfDetailScale),
           "the level-of-detail scale must be finite and not negative");
   Require(!frame.shading || IsValid(*frame.shading),
@@ -177,6 +179,18 @@ RayGeometry::Line RayGeometry::line(int x, int y) const
   const glm::dvec3 toFar = Point(center + toWorld[2]) - near;
   const double range = glm::length(toFar);
   return {center, near, toFar, range, toFar / range, toWorld[2]};
+}
+
+double RayGeometry::longest() const
+{
+  const glm::dvec3 size = this->High - this->Low;
+  double longest = 0;
+  for (int corner = 0; corner < 4; ++corner) { // and the four opposite ones
+    const glm::dvec3 diagonal(size.x, (corner & 1) != 0 ? -size.y : size.y,
+                              (corner & 2) != 0 ? -size.z : size.z);
+    longest = std::max(longest, glm::length(glm::dmat3(this->IndexToWorld) * diagonal));
+  }
+  return longest / this->WorldPerUnit;
 }
 
 Ray RayGeometry::ray(int x, int y) const

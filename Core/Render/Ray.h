@@ -48,6 +48,9 @@ public:
   /// Window-space depth in [0, 1] of a point on a ray.
   double windowDepth(const glm::dvec3& index) const;
 
+  /// t that the longest ray spends in the volume, at most.
+  double longest() const;
+
   /// World length of one unit of t: the shortest voxel edge.
   double worldPerUnit() const { return this->WorldPerUnit; }
 

@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Core/Render/CachedPaths.h"
+#include "Core/Render/LevelChooser.h"
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/TileMarcher.h"
 #include "Core/Render/WorkLimit.h"
@@ -19,6 +20,16 @@ RendererOptions Consistent(RendererOptions options)
 {
   options.cache.background = options.cache.background && !options.deterministic;
   return options;
+}
+
+/// Where there is a tolerance, what else would choose levels and distances of samples is off.
+Frame WithoutOtherErrors(Frame frame)
+{
+  if (frame.errorTolerance) {
+    frame.levelOfDetailScale = 0;
+    frame.adaptiveSampling = false;
+  }
+  return frame;
 }
 
 FrameStatistics Sum(const std::vector<FrameStatistics>& tiles)
@@ -60,6 +71,13 @@ struct Renderer::Implementation
                                  const PassOutput& output,
                                  const std::function<bool()>& keepGoing) const;
 
+  std::int64_t measuredPoints() const { return this->Levels ? this->Levels->measuredPoints() : 0; }
+  /// Whether what comes from coarser levels can be chosen for such a frame.
+  bool choosesLevels(const Frame& frame, const MarchSettings& settings) const;
+  /// Puts the choice into `settings`; whether it is final.
+  bool chooseLevels(const Frame& frame, const RayGeometry& geometry, const WorkLimit& limit,
+                    const std::function<bool()>& keepGoing, MarchSettings& settings);
+
   FrameStatistics march(const Frame& frame, const PassOutput& output,
                         const std::function<bool()>& keepGoing);
   FrameStatistics tracePaths(const Frame& frame, const PassOutput& output,
@@ -79,6 +97,7 @@ struct Renderer::Implementation
   std::vector<float> Surfaces;          ///< of these pictures
   std::optional<CachedRenderer> Cached; ///< where there is to be a cache
   std::optional<PathPicture> Paths;     ///< while paths are traced
+  std::optional<LevelChooser> Levels;   ///< once a frame had a tolerance
   std::int64_t MajorantBuilds = 0;
 };
 
@@ -138,6 +157,9 @@ void Renderer::Implementation::build()
   if (this->Cached) {
     this->Cached->forgetColors();
   }
+  if (this->Levels) {
+    this->Levels->forgetColors();
+  }
   this->Surfaces = VisibleSurfaces(this->Seen.isosurfaces, this->Volume, this->Colors->lookup());
   this->Cells.update(VisibilityFor(this->projector(), *this->Colors), this->Threads);
   ++this->MajorantBuilds;
@@ -171,6 +193,34 @@ FrameStatistics Renderer::Implementation::renderUncached(
   return statistics;
 }
 
+bool Renderer::Implementation::choosesLevels(const Frame& frame,
+                                             const MarchSettings& settings) const
+{
+  return frame.errorTolerance.value_or(0) > 0 && frame.blending.mode == BlendMode::Composite &&
+         !frame.shading && !settings.crops;
+}
+
+bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometry& geometry,
+                                            const WorkLimit& limit,
+                                            const std::function<bool()>& keepGoing,
+                                            MarchSettings& settings)
+{
+  if (!this->Levels) {
+    this->Levels.emplace(this->Field, this->Volume.dims, this->Cells.grid(0),
+                         this->Cached->store().cache().hierarchy().levels());
+  }
+  const LevelChooser::Wish wish{*frame.errorTolerance / 255.0, settings.step,
+                                settings.step * settings.unitsPerT,
+                                std::max(1.0, geometry.longest() / settings.step)};
+  const LevelChooser::Outcome outcome = this->Levels->choose(
+      wish, this->Cells.grid(0), this->Colors->lookup(), this->Threads, limit, keepGoing);
+  if (outcome != LevelChooser::Outcome::Same) {
+    this->Cached->forgetPicture();
+  }
+  settings.cellLevels = this->Levels->levels();
+  return outcome != LevelChooser::Outcome::Partial;
+}
+
 FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
                                                 const std::function<bool()>& keepGoing)
 {
@@ -193,10 +243,17 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   }
   const BrickStore::Call call = this->Cached->call();
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+  bool final = true;
+  const std::int64_t measured = this->measuredPoints();
+  if (this->choosesLevels(frame, settings)) {
+    final = this->chooseLevels(frame, geometry, limit, keepGoing, settings);
+  }
   FrameStatistics statistics =
       this->Cached->render(frame, geometry, this->Cells, this->Colors->lookup(), settings, lit,
                            limit, output, keepGoing);
+  statistics.complete = statistics.complete && final;
   statistics.work.bricks = call.done();
+  statistics.work.networkSamples += this->measuredPoints() - measured;
   return statistics;
 }
 
@@ -226,11 +283,12 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
   return statistics;
 }
 
-FrameStatistics Renderer::render(const Frame& frame, Image& rgba, Image* depth,
+FrameStatistics Renderer::render(const Frame& wanted, Image& rgba, Image* depth,
                                  const std::function<bool()>& keepGoing, Image* samples)
 {
   const Timer timer;
   Implementation& self = *this->Self;
+  const Frame frame = self.Cached ? WithoutOtherErrors(wanted) : wanted;
   if (!self.Colors) {
     throw Error(ErrorCode::InvalidArgument, "set a transfer function before rendering");
   }

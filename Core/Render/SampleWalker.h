@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/HostDevice.h"
-#include "Core/Render/CellWalker.h"
+#include "Core/Render/CellBlock.h"
 #include "Core/Render/Cropping.h"
 #include "Core/Render/LevelOfDetail.h"
 #include "Core/Render/Projection.h"
@@ -25,6 +25,9 @@ struct MarchSettings
   Projector projector;    ///< of values, where these are not composited
   bool crops = false;     ///< samples that `cropping` does not show are left out
   Cropping cropping;
+  /// Of each of the finest macro-cells, the level that its samples come from, up to
+  /// CoarsestCellLevel; null: LevelOfDetail chooses.
+  const std::uint8_t* cellLevels = nullptr;
 };
 
 /// Optical depth that needs no finer sampling.
@@ -77,6 +80,7 @@ struct SampleStretch
   int faint = 0;        ///< 2^faint of them may be taken at once
   ValueRange range;     ///< of the cells
   double reach = -1;    ///< where cells end that matter; see Projector::findsSurfaces
+  bool closed = false;  ///< samples belong to it only with all of their steps, or are of one step
 };
 
 /// Where the samples of a ray are: every 2^l steps where it deserves level l of the cache and the
@@ -136,7 +140,7 @@ public:
   /// From the first one's interval to the place of such samples.
   INR_HOST_DEVICE double offset(const AlikeSamples& samples) const
   {
-    const double offset = this->Jitter * static_cast<double>(samples.steps());
+    const double offset = this->offsetIn(samples.steps());
     return samples.last ? glm::min(offset, this->End - static_cast<double>(this->Next)) : offset;
   }
   /// Steps that the ray's last sample stands for.
@@ -154,11 +158,17 @@ public:
   {
     this->Next = interval;
     this->Stretch = stretch;
-    this->Detail.moveTo(static_cast<double>(interval) * settings.step);
+    if (stretch.closed) {
+      this->Detail.fix(stretch.level);
+    } else {
+      this->Detail.moveTo(static_cast<double>(interval) * settings.step);
+    }
   }
 
 private:
-  static constexpr double Plenty = 1024;    ///< more samples than anybody asks for at once
+  static constexpr double Plenty = 1024; ///< more samples than anybody asks for at once
+  /// Steps: fewer are passed sooner one by one than in a stretch of their own.
+  static constexpr double WorthAStretch = 12;
   static constexpr double BlockLength = 64; ///< samples that are looked ahead for
 
   /// To the next sample of the whole ray that may be seen.
@@ -169,10 +179,17 @@ private:
           this->firstPlace() < this->Stretch.exit) {
         return true;
       }
+      if (settings.cellLevels != nullptr) {
+        this->Detail.fix(0); // until the cell is known
+      }
       this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
       this->Cells.moveTo(this->firstPlace() * settings.step);
       if (this->Cells.extinction() > 0.0f || this->isLeaving(settings)) {
-        this->beginStretch(settings);
+        if (settings.cellLevels != nullptr) {
+          this->beginClosedStretch(settings);
+        } else {
+          this->beginStretch(settings);
+        }
         return true;
       }
       if (!this->Cells.moveToVisible(glm::min(this->End, this->PieceEnd) * settings.step)) {
@@ -195,6 +212,10 @@ private:
     }
     if (power < this->Stretch.level) { // up to the next interval of the level
       return {1, 1, power, false};
+    }
+    if (this->Stretch.closed && power > 0) {
+      const double inside = glm::min(this->Stretch.exit, this->End) - begin;
+      return {static_cast<int>(glm::min(inside * inverse, Plenty)), 1, power, false};
     }
     const double inCells = (this->Stretch.exit - begin) * inverse - this->Jitter;
     const double inLevel = (this->Stretch.levelEnd - begin) * inverse;
@@ -220,12 +241,19 @@ private:
   }
 
   /// log2 of the steps that the next sample stands for at least: those of the level, if the lattice
-  /// has such an interval here.
+  /// has such an interval here and a closed stretch has room for it.
   INR_HOST_DEVICE int shortest() const
   {
     constexpr int any = 62;
     const auto bits = static_cast<std::uint64_t>(this->Next);
-    return glm::min(this->Detail.coarsest(), bits == 0 ? any : LowestBit(bits));
+    int power = glm::min(this->Detail.coarsest(), bits == 0 ? any : LowestBit(bits));
+    if (this->Stretch.closed) {
+      const double room = glm::min(this->Stretch.exit, this->End) - static_cast<double>(this->Next);
+      while (power > 0 && PowerOfTwo(power) > room) {
+        --power;
+      }
+    }
+    return power;
   }
 
   INR_HOST_DEVICE static int LowestBit(std::uint64_t bits)
@@ -237,10 +265,17 @@ private:
 #endif
   }
 
+  /// From the beginning of so many steps to the sample that stands for them.
+  INR_HOST_DEVICE double offsetIn(std::int64_t steps) const
+  {
+    const auto length = static_cast<double>(steps);
+    return this->Stretch.closed ? this->Jitter + 0.5 * (length - 1.0) : this->Jitter * length;
+  }
+
   INR_HOST_DEVICE double firstPlace() const
   {
     const double place =
-        static_cast<double>(this->Next) + this->Jitter * PowerOfTwo(this->shortest());
+        static_cast<double>(this->Next) + this->offsetIn(std::int64_t{1} << this->shortest());
     return glm::min(place, this->End);
   }
 
@@ -300,6 +335,62 @@ private:
     const double reach = matters ? exit * stepsPerT : this->Stretch.reach;
     const double last = matters ? reach : std::nextafter(this->firstPlace(), this->End + 1);
     this->Stretch = {last, end * stepsPerT, level, faint, range, reach};
+  }
+
+  /// The same where cells say which level their samples come from. A block of the lattice has the
+  /// finest level of all cells that it meets; blocks of one level make a stretch, up to the end of
+  /// a larger block.
+  INR_HOST_DEVICE void beginClosedStretch(const MarchSettings& settings)
+  {
+    const double block = PowerOfTwo(CoarsestCellLevel);
+    const auto begin = static_cast<double>(this->Next);
+    const double enough =
+        glm::min((std::floor(begin / BlockLength) + 1.0) * BlockLength, this->End);
+    double end = (std::floor(begin / block) + 1.0) * block;
+    CellWalker ahead = this->Cells;
+    CellBlock first = MeetCells(ahead, settings.cellLevels, end * settings.step);
+    if (first.level == 0) {
+      this->beginFinestStretch(enough, settings);
+      return;
+    }
+    this->Cells = ahead;
+    while (end < enough) {
+      ahead.moveTo(end * settings.step);
+      const CellBlock next = MeetCells(ahead, settings.cellLevels, (end + block) * settings.step);
+      if (next.level < first.level || !next.matters) {
+        break;
+      }
+      this->Cells = ahead;
+      first.extend(next.range);
+      end += block;
+    }
+    this->Detail.fix(first.level);
+    this->Stretch = {end, this->Detail.exit(), first.level, 0, first.range, end, true};
+  }
+
+  /// One of level 0, which begins in a cell that matters: as far as all do, to the end of the block
+  /// in which one of another level begins.
+  INR_HOST_DEVICE void beginFinestStretch(double enough, const MarchSettings& settings)
+  {
+    const double block = PowerOfTwo(CoarsestCellLevel);
+    CellBlock cells;
+    cells.extend(this->Cells.range());
+    double exit = this->Cells.exit() / settings.step;
+    while (exit < enough) {
+      this->Cells.moveTo(this->Cells.exit());
+      if (this->Cells.extinction() <= 0.0f) {
+        break;
+      }
+      const double way = this->Cells.exit() / settings.step - exit;
+      if (settings.cellLevels[this->Cells.index()] > 0 && way >= WorthAStretch) {
+        enough = glm::min(enough, (std::floor(exit / block) + 1.0) * block);
+      }
+      cells.extend(this->Cells.range());
+      exit = this->Cells.exit() / settings.step;
+    }
+    exit = glm::min(exit, enough);
+    this->Detail.fix(0);
+    this->Stretch = {exit, this->Detail.exit(), 0, 0, cells.range, exit, true};
   }
 
   LevelOfDetail Detail;

@@ -13,7 +13,8 @@ namespace inr {
 struct WorkDone
 {
   /// Points at which the field was asked one by one: by rays and paths without a cache, six for
-  /// each of their gradients included, and by paths whose bricks the cache cannot hold.
+  /// each of their gradients included, by paths whose bricks the cache cannot hold, and by
+  /// LevelChooser.
   std::int64_t networkSamples = 0;
   std::int64_t gradients = 0;   ///< of the field
   std::int64_t scatterings = 0; ///< of paths

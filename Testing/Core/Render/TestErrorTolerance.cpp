@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Pictures with Frame::errorTolerance against those with every sample from the full resolution.
+#include "Core/Error.h"
+#include "Core/Image/Metrics.h"
+#include "Core/Render/LevelChooser.h"
+#include "Testing/Core/Render/VoxelScene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+const glm::i64vec3 Dims(112, 96, 104);
+
+/// Smooth nearly everywhere, with wires a voxel or two thick.
+float FogAndWires(const glm::vec3& u)
+{
+  const float fog = 0.3f + 0.2f * std::sin(5 * u.x + 2 * u.z) * std::cos(4 * u.y);
+  float wire = 0;
+  for (const glm::vec2 at : {glm::vec2(0.3f, 0.4f), glm::vec2(0.7f, 0.6f)}) {
+    const float x = 100 * (u.x - at.x - 0.05f * std::sin(6 * u.z));
+    const float y = 100 * (u.y - at.y);
+    wire = std::max(wire, std::exp(-0.7f * (x * x + y * y)));
+  }
+  return fog * (1 - wire) + wire;
+}
+
+inr::MacroCells CellsOf(const FieldEvaluator::Function& field, const glm::i64vec3& dims)
+{
+  inr::MacroCells cells = inr::MakeMacroCells(dims, 16);
+  for (std::int64_t k = 0; k < static_cast<std::int64_t>(cells.ranges.size()); ++k) {
+    const glm::i64vec3 cell(k % cells.dims.x, k / cells.dims.x % cells.dims.y,
+                            k / (cells.dims.x * cells.dims.y));
+    for (int voxel = 0; voxel < 18 * 18 * 18; ++voxel) {
+      const glm::i64vec3 within(voxel % 18 - 1, voxel / 18 % 18 - 1, voxel / 324 - 1);
+      const glm::i64vec3 at =
+          glm::clamp(cell * std::int64_t{16} + within, glm::i64vec3(0), dims - std::int64_t{1});
+      cells.ranges[static_cast<std::size_t>(k)].extend(
+          field(glm::vec3((glm::dvec3(at) + 0.5) / glm::dvec3(dims))));
+    }
+  }
+  cells.apron = 1.0 / glm::dvec3(dims);
+  return cells;
+}
+
+inr::TransferFunction Glow()
+{
+  inr::TransferFunction function;
+  function.table = {{0.1f, 0.2f, 1, 0.005f}, {0.2f, 0.6f, 0.8f, 0.02f}, {1, 0.3f, 0, 0.3f}};
+  return function;
+}
+
+inr::Renderer MakeRenderer(std::int64_t cacheBytes = 64 << 20, int threads = 2)
+{
+  inr::RendererOptions options;
+  options.threads = threads;
+  options.cache.bytes = cacheBytes;
+  options.cache.precision = inr::CachePrecision::Float32;
+  options.cache.brickSize = 16;
+  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(Dims),
+                         CellsOf(FogAndWires, Dims), options);
+  renderer.setTransferFunction(Glow());
+  return renderer;
+}
+
+inr::Frame FrameWith(std::optional<double> tolerance)
+{
+  inr::Frame frame = Oblique(glm::dvec3(Dims), 72);
+  frame.sampleDistance = 0.5;
+  frame.unitDistance = 2;
+  frame.errorTolerance = tolerance;
+  return frame;
+}
+
+struct Drawn
+{
+  inr::Image picture;
+  inr::FrameStatistics statistics;
+};
+
+Drawn Draw(inr::Renderer& renderer, const inr::Frame& frame)
+{
+  Drawn drawn;
+  drawn.statistics = renderer.render(frame, drawn.picture);
+  EXPECT_TRUE(drawn.statistics.complete);
+  return drawn;
+}
+
+/// Of the pixels that show something, how many differ by no more than a tolerance, in 1/255.
+double ShareWithin(double tolerance, const inr::Image& a, const inr::Image& b)
+{
+  double seen = 0;
+  double within = 0;
+  for (std::size_t k = 0; k < a.pixels.size(); k += 4) {
+    float largest = 0;
+    for (std::size_t channel = k; channel < k + 4; ++channel) {
+      largest = std::max(largest, std::abs(a.pixels[channel] - b.pixels[channel]));
+    }
+    const bool shown = a.pixels[k + 3] > 0 || b.pixels[k + 3] > 0;
+    seen += shown ? 1 : 0;
+    within += shown && 255 * largest <= tolerance ? 1 : 0;
+  }
+  return within / seen;
+}
+
+TEST(ErrorTolerance, OfZeroIsTheFullResolution)
+{
+  inr::Renderer renderer = MakeRenderer();
+  inr::Frame plain = FrameWith({});
+  plain.levelOfDetailScale = 0;
+  plain.adaptiveSampling = false;
+  inr::Frame exact = FrameWith(0.0);
+  exact.levelOfDetailScale = 3; // does not matter
+  const Drawn drawn = Draw(renderer, exact);
+  EXPECT_EQ(drawn.picture.pixels, Render(renderer, plain).pixels);
+  EXPECT_EQ(drawn.statistics.levels.coarsest, 0);
+}
+
+TEST(ErrorTolerance, IsKeptWithFewerSamples)
+{
+  inr::Renderer renderer = MakeRenderer();
+  const Drawn exact = Draw(renderer, FrameWith(0.0));
+  double last = static_cast<double>(exact.statistics.samples);
+  for (const double tolerance : {0.5, 2.0, 8.0}) {
+    const Drawn drawn = Draw(renderer, FrameWith(tolerance));
+    EXPECT_GE(ShareWithin(tolerance, drawn.picture, exact.picture), 0.999) << tolerance;
+    EXPECT_LE(static_cast<double>(drawn.statistics.samples), last);
+    last = static_cast<double>(drawn.statistics.samples);
+  }
+  EXPECT_LT(last, 0.6 * static_cast<double>(exact.statistics.samples));
+}
+
+TEST(ErrorTolerance, KeepsThinThingsThatDistanceAloneLoses)
+{
+  inr::Renderer renderer = MakeRenderer();
+  const Drawn exact = Draw(renderer, FrameWith(0.0));
+  const Drawn tolerant = Draw(renderer, FrameWith(8.0));
+  inr::Frame far = FrameWith({});
+  far.adaptiveSampling = false;
+  far.levelOfDetailScale = 1;
+  Drawn distant = Draw(renderer, far);
+  while (distant.statistics.samples > tolerant.statistics.samples) {
+    far.levelOfDetailScale *= 1.1;
+    distant = Draw(renderer, far);
+  }
+  EXPECT_GE(inr::ImagePsnr(tolerant.picture, exact.picture),
+            inr::ImagePsnr(distant.picture, exact.picture) + 10);
+}
+
+TEST(ErrorTolerance, AsksForNextToNothingWhereColoursAreTheSame)
+{
+  inr::Renderer renderer = MakeRenderer();
+  renderer.setTransferFunction(UniformMedium(0.01f));
+  const Drawn exact = Draw(renderer, FrameWith(0.0));
+  const Drawn drawn = Draw(renderer, FrameWith(0.01));
+  EXPECT_LT(255 * LargestDifference(drawn.picture, exact.picture), 0.01);
+  EXPECT_LT(drawn.statistics.samples, exact.statistics.samples / 6);
+  EXPECT_EQ(drawn.statistics.levels.finest, inr::LevelErrors::Coarsest);
+}
+
+TEST(ErrorTolerance, DrawsTheSameWhateverTheCacheHolds)
+{
+  inr::Renderer roomy = MakeRenderer(64 << 20, 2);
+  inr::Renderer narrow = MakeRenderer(400 << 10, 1);
+  const inr::Frame frame = FrameWith(2.0);
+  EXPECT_EQ(Draw(roomy, frame).picture.pixels, Draw(narrow, frame).picture.pixels);
+  roomy.setTransferFunction(UniformMedium(0.2f)); // and whatever was drawn before
+  Draw(roomy, FrameWith(20.0));
+  roomy.setTransferFunction(Glow());
+  EXPECT_EQ(Draw(roomy, frame).picture.pixels, Draw(narrow, frame).picture.pixels);
+}
+
+TEST(ErrorTolerance, IsNotForWhatIsLitCroppedOrProjected)
+{
+  inr::Renderer renderer = MakeRenderer();
+  inr::Frame frame = FrameWith({});
+  const auto expectExact = [&](const inr::Frame& wanted) {
+    inr::Frame exact = wanted;
+    exact.errorTolerance = 0;
+    inr::Frame tolerant = wanted;
+    tolerant.errorTolerance = 30;
+    EXPECT_EQ(Draw(renderer, tolerant).picture.pixels, Draw(renderer, exact).picture.pixels);
+  };
+  frame.shading = inr::Material{};
+  frame.lights = {inr::Light{}};
+  expectExact(frame);
+  frame.shading.reset();
+  frame.blending.mode = inr::BlendMode::MaximumIntensity;
+  expectExact(frame);
+}
+
+TEST(ErrorTolerance, IsCompleteOnceEverythingIsMeasured)
+{
+  inr::Renderer renderer = MakeRenderer();
+  inr::Frame frame = FrameWith(4.0);
+  frame.timeLimit = 1e-3; // no time to measure anything
+  inr::Image picture;
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_FALSE(renderer.render(frame, picture).complete);
+  }
+  frame.timeLimit = 0;
+  const Drawn unhurried = Draw(renderer, frame);
+  frame.timeLimit = 10;
+  EXPECT_EQ(Draw(renderer, frame).picture.pixels, unhurried.picture.pixels);
+}
+
+TEST(ErrorTolerance, MeasuresTheFieldOnceForAllTolerancesAndColours)
+{
+  inr::Renderer renderer = MakeRenderer();
+  EXPECT_EQ(Draw(renderer, FrameWith(0.0)).statistics.work.networkSamples, 0);
+  const Drawn first = Draw(renderer, FrameWith(4.0));
+  EXPECT_EQ(first.statistics.work.networkSamples, Dims.x * Dims.y * Dims.z);
+  EXPECT_EQ(Draw(renderer, FrameWith(2.0)).statistics.work.networkSamples, 0);
+  renderer.setTransferFunction(UniformMedium(0.2f));
+  EXPECT_EQ(Draw(renderer, FrameWith(2.0)).statistics.work.networkSamples, 0);
+}
+
+TEST(ErrorTolerance, MustNotBeNegative)
+{
+  inr::Renderer renderer = MakeRenderer();
+  inr::Image picture;
+  for (const double tolerance : {-1.0, std::nan("")}) {
+    EXPECT_THROW(renderer.render(FrameWith(tolerance), picture), inr::Error);
+  }
+}
+
+TEST(ErrorTolerance, HasPiecesThatMakeUpTheWhole)
+{
+  inr::Renderer renderer = MakeRenderer();
+  inr::Frame frame = FrameWith(4.0);
+  const inr::Image whole = Draw(renderer, frame).picture;
+  const glm::dvec4 cut(1, 0.2, 0.3, -81.4);
+  frame.piece = {cut}; // the viewer is on this side
+  const inr::Image near = Draw(renderer, frame).picture;
+  frame.piece = {-cut};
+  inr::Image blended = near;
+  const inr::Image behind = Draw(renderer, frame).picture;
+  for (std::size_t k = 0; k < blended.pixels.size(); ++k) {
+    blended.pixels[k] += (1 - near.pixels[k / 4 * 4 + 3]) * behind.pixels[k];
+  }
+  // Rays end where they are opaque enough, at another place when what is in front is not known.
+  EXPECT_LT(LargestDifference(blended, whole), 2e-3f);
+  EXPECT_GT(LargestDifference(near, whole), 0.02f);
+}
+
+} // namespace
