@@ -76,6 +76,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.sampleDistance = settings.sampleDistance;
   frame.adaptiveSampling = settings.adaptiveSampling;
   frame.levelOfDetailScale = settings.levelOfDetailScale;
+  frame.errorTolerance = settings.errorTolerance;
   frame.seed = settings.seed;
   return frame;
 }

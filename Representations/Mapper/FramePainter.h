@@ -47,6 +47,7 @@ struct PaintSettings
   double sampleDistance = 1; ///< voxels
   bool adaptiveSampling = true;
   double levelOfDetailScale = 1;
+  std::optional<double> errorTolerance;
   bool countSamples = false;  ///< into PaintedFrame::samples
   double stillTimeLimit = -1; ///< seconds; below 0: see vtkINRVolumeMapper
   std::uint64_t seed = 0;

@@ -191,6 +191,9 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   settings.sampleDistance = this->SampleDistance;
   settings.adaptiveSampling = this->AdaptiveSampling;
   settings.levelOfDetailScale = this->LevelOfDetailScale;
+  if (this->ErrorTolerance >= 0) {
+    settings.errorTolerance = this->ErrorTolerance;
+  }
   settings.stillTimeLimit = this->StillTimeLimit;
   settings.countSamples = this->SampleChannels;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
@@ -295,6 +298,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "SampleDistance: " << this->SampleDistance << "\n"
      << indent << "AdaptiveSampling: " << this->AdaptiveSampling << "\n"
      << indent << "LevelOfDetailScale: " << this->LevelOfDetailScale << "\n"
+     << indent << "ErrorTolerance: " << this->ErrorTolerance << "\n"
      << indent << "CacheMode: " << this->CacheMode << "\n"
      << indent << "CacheSize: " << this->CacheSize << "\n"
      << indent << "CachePrecision: " << this->CachePrecision << "\n"

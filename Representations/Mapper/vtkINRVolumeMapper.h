@@ -154,6 +154,20 @@ public:
   vtkGetMacro(LevelOfDetailScale, double);
   ///@}
 
+  ///@{
+  /**
+   * By how many 255ths a channel of the picture may differ from the one with every sample from the
+   * full resolution, for 99.9 % of its pixels; levels and distances of samples follow from it, and
+   * LevelOfDetailScale and AdaptiveSampling do not count. 0: not at all. Below 0, the default: they
+   * follow from the distance to the viewer. Lit, cropped (but to a box), projected and path-traced
+   * pictures are as with 0. It has to know the field, which the first picture waits for: about as
+   * long as decoding all that can be seen; it is only guessed, on the safe side, for more than 2^31
+   * voxels.
+   */
+  vtkSetClampMacro(ErrorTolerance, double, -1.0, 255.0);
+  vtkGetMacro(ErrorTolerance, double);
+  ///@}
+
   enum CacheModes {
     CACHE_AND_NETWORK = 0, ///< voxels from the cache, decoded when they are first wanted
     CACHE_ONLY = 1,        ///< what the cache has no room for comes from coarser levels: fast
@@ -399,6 +413,7 @@ private:
   double SampleDistance = 1.0;
   bool AdaptiveSampling = true;
   double LevelOfDetailScale = 1.0;
+  double ErrorTolerance = -1.0;
   int CacheMode = CACHE_AND_NETWORK;
   int CacheSize = 0;
   int CachePrecision = BITS16;

@@ -308,6 +308,11 @@ void vtkINRVolumeRepresentation::SetLevelOfDetailScale(double scale)
   this->GetMapper()->SetLevelOfDetailScale(scale);
 }
 
+void vtkINRVolumeRepresentation::SetErrorTolerance(double tolerance)
+{
+  this->GetMapper()->SetErrorTolerance(tolerance);
+}
+
 void vtkINRVolumeRepresentation::SetCacheMode(int mode) { this->GetMapper()->SetCacheMode(mode); }
 
 void vtkINRVolumeRepresentation::SetCacheSize(int mebibytes)

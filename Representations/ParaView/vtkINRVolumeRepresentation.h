@@ -55,6 +55,7 @@ public:
   void SetSampleDistance(double voxels);
   void SetAdaptiveSampling(bool on);
   void SetLevelOfDetailScale(double scale);
+  void SetErrorTolerance(double tolerance);
   void SetCacheMode(int mode);
   void SetCacheSize(int mebibytes);
   void SetCachePrecision(int precision);

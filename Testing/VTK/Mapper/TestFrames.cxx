@@ -246,6 +246,24 @@ TEST(Frames, SayWhatLevelsTheyShow)
   EXPECT_EQ(one.mapper->GetCoarsestLevel(), -1);
 }
 
+TEST(Frames, KeepWithinATolerance)
+{
+  OneVolume one;
+  EXPECT_EQ(one.mapper->GetErrorTolerance(), -1);
+  one.mapper->SetBrickSize(8);
+  one.mapper->SetErrorTolerance(0);
+  const inr::Image exact = one.scene.capture();
+  const auto samples = one.mapper->GetNumberOfSamples();
+  EXPECT_EQ(one.mapper->GetCoarsestLevel(), 0);
+  one.mapper->SetErrorTolerance(200);
+  const inr::Image rough = one.scene.capture();
+  EXPECT_GT(one.mapper->GetCoarsestLevel(), 0);
+  EXPECT_LT(one.mapper->GetNumberOfSamples(), samples);
+  EXPECT_LT(255 * LargestDifference(exact, rough), 200);
+  one.mapper->SetErrorTolerance(-7); // as it was
+  EXPECT_EQ(one.mapper->GetErrorTolerance(), -1);
+}
+
 TEST(Frames, CountSamplesAndLevelsOfEachPixel)
 {
   OneVolume one;
