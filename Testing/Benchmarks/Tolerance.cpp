@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a tolerance of errors promises, keeps and saves, beside levels chosen by distance.
+//
+//   bench_tolerance MODEL.inr NAME TIMES
+//
+// of the volume with TIMES as many voxels along every axis, // prints one JSON object per line; tolerance.py writes the result file. The reference of all
+// pictures has every sample, from voxels of level 0 in float32 (reference A). Everything is decoded
+// before anything is timed.
+#include "Core/Image/Metrics.h"
+#include "Core/Model/ModelFile.h"
+#include "Testing/Benchmarks/FrameScenes.h"
+
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <optional>
+
+namespace {
+
+constexpr int Frames = 3;
+
+/// The largest difference of a channel, in 1/255, of each pixel where either picture shows
+/// something; rising.
+std::vector<float> Differences(const inr::Image& a, const inr::Image& b)
+{
+  std::vector<float> differences;
+  for (std::size_t k = 0; k < a.pixels.size(); k += 4) {
+    if (a.pixels[k + 3] > 0 || b.pixels[k + 3] > 0) {
+      float largest = 0;
+      for (std::size_t channel = k; channel < k + 4; ++channel) {
+        largest = std::max(largest, std::abs(a.pixels[channel] - b.pixels[channel]));
+      }
+      differences.push_back(255 * largest);
+    }
+  }
+  std::sort(differences.begin(), differences.end());
+  return differences;
+}
+
+double ShareWithin(const std::vector<float>& differences, double tolerance)
+{
+  const auto end =
+      std::upper_bound(differences.begin(), differences.end(), static_cast<float>(tolerance));
+  return static_cast<double>(end - differences.begin()) /
+         std::max(1.0, static_cast<double>(differences.size()));
+}
+
+struct Shown
+{
+  inr::Image picture;
+  double psnr;
+  double samples;
+  double milliseconds; ///< processor time of a frame, the least of some
+};
+
+class Scene
+{
+public:
+  Scene(const inr::ModelPointer& model, const Look& look, std::string name)
+      : Name(std::move(name)), Renderer(model, Cached()), Picture(View(model->volume))
+  {
+    this->Renderer.setTransferFunction(look.function);
+    inr::RendererOptions exact = Cached();
+    exact.cache.precision = inr::CachePrecision::Float32;
+    inr::Renderer reference(model, exact);
+    reference.setTransferFunction(look.function);
+    inr::Frame frame = this->Picture;
+    frame.errorTolerance = 0;
+    reference.render(frame, this->Truth);
+    this->Exact = this->show(frame);
+  }
+
+  void compare()
+  {
+    Report("exact frame, " + this->Name, this->Exact.milliseconds, "ms", "lower");
+    Report("samples of the exact frame, " + this->Name, this->Exact.samples, "", "lower");
+    this->reportDistance(1, "default");
+    for (const double tolerance : {1.0, 2.0, 4.0, 8.0}) {
+      this->compareAt(tolerance);
+    }
+  }
+
+private:
+  Shown show(const inr::Frame& frame)
+  {
+    inr::Image first;
+    this->Renderer.render(frame, first);
+    Shown shown{{}, 0, 0, std::numeric_limits<double>::infinity()};
+    for (int k = 0; k < Frames; ++k) {
+      const std::clock_t start = std::clock();
+      const inr::FrameStatistics statistics = this->Renderer.render(frame, shown.picture);
+      const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+      shown.milliseconds = std::min(shown.milliseconds, 1000 * seconds);
+      shown.samples = static_cast<double>(statistics.samples);
+    }
+    shown.psnr = inr::ImagePsnr(shown.picture, this->Truth);
+    return shown;
+  }
+
+  Shown showByDistance(double scale)
+  {
+    inr::Frame frame = this->Picture;
+    frame.levelOfDetailScale = scale;
+    return this->show(frame);
+  }
+
+  void reportDistance(double scale, const std::string& what)
+  {
+    const Shown shown = this->showByDistance(scale);
+    const std::string where = ", by distance, " + what + ", " + this->Name;
+    Report("frame" + where, shown.milliseconds, "ms", "lower");
+    Report("samples" + where, shown.samples, "", "lower");
+    Report("PSNR" + where, shown.psnr, "dB", "higher");
+  }
+
+  void compareAt(double tolerance)
+  {
+    inr::Frame frame = this->Picture;
+    frame.errorTolerance = tolerance;
+    const Shown shown = this->show(frame);
+    std::ostringstream text;
+    text << ", tolerance " << tolerance << ", " << this->Name;
+    const std::string where = text.str();
+    const std::vector<float> differences = Differences(shown.picture, this->Truth);
+    Report("tolerance held pixels" + where, ShareWithin(differences, tolerance), "", "higher",
+           Target(0.999));
+    Report("99.9 % of pixels are within" + where,
+           differences.empty() ? 0 : differences[differences.size() * 999 / 1000], "1/255",
+           "lower");
+    Report("samples as part of the exact frame's" + where, shown.samples / this->Exact.samples, "",
+           "lower");
+    Report("frame" + where, shown.milliseconds, "ms", "lower");
+    Report("PSNR" + where, shown.psnr, "dB", "higher");
+    this->compareAtEqualTime(shown, where);
+  }
+
+  /// The finest levels by distance whose frames take no less time.
+  void compareAtEqualTime(const Shown& shown, const std::string& where)
+  {
+    double fine = 0;
+    double coarse = 16;
+    Shown slower = this->showByDistance(fine);
+    if (slower.milliseconds <= shown.milliseconds) {
+      Report("PSNR gain vs distance LoD" + where, shown.psnr - slower.psnr, "dB", "higher",
+             ", \"note\": \"no distance scale is as slow\"");
+      return;
+    }
+    for (int k = 0; k < 7; ++k) {
+      const double middle = k == 0 ? 1 : fine > 0 ? std::sqrt(fine * coarse) : 0.5 * coarse;
+      Shown tried = this->showByDistance(middle);
+      if (tried.milliseconds >= shown.milliseconds) {
+        fine = middle;
+        slower = std::move(tried);
+      } else {
+        coarse = middle;
+      }
+    }
+    std::ostringstream note;
+    note << ", \"note\": \"scale " << fine << ", " << slower.milliseconds << " ms, " << slower.psnr
+         << " dB\"";
+    Report("PSNR gain vs distance LoD" + where, shown.psnr - slower.psnr, "dB", "higher",
+           Target(3) + note.str());
+  }
+
+  std::string Name;
+  inr::Renderer Renderer;
+  inr::Frame Picture;
+  inr::Image Truth;
+  Shown Exact;
+};
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  if (argc != 4) {
+    std::cerr << "usage: bench_tolerance MODEL.inr NAME TIMES\n";
+    return 2;
+  }
+  const inr::ModelPointer own = inr::ReadModel(argv[1]);
+  const inr::ModelPointer model = Scaled(own, own->volume.dims * std::int64_t{std::atoi(argv[3])});
+  for (const Look& look : Looks(model->volume)) {
+    Scene(model, look, look.name + ", " + argv[2]).compare();
+  }
+  return 0;
+}
