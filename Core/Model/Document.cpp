@@ -25,13 +25,12 @@ void RequireShort(const std::string& text, std::int64_t offset)
   }
 }
 
-// From the leaves on: a json takes memory to destroy what holds something, and ends the process
-// where there is none. No deeper than a document is.
-void Dismantle(json& node)
+// No deeper than a document is.
+void Clear(json& node)
 {
   if (node.is_structured()) {
     for (json& child : node) {
-      Dismantle(child);
+      Clear(child);
     }
     node.clear();
   }
@@ -39,7 +38,11 @@ void Dismantle(json& node)
 
 } // namespace
 
-Document::~Document() { Dismantle(this->header); }
+void Document::Dismantle::operator()(json* header) const
+{
+  Clear(*header);
+  delete header;
+}
 
 void DocumentBuilder::begin(Container kind, const std::string& key, std::int64_t offset)
 {
@@ -48,8 +51,8 @@ void DocumentBuilder::begin(Container kind, const std::string& key, std::int64_t
   }
   json empty = kind == Container::Object ? json::object() : json::array();
   if (this->Open.empty()) {
-    this->Result.header = std::move(empty);
-    this->Open.push_back({&this->Result.header, json::json_pointer()});
+    *this->Result.header = std::move(empty);
+    this->Open.push_back({this->Result.header.get(), json::json_pointer()});
     return;
   }
   const json::json_pointer path = this->pathOf(key);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,13 @@ struct Blob
 /// A model file taken apart: a small header, and the blobs by their place in it.
 struct Document
 {
-  Document() = default;
-  ~Document();
-  Document(Document&&) = default;
-  Document& operator=(Document&&) = delete;
-
-  nlohmann::json header;
+  /// From the leaves on: a json takes memory to destroy what holds something, and ends the process
+  /// where there is none.
+  struct Dismantle
+  {
+    void operator()(nlohmann::json* header) const;
+  };
+  std::unique_ptr<nlohmann::json, Dismantle> header{new nlohmann::json};
   std::map<std::string, Blob> blobs; ///< by JSON pointer ("/parameters/params_binary")
 };
 

@@ -113,7 +113,7 @@ void ReadParameterSection(const JsonSection& root, const Document& document, Mod
   header.parameters = &RequireBlob(document, (path.empty() ? "" : "/" + path) + "/params_binary");
   // A file that claims a vast model is refused by its blob's size, before any table is laid out.
   header.model.storedAs = TypeOf(section, *header.parameters, parameterCount);
-  const json& configuration = root.has("model") ? *root.find("model") : document.header;
+  const json& configuration = root.has("model") ? *root.find("model") : *document.header;
   header.model.description = DescriptionFor(configuration, parameterCount);
   if (header.model.storedAs == ParameterType::Quantised) {
     header.model.steps = ParseSteps(section, header.model.description);
@@ -227,7 +227,7 @@ void ApplyOverrides(const ModelOverrides& overrides, VolumeInfo& volume)
 
 ModelHeader ParseModelHeader(const Document& document, const ModelOverrides& overrides)
 {
-  const JsonSection root(document.header, "");
+  const JsonSection root(*document.header, "");
   if (!root.has("model") && !root.has("encoding") && !root.has("network")) {
     throw Error(ErrorCode::Malformed,
                 "this is not a model file: it has neither 'model' nor 'encoding' and 'network'");
