@@ -23,9 +23,10 @@ constexpr glm::i64vec3 Dims(13, 11, 12);
 /// From 0 to 1, both of which it takes.
 double Wave(std::int64_t k)
 {
+  const std::int64_t slice = k / (Dims.x * Dims.y);
   const double x = static_cast<double>(k % Dims.x);
   const double y = static_cast<double>(k / Dims.x % Dims.y);
-  const double z = static_cast<double>(k / (Dims.x * Dims.y));
+  const double z = static_cast<double>(slice);
   const double wave = std::sin(0.3 * x + 0.2 * y * y / 11) * std::cos(0.35 * z - 0.1 * y);
   return k == 0 ? 0.0 : (k == 1 ? 1.0 : 0.5 + 0.49 * wave);
 }
