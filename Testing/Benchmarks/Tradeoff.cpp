@@ -10,11 +10,11 @@
 //   bench_tradeoff MODEL.inr NAME VOXELS.raw TYPE NX NY NZ MODE VIEW [USUAL.inr]
 //
 // prints one JSON object per line; tradeoff.py writes the result file. MODE: "volume", what the
-// model made of the data; "knobs", one setting at a time that changes the picture; "grid", three of
-// them at once; "loading", what changes how the cache fills (or several of these, with a "+" in
-// between); "paths", path tracing; "model", this model beside the USUAL one. VIEW: the volume as a
-// "whole", from "near", where a voxel is several pixels, or as from "far": the whole in a quarter
-// of the pixels.
+// model made of the data; "knobs", one setting at a time that changes the picture; "tolerance",
+// what takes the place of one of them; "grid", three at once; "loading", what changes how the
+// cache fills (or several of these, with a "+" in between); "paths", path tracing; "model", this
+// model beside the USUAL one. VIEW: the volume as a "whole", from "near", where a voxel is several
+// pixels, or as from "far": the whole in a quarter of the pixels.
 #include "Core/Model/ModelFile.h"
 #include "Testing/Benchmarks/RawVolume.h"
 #include "Testing/Benchmarks/TradeoffBench.h"
@@ -58,7 +58,7 @@ void CompareVolumes(const inr::ModelPointer& pointer, const inr::VolumeData& vox
   record.print();
 }
 
-/// `parts`: some of "knobs", "loading" and "grid".
+/// `parts`: some of "knobs", "tolerance", "loading" and "grid".
 void TurnKnobs(const Subject& subject, const Scene& scene, const std::string& parts)
 {
   const auto wanted = [&](const char* part) { return parts.find(part) != std::string::npos; };
@@ -66,6 +66,9 @@ void TurnKnobs(const Subject& subject, const Scene& scene, const std::string& pa
   if (wanted("knobs")) {
     CheckReference(subject, scene, bench.references());
     bench.measure(PictureKnobs(scene.frame), "knobs");
+  }
+  if (wanted("tolerance")) {
+    bench.measure(ToleranceKnob(scene.frame), "tolerance");
   }
   if (wanted("loading")) {
     bench.measure(LoadingKnobs(scene.frame, bench.wanted()), "loading");
@@ -139,7 +142,7 @@ int main(int argc, char* argv[])
   const std::string view = argc >= 10 ? argv[9] : "";
   if (view != "whole" && view != "near" && view != "far") {
     std::cerr << "usage: bench_tradeoff MODEL.inr NAME VOXELS.raw TYPE NX NY NZ "
-                 "volume|knobs|grid|loading|paths|model whole|near|far [USUAL.inr]\n";
+                 "volume|knobs|tolerance|grid|loading|paths|model whole|near|far [USUAL.inr]\n";
     return 2;
   }
   try {

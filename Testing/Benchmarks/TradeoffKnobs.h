@@ -118,6 +118,25 @@ inline std::vector<Point> PictureKnobs(const inr::Frame& frame)
   return knobs.points;
 }
 
+/// What takes the place of level of detail, in 255ths of a channel of the picture with all samples:
+/// by default a voxel apart, and half a voxel.
+inline std::vector<Point> ToleranceKnob(const inr::Frame& frame)
+{
+  SingleKnobs knobs(frame);
+  for (const double tolerance : {0.0, 1.0, 4.0, 16.0}) {
+    knobs.add("ErrorTolerance", Text(tolerance), true,
+              [&](Point& point) { point.frame.errorTolerance = tolerance; });
+  }
+  for (const double tolerance : {1.0, 4.0}) {
+    knobs.add("ErrorTolerance and SampleDistance", Text(tolerance) + " and 0.5", true,
+              [&](Point& point) {
+                point.frame.errorTolerance = tolerance;
+                point.frame.sampleDistance = 0.5;
+              });
+  }
+  return knobs.points;
+}
+
 /// What changes how bricks come into the cache; `wanted`: bytes of those that the view wants.
 inline std::vector<Point> LoadingKnobs(const inr::Frame& frame, std::int64_t wanted)
 {

@@ -32,6 +32,11 @@ PARTS = ([(volume, size, "volume", "whole") for volume in VOLUMES for size in SI
             ("heptane_fire", "default", "knobs", "whole"),
             ("les_vorticity", "default", "knobs", "whole"),
             ("rm_mixing", "default", "knobs", "near"), ("rm_mixing", "default", "knobs", "far")]
+         + [("les_vorticity", "default", "tolerance", "whole"),
+            ("rm_mixing", "default", "tolerance", "far"),
+            ("rm_mixing", "default", "tolerance", "whole"),
+            ("heptane_fire", "default", "tolerance", "whole"),
+            ("rm_mixing", "default", "tolerance", "near")]
          + [(volume, size, "model", "whole") for volume in ("rm_mixing", "les_vorticity")
             for size in ("small", "large")]
          + [("rm_mixing", "default", "paths", "whole")])
@@ -113,7 +118,7 @@ def summaries(lines):
     """Over all scenes: what a setting buys and costs."""
     points = {}
     for line in lines:
-        if line.get("part") in ("knobs", "loading", "model", "paths"):
+        if line.get("part") in ("knobs", "tolerance", "loading", "model", "paths"):
             key = (line["part"] == "paths", line["knob"], line["setting"])
             points.setdefault(key, []).append(line)
     for (paths, knob, setting), same in points.items():

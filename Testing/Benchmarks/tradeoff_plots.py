@@ -16,11 +16,11 @@ def save(figure, path):
     print(path)
 
 
-def points_of(results, part):
-    """Scene -> knob -> results, the default settings' among each knob's."""
+def points_of(results, *parts):
+    """Scene -> knob -> results."""
     scenes = {}
     for result in results:
-        if result.get("part") == part and "knob" in result:
+        if result.get("part") in parts:
             knob = result["knob"]
             if result["setting"] == "network only":
                 knob = "network only"
@@ -40,7 +40,7 @@ def front(points):
 
 def draw_curve(plot, knob, points, usual):
     colour, marker = KNOBS[knob]
-    curve = sorted(points + ([usual] if knob not in ("network only", "CachePrecision") else []),
+    curve = sorted(points + ([usual] if knob in ("LevelOfDetailScale", "SampleDistance") else []),
                    key=lambda point: setting_of(point, knob))
     plot.plot([point["value"] for point in curve], [point["psnr_a"] for point in curve],
               color=colour, marker=marker, markersize=5, linewidth=1.4 if len(curve) > 2 else 0,
@@ -56,9 +56,9 @@ def draw_curve(plot, knob, points, usual):
 
 
 def setting_of(point, knob):
-    """The number that a knob is set to; by default, tolerance apart, one."""
+    """The number that a knob is set to, by default one."""
     if point["knob"] == "defaults":
-        return 0.0 if knob == "ErrorTolerance" else 1.0
+        return 1.0
     try:
         return float(point["setting"].split()[0])
     except ValueError:
@@ -66,7 +66,7 @@ def setting_of(point, knob):
 
 
 def draw_pareto(folder, results):
-    single, grid = points_of(results, "knobs"), points_of(results, "grid")
+    single, grid = points_of(results, "knobs", "tolerance"), points_of(results, "grid")
     figure, axes = pyplot.subplots(2, 3, figsize=(13, 7.5), squeeze=False)
     for index, scene in enumerate(SCENES):
         plot = axes[index % 2][index // 2]
