@@ -60,9 +60,6 @@ public:
   /// Steps along `path()` at a place that is a whole number.
   float along(double place) const { return static_cast<float>(place - this->Reference); }
   void count(int samples) { this->Count += samples; }
-  /// The batch's sample with which counting began, -1 when that was an earlier batch.
-  int first() const { return this->First; }
-  void setFirst(int sample) { this->First = sample; }
 
   const BrickPath& path() const { return this->Path; }
   /// The path's number in the batch being filled.
@@ -89,7 +86,6 @@ private:
   BrickKey Served = 0;
   BrickKey Wish = 0;
   int Count = 0;
-  int First = -1;
 };
 
 } // namespace inr

@@ -39,9 +39,6 @@ void CachedMarcher::composite(CachedRay& state)
     }
     state.halfOpaqueAt = this->timeOf(state, k);
   }
-  if (this->isDone(state)) {
-    this->Needed = used;
-  }
   if (this->LastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
     this->Batch.value[this->Count] = last;
     this->compositeLast(state);

@@ -101,6 +101,7 @@ bool CachedMarcher::marchPart(CachedRay& state)
   this->Visited = state.samples.visited();
   this->Ended = false;
   this->Waiting = false;
+  this->Awaited.reset();
   this->Ways[0] = this->Ways[1] = {};
   if (this->Probe) {
     this->Probe->leave();
@@ -119,14 +120,15 @@ bool CachedMarcher::marchPart(CachedRay& state)
       projects ? this->project(state) : this->composite(state);
     }
     this->Ended = this->Ended || this->isDone(state);
-    this->requestWishes(state);
   }
   if (projects && this->Ended) {
     this->finishProjection(state);
   }
   this->close(this->Runs[0], state.color.transmittance);
   this->close(this->Runs[1], state.color.transmittance);
-  this->requestWishes(state);
+  if (this->Awaited && !this->Ended) { // what made a ray opaque needs nothing behind it
+    this->Requests.add(*this->Awaited, 1.0f);
+  }
   this->Statistics.work.cells += state.samples.visited() - this->Visited;
   return this->Ended;
 }
@@ -137,10 +139,8 @@ void CachedMarcher::place(CachedRay& state)
   this->RunCount = 0;
   this->Paths = 0;
   this->LastLength = 0;
-  this->Needed = SampleBatch::Capacity + 1;
   for (BrickRun& run : this->Runs) {
     if (run.level() >= 0) {
-      run.setFirst(-1);
       this->enlist(run);
     }
   }
@@ -220,11 +220,7 @@ inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& 
   for (int k = 0; k < count; ++k) {
     const std::int64_t interval = state.samples.next() + k * alike.steps();
     const bool isFine = detail.dithered(state.stream, this->ditherOf(interval)) == fine.level();
-    BrickRun& run = isFine ? fine : coarse;
-    if (run.count() == 0) {
-      run.setFirst(this->Count - count + k);
-    }
-    run.count(1);
+    (isFine ? fine : coarse).count(1);
   }
 }
 
@@ -290,7 +286,7 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
   if (slot >= 0) {
     run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
   } else if (this->Missing == OnMiss::Stop) {
-    this->Wishes.push_back({key, 1.0f, this->Count});
+    this->Awaited = key;
     return false;
   } else {
     slot = this->openCoarser(run, ray, wanted, t);
@@ -337,21 +333,9 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
   }
   if (run.count() > 0 && !run.exact()) {
     this->Statistics.missed += run.count();
-    this->Wishes.push_back(
-        {run.wish(), static_cast<float>(run.count()) * transmittance, run.first()});
+    this->Requests.add(run.wish(), static_cast<float>(run.count()) * transmittance);
   }
   run.close();
-}
-
-void CachedMarcher::requestWishes(const CachedRay& state)
-{
-  const bool done = this->isDone(state);
-  for (const Wish& wish : this->Wishes) {
-    if (!done || wish.sample < this->Needed) {
-      this->Requests.add(wish.key, wish.contribution);
-    }
-  }
-  this->Wishes.clear();
 }
 
 void CachedMarcher::advanceShaded(CachedRay& state)
@@ -381,7 +365,6 @@ void CachedMarcher::advanceShaded(CachedRay& state)
       this->addLight(state, colors[k], opacities[k], t[k]);
     }
   }
-  this->Needed = needed;
   if (known < this->Count && state.color.transmittance > OpaqueTransmittance) {
     this->goBackTo(known, before, state);
   }
@@ -398,7 +381,7 @@ void CachedMarcher::goBackTo(int sample, const CachedRay& before, CachedRay& sta
   for (int k = sample; k < this->Count; ++k) {
     this->LevelSum -= this->originOf(k).level;
   }
-  this->Wishes.clear(); // it waits for something nearer
+  this->Awaited.reset(); // it waits for something nearer
   this->Waiting = true;
   this->Ended = false;
 }

@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 namespace inr {
 
@@ -88,14 +87,6 @@ private:
     float last;
   };
 
-  /// A brick that is not there and the first of the batch's samples that want it.
-  struct Wish
-  {
-    BrickKey key;
-    float contribution;
-    int sample;
-  };
-
   /// The same for the part of the way that the ray is on.
   bool marchPart(CachedRay& ray);
   /// Sends a ray on behind the translucent layer at its end; false when there is nothing to see.
@@ -123,8 +114,6 @@ private:
   double timeOf(const CachedRay& state, int sample) const;
   void composite(CachedRay& state);
   void compositeLast(CachedRay& state);
-  /// Requests what is wished for, but for samples that the ray, being opaque, needs no more.
-  void requestWishes(const CachedRay& state);
   void advanceShaded(CachedRay& state);
   /// Colours and opacities of the batch's samples until the ray is opaque; how many these are.
   int findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const;
@@ -158,12 +147,11 @@ private:
   Origin Origins[SampleBatch::Capacity];          ///< of its runs
   BrickKey Bricks[2 * SampleBatch::Capacity + 2]; ///< of the batch's paths
   int Count = 0;
-  int Needed = 0; ///< samples of the batch after which the ray is opaque; more when it is not
-  std::vector<Wish> Wishes; ///< for samples of the batch
-  int RunCount = 0;         ///< in Batch
-  int Paths = 0;            ///< in Batch
-  std::int64_t DitherMask;  ///< of sample numbers
-  float LastLength = 0;     ///< of the ray's last sample, if it is shorter than a step; else 0
+  std::optional<BrickKey> Awaited; ///< by the next sample
+  int RunCount = 0;                ///< in Batch
+  int Paths = 0;                   ///< in Batch
+  std::int64_t DitherMask;         ///< of sample numbers
+  float LastLength = 0; ///< of the ray's last sample, if it is shorter than a step; else 0
   bool Waiting = false;
   bool Ended = false;
   std::optional<SampleShader> Shader;

@@ -24,7 +24,6 @@ void CachedMarcher::project(CachedRay& state)
     settings.projector.add(this->Scene.colors, this->Batch.value[k], length, this->timeOf(state, k),
                            state.projection);
   }
-  this->Needed = this->Count;
 }
 
 void CachedMarcher::finishProjection(CachedRay& state) const

@@ -16,7 +16,6 @@ void CachedMarcher::advanceSurfaces(CachedRay& state)
       this->goBackTo(k, before, state);
       return;
     }
-    this->Needed = k + 1;
   }
 }
 

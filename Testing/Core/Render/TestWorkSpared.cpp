@@ -172,26 +172,6 @@ TEST(WorkSpared, NoBrickBehindAnOpaqueMedium)
   }
 }
 
-TEST(WorkSpared, NoBrickBehindAnOpaqueMediumInALimitedTime)
-{
-  for (const bool preloading : {false, true}) {
-    SCOPED_TRACE(preloading);
-    inr::RendererOptions options = SmallBricks();
-    options.deterministic = true;
-    options.cache.preloading = preloading;
-    Wall wall(options);
-    inr::Frame frame = FromBelow();
-    frame.timeLimit = 1;
-    for (int k = 0; k < 1000 && (k == 0 || !wall.scene.statistics.complete); ++k) {
-      wall.scene.render(frame);
-    }
-    EXPECT_TRUE(wall.scene.statistics.complete);
-    // At first the wall is as blurred as the coarsest level, by nine voxels.
-    EXPECT_LE(wall.lastOfNear(), 24);
-    EXPECT_LE(wall.lastOfFar(), 64);
-  }
-}
-
 TEST(WorkSpared, NoGradientBehindAnOpaqueMedium)
 {
   for (const bool cached : {false, true}) {
