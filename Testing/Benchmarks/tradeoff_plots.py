@@ -7,6 +7,7 @@ SCENES = ("rm_mixing sparse", "rm_mixing dense", "heptane_fire sparse", "heptane
 # Knob: colour, marker. The same in every panel.
 KNOBS = {"LevelOfDetailScale": ("#2a78d6", "o"), "SampleDistance": ("#eb6834", "s"),
          "CachePrecision": ("#1baf7a", "^"), "ErrorTolerance": ("#4a3aa7", "v"),
+         "ErrorTolerance and SampleDistance": ("#9085e9", "<"),
          "network only": ("#e34948", "D")}
 
 
@@ -46,7 +47,7 @@ def draw_curve(plot, knob, points, usual):
               color=colour, marker=marker, markersize=5, linewidth=1.4 if len(curve) > 2 else 0,
               label=knob)
     for point in curve:
-        if point is not usual and knob in ("LevelOfDetailScale", "SampleDistance", "ErrorTolerance"):
+        if point is not usual and knob in ("LevelOfDetailScale", "SampleDistance"):
             if knob == "LevelOfDetailScale" and point["setting"] == "0":
                 continue  # hardly to be told from 0.5
             left = knob == "LevelOfDetailScale"
