@@ -95,7 +95,7 @@ def draw_pareto(folder, results):
         row[0].set_ylabel("PSNR against the decoded voxels, dB")
     for plot in axes[-1]:
         plot.set_xlabel("time of a frame, 1: defaults")
-    axes[0][0].legend(fontsize=7)
+    axes[0][2].legend(fontsize=7, loc="upper right", framealpha=1)
     save(figure, folder / "tradeoff.png")
 
 
