@@ -97,7 +97,9 @@ PictureKey::PictureKey(const Frame& frame, bool countsSamples, std::int64_t colo
 
 bool PictureKey::matches(const Frame& frame, bool countsSamples, std::int64_t colors) const
 {
-  return this->CountsSamples == countsSamples && this->Colors == colors &&
+  // One made in a limited time may differ by the rounding of values outside their cells' ranges.
+  const bool asExact = this->Picture.timeLimit == 0 || frame.timeLimit > 0;
+  return asExact && this->CountsSamples == countsSamples && this->Colors == colors &&
          (frame.mode == RenderMode::RayMarching ||
           this->Picture.samplesPerPixel == frame.samplesPerPixel) &&
          IsSamePicture(this->Picture, frame);
