@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t CellsPerTask = 4096;
 
-/// Of a tolerance, what the estimate may come to.
+/// Of a tolerance, what the cells along a ray may come to if they err independently.
 constexpr double Share = 4.0;
 
 /// Of a step whose value may be anything in a range.

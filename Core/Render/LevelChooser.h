@@ -17,12 +17,13 @@ namespace inr {
 /// Chooses for every macro-cell the coarsest level of the cache that changes no pixel by more than
 /// a tolerance; see Frame::errorTolerance.
 ///
-/// A sample of level l stands for 2^l steps and is in their middle. LevelErrors says what a line of
-/// them through a cell is off by, ColorSensitivity what a pixel then is, which is PER CELL. Cells
-/// along a ray do not err together, so what n of them leave grows as the square root of n only:
-/// that is a matter of experience (Testing/Benchmarks/tolerance.py), not of proof. Before a cell is
-/// measured, or where measuring would take too long, nothing is known but that all values are in
-/// its range.
+/// A sample of level l stands for 2^l steps and is in their middle. LevelErrors says by how much
+/// the worst line of them through a cell is off, ColorSensitivity by how much that changes a pixel
+/// at most. Cells along a ray do not err together, and most lines are not the worst, so n cells are
+/// each given 4/sqrt(n) of the tolerance: a matter of experience, not of proof
+/// (Testing/Benchmarks/tolerance.py), which keeps to the tolerance in 99.9 % of the pixels. Before
+/// a cell is measured, or where measuring would take too long, nothing is known but that all values
+/// are in its range.
 class LevelChooser
 {
 public:

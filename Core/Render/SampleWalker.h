@@ -88,6 +88,10 @@ struct SampleStretch
 /// invisible. Places count steps of t, and samples sit on a lattice of the ray's own: one that
 /// stands for n steps from interval k on is at place k + jitter * n. So what is skipped does not
 /// move what follows, and where a walk was interrupted makes no difference.
+///
+/// Where cells say which level their samples come from, one that stands for n steps is in the
+/// middle of the n that it takes the place of, at k + jitter + (n - 1)/2: those would add up to the
+/// same but for what the field bends between them.
 class SampleWalker
 {
 public:

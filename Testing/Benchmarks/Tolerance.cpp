@@ -4,9 +4,9 @@
 //
 //   bench_tolerance MODEL.inr NAME TIMES
 //
-// of the volume with TIMES as many voxels along every axis, // prints one JSON object per line; tolerance.py writes the result file. The reference of all
-// pictures has every sample, from voxels of level 0 in float32 (reference A). Everything is decoded
-// before anything is timed.
+// of the volume with TIMES as many voxels along every axis, // prints one JSON object per line;
+// tolerance.py writes the result file. The reference of all pictures has every sample, from voxels
+// of level 0 in float32 (reference A). Everything is decoded before anything is timed.
 #include "Core/Image/Metrics.h"
 #include "Core/Model/ModelFile.h"
 #include "Testing/Benchmarks/FrameScenes.h"
