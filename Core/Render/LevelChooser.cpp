@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/LevelChooser.h"
 
+#include "Core/Render/CellBlock.h"
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/Timer.h"
 
@@ -14,6 +15,7 @@ namespace inr {
 namespace {
 
 constexpr std::int64_t CellsPerTask = 4096;
+static_assert(LevelErrors::Coarsest <= CoarsestCellLevel, "rays go by blocks of that size");
 
 /// Of a tolerance, what the cells along a ray may come to if they err independently.
 constexpr double Share = 4.0;

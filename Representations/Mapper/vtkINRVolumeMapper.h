@@ -160,9 +160,9 @@ public:
    * full resolution, for 99.9 % of its pixels; levels and distances of samples follow from it, and
    * LevelOfDetailScale and AdaptiveSampling do not count. 0: not at all. Below 0, the default: they
    * follow from the distance to the viewer. Lit, cropped (but to a box), projected and path-traced
-   * pictures are as with 0. It has to know the field, which the first picture waits for: about as
-   * long as decoding all that can be seen; it is only guessed, on the safe side, for more than 2^31
-   * voxels.
+   * pictures are as with 0; what CachePrecision rounds comes on top. It has to know the field,
+   * which the first picture waits for: about as long as decoding all that can be seen; it is only
+   * guessed, on the safe side, for more than 2^31 voxels.
    */
   vtkSetClampMacro(ErrorTolerance, double, -1.0, 255.0);
   vtkGetMacro(ErrorTolerance, double);
