@@ -104,6 +104,20 @@ public:
     return image;
   }
 
+  /// The same for a picture that may be the first to hear of what failed on the thread that loads,
+  /// which is told once.
+  inr::Image laterPicture(const inr::TransferFunction& colours, const inr::Frame& frame)
+  {
+    try {
+      return this->picture(colours, frame);
+    } catch (const std::bad_alloc&) {
+      if (!this->How.options.cache.background) {
+        throw;
+      }
+      return this->picture(colours, frame);
+    }
+  }
+
   void set(const inr::TransferFunction& colours) { this->Made->setTransferFunction(colours); }
 
 private:
@@ -158,8 +172,9 @@ protected:
       EXPECT_EQ(error.code(), inr::ErrorCode::TooLarge) << nth << ": " << error.what();
     } catch (const std::bad_alloc&) {
     }
-    EXPECT_EQ(host.picture(Others(), this->projected()).pixels, this->Second.pixels) << nth;
-    EXPECT_EQ(host.picture(Colours(), this->GetParam().frame).pixels, this->First.pixels) << nth;
+    EXPECT_EQ(host.laterPicture(Others(), this->projected()).pixels, this->Second.pixels) << nth;
+    EXPECT_EQ(host.laterPicture(Colours(), this->GetParam().frame).pixels, this->First.pixels)
+        << nth;
     return failed;
   }
 
@@ -213,13 +228,13 @@ TEST_P(FramesWithoutMemory, KnowWhetherTheyKnowWhatCanBeSeen)
     } catch (const std::bad_alloc&) {
       failed = true;
     }
-    EXPECT_EQ(host.picture(Others(), frame).pixels, right.pixels) << nth;
+    EXPECT_EQ(host.laterPicture(Others(), frame).pixels, right.pixels) << nth;
     try {
       const FailingMemory memory(nth, For::Good);
       host.picture(Others(), surfaces);
     } catch (const std::exception&) {
     }
-    EXPECT_EQ(host.picture(Others(), surfaces).pixels, rightSurfaces.pixels) << nth;
+    EXPECT_EQ(host.laterPicture(Others(), surfaces).pixels, rightSurfaces.pixels) << nth;
   }
 }
 
