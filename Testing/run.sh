@@ -55,10 +55,11 @@ else
   failed=$((failed + 1))
 fi
 
-# Core alone, as on a machine without VTK, and under the sanitizers; without the training runs, which
-# would take most of the time to execute the same lines again.
-build core && run_tests build-core -E '^Trainer\.' "$@"
-build asan && run_tests build-asan -L 'core|fuzz' -E '^(Trainer|Examples)\.' "$@"
+# Core alone, as on a machine without VTK, under the sanitizers; without the long training runs, which
+# execute the same lines over and over again.
+long_trainings='^(Trainer|Examples|TargetRatio|Divergence|WarmStart|Resume)\.|StatedErrors'
+long_trainings+='|IsAsGoodAsTrainingFromMemory|MakesTheDefaultModelFit|GivesAllTheSameModelEveryTime'
+build asan && run_tests build-asan -L 'core|fuzz' -E "$long_trainings" "$@"
 
 [ "$skipped" -eq 0 ] || echo "== $skipped skipped, as their output says why"
 echo "$passed passed, $failed failed"
