@@ -3,6 +3,7 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Render/GridWalker.h"
+#include "Core/Render/LevelOfDetail.h"
 #include "Core/Render/Majorants.h"
 
 #include <glm/common.hpp>
@@ -82,7 +83,8 @@ private:
       return never;
     }
     constexpr double early = 1.0 - 1e-12; // whatever rounding says
-    const double largest = early * static_cast<double>(std::int64_t{1} << level);
+    const double largest =
+        early * LevelOfDetail::MixedFrom * static_cast<double>(std::int64_t{1} << level);
     if (this->Footprint > largest) {
       return -1;
     }

@@ -16,9 +16,11 @@ INR_HOST_DEVICE inline std::uint32_t DitherSeed(std::uint64_t stream)
   return static_cast<std::uint32_t>(stream);
 }
 
-/// The cache level that a place on a ray deserves: a level's voxel should be as large as the
-/// pixel's footprint there. Between two levels the choice is random, in proportion, so that no
-/// rings show where one level ends.
+/// The cache level that a place on a ray deserves: the coarsest whose voxels are no larger than the
+/// pixel's footprint there. Before a footprint is as large as a voxel of the next level, that one
+/// is chosen at random more and more often, so that no rings show where one level ends. No earlier
+/// than need be: where two levels are mixed both have to be decoded, and each sample is as sharp as
+/// the coarser one.
 class LevelOfDetail
 {
 public:
@@ -39,8 +41,8 @@ public:
       --this->Level;
       this->Voxel *= 0.5;
     }
-    const bool between = this->Level < this->Last && footprint > this->Voxel;
-    this->Fraction = between ? static_cast<float>(footprint / this->Voxel - 1.0) : 0.0f;
+    const bool between = this->Level < this->Last && footprint > MixedFrom * this->Voxel;
+    this->Fraction = between ? static_cast<float>(FractionOf(footprint / this->Voxel)) : 0.0f;
   }
 
   /// From here on this level everywhere.
@@ -59,7 +61,7 @@ public:
     if (this->Level == this->Last || this->Growth <= 0.0) {
       return std::numeric_limits<double>::infinity();
     }
-    const double footprint = this->isDithered() ? 2.0 * this->Voxel : this->Voxel;
+    const double footprint = (this->isDithered() ? 2.0 : MixedFrom) * this->Voxel;
     return (footprint - this->Footprint) / this->Growth;
   }
 
@@ -79,10 +81,24 @@ public:
   }
   /// The part of the samples at t that come from the coarser one, while the levels stay: this plus
   /// t times the other.
-  INR_HOST_DEVICE double fractionAtEntry() const { return this->Footprint / this->Voxel - 1.0; }
-  INR_HOST_DEVICE double fractionGrowth() const { return this->Growth / this->Voxel; }
+  INR_HOST_DEVICE double fractionAtEntry() const
+  {
+    return FractionOf(this->Footprint / this->Voxel);
+  }
+  INR_HOST_DEVICE double fractionGrowth() const
+  {
+    return this->Growth / this->Voxel / (2.0 - MixedFrom);
+  }
+
+  /// Footprint, in voxels of a level, from which the next level is mixed in.
+  static constexpr double MixedFrom = 1.5;
 
 private:
+  INR_HOST_DEVICE static double FractionOf(double voxels)
+  {
+    return (voxels - MixedFrom) / (2.0 - MixedFrom);
+  }
+
   double Footprint;
   double Growth;
   int Last;

@@ -28,17 +28,51 @@ double MeanLevel(inr::LevelOfDetail& detail, double t)
   return sum / samples;
 }
 
+/// The coarsest level whose voxels are no larger than the footprint, and in the last half before
+/// the next one's are, more and more of that.
+double LevelFor(double footprint)
+{
+  const double level = std::floor(std::log2(std::max(1.0, footprint)));
+  return level + std::max(0.0, 2 * (footprint / std::exp2(level) - 1.5));
+}
+
 TEST(LevelOfDetail, FollowsTheFootprintWithoutSteps)
 {
   inr::LevelOfDetail detail(Spreading(0.3, 0.01), 1.0, 13);
   double last = 0;
   for (double t = 0; t < 3000; t += 7) {
-    const double footprint = 0.3 + 0.01 * t;
     const double level = MeanLevel(detail, t);
-    // Linear between powers of two where log2 bends: never further off than 0.09.
-    EXPECT_NEAR(level, std::max(0.0, std::log2(footprint)), 0.09 + 0.015) << t;
+    EXPECT_NEAR(level, LevelFor(0.3 + 0.01 * t), 0.015) << t;
     EXPECT_GT(level, last - 0.03);
     last = level;
+  }
+}
+
+TEST(LevelOfDetail, SaysHowFarItsLevelsStay)
+{
+  const inr::Ray ray = Spreading(0.3, 0.01);
+  for (double t = 0; t < 3000; t += 7) {
+    inr::LevelOfDetail detail(ray, 1.0, 13);
+    detail.moveTo(t);
+    const int level = detail.level();
+    const int coarsest = detail.coarsest();
+    const double exit = detail.exit();
+    detail.moveTo(exit - 1e-6);
+    EXPECT_TRUE(detail.level() == level && detail.coarsest() == coarsest) << t;
+    detail.moveTo(exit + 1e-6);
+    EXPECT_FALSE(detail.level() == level && detail.coarsest() == coarsest) << t;
+  }
+}
+
+TEST(LevelOfDetail, TheFractionIsLinearInT)
+{
+  inr::LevelOfDetail detail(Spreading(0.3, 0.01), 1.0, 13);
+  for (const double t : {125.0, 150.0, 165.0, 290.0, 340.0}) { // where levels are mixed
+    const double level = MeanLevel(detail, t);
+    ASSERT_TRUE(detail.isDithered()) << t;
+    EXPECT_NEAR(detail.level() + detail.fractionAtEntry() + detail.fractionGrowth() * t, level,
+                0.015)
+        << t;
   }
 }
 
@@ -46,7 +80,8 @@ TEST(LevelOfDetail, MovesBothWaysAndStaysWithinTheLevels)
 {
   inr::LevelOfDetail narrowing(Spreading(1000, -1), 1.0, 4);
   EXPECT_EQ(MeanLevel(narrowing, 0), 3);
-  EXPECT_NEAR(MeanLevel(narrowing, 997), std::log2(3.0), 0.1);
+  EXPECT_EQ(MeanLevel(narrowing, 997), 1);
+  EXPECT_NEAR(MeanLevel(narrowing, 996.25), 1.75, 0.015);
   EXPECT_EQ(MeanLevel(narrowing, 999.5), 0);
   inr::LevelOfDetail full(Spreading(1000, 1), 0.0, 4);
   EXPECT_EQ(MeanLevel(full, 50), 0);
