@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace inr {
 namespace {
@@ -34,6 +35,28 @@ struct Functions
     }
     const double alpha = std::clamp(this->Opacity->GetValue(value), 0.0, 1.0);
     return glm::vec4(rgb[0], rgb[1], rgb[2], alpha);
+  }
+
+  /// The same at n places from `low` to `high`, whose cost does not grow with nodes times places.
+  std::vector<glm::vec4> evenly(double low, double high, int n) const
+  {
+    const auto size = static_cast<std::size_t>(n);
+    std::vector<double> rgb(3 * size);
+    std::vector<double> alpha(size);
+    if (this->Rgb) {
+      this->Rgb->GetTable(low, high, n, rgb.data());
+    } else {
+      for (int channel = 0; channel < 3; ++channel) {
+        this->Gray->GetTable(low, high, n, rgb.data() + channel, 3);
+      }
+    }
+    this->Opacity->GetTable(low, high, n, alpha.data());
+    std::vector<glm::vec4> entries(size);
+    for (std::size_t k = 0; k < size; ++k) {
+      entries[k] =
+          glm::vec4(rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2], std::clamp(alpha[k], 0.0, 1.0));
+    }
+    return entries;
   }
 
   int samples(double low, double high) const
@@ -96,18 +119,32 @@ Range TableRange(const Functions& functions, bool logarithmic)
   return range;
 }
 
-/// The value of entry k of n, kept just inside (low, high): with clamping off VTK's functions end
-/// at their outer nodes, and it takes logarithms of its own, rounded once more.
-double EntryValue(const TransferFunction& table, int k, int n)
+/// The range, kept just inside: with clamping off VTK's functions end at their outer nodes, and it
+/// takes logarithms of its own, rounded once more.
+Range Inside(const TransferFunction& table)
 {
-  const double t = static_cast<double>(k) / (n - 1);
-  const double value = table.logarithmic ? table.low * std::pow(table.high / table.low, t)
-                                         : table.low + (table.high - table.low) * t;
   const auto inset = [&](double end) {
     return std::max(1e-12 * (table.high - table.low), 1e-14 * std::abs(end));
   };
-  const double first = table.logarithmic ? table.low * (1 + 1e-12) : table.low + inset(table.low);
-  return std::clamp(value, first, std::max(first, table.high - inset(table.high)));
+  Range range;
+  range.low = table.logarithmic ? table.low * (1 + 1e-12) : table.low + inset(table.low);
+  range.high = std::max(range.low, table.high - inset(table.high));
+  return range;
+}
+
+std::vector<glm::vec4> Entries(const Functions& functions, const TransferFunction& table, int n)
+{
+  const Range range = Inside(table);
+  if (!table.logarithmic) {
+    return functions.evenly(range.low, range.high, n);
+  }
+  std::vector<glm::vec4> entries;
+  entries.reserve(static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k) {
+    const double value = table.low * std::pow(table.high / table.low, double(k) / (n - 1));
+    entries.push_back(functions.at(std::clamp(value, range.low, range.high)));
+  }
+  return entries;
 }
 
 } // namespace
@@ -120,11 +157,7 @@ TransferFunction BuildTransferFunction(vtkVolumeProperty* property)
   const Range range = TableRange(functions, result.logarithmic);
   result.low = range.low;
   result.high = range.high;
-  const int n = functions.samples(range.low, range.high) + 1;
-  result.table.reserve(n);
-  for (int k = 0; k < n; ++k) {
-    result.table.push_back(functions.at(EntryValue(result, k, n)));
-  }
+  result.table = Entries(functions, result, functions.samples(range.low, range.high) + 1);
   const double ratio = range.high / range.low;
   const double width = range.high - range.low;
   result.below = functions.at(result.logarithmic ? range.low / ratio : range.low - width);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace {
 
@@ -149,6 +150,32 @@ TEST_F(TransferFunctions, ResolveNodesThatAreCloseTogether)
   const auto table = inr::BuildTransferFunction(this->property);
   EXPECT_GT(LookUp(table, 5001.0).a, 0.7);
   EXPECT_LE(table.table.size(), 16385u);
+}
+
+/// As a colour map of somebody else's program may have them: anywhere, some next to each other.
+TEST_F(TransferFunctions, MayHaveTenThousandNodes)
+{
+  constexpr int count = 10000;
+  constexpr int colourCount = 2000; // VTK itself takes seconds for 10,000 of them
+  const auto red = [](double x) { return 0.5 + 0.4 * std::sin(20 * x); };
+  const auto alpha = [](double x) { return 0.3 + 0.2 * std::cos(30 * x); };
+  std::vector<double> colours;
+  std::vector<double> opacities;
+  for (int k = 0; k < count; ++k) {
+    const double x = (k + 0.499 * std::sin(k)) / count;
+    if (k % (count / colourCount) == 0) {
+      colours.insert(colours.end(), {x, red(x), 0.25, 1 - red(x)});
+    }
+    opacities.insert(opacities.end(), {x, alpha(x)});
+  }
+  this->colour->FillFromDataPointer(colourCount, colours.data());
+  this->opacity->FillFromDataPointer(count, opacities.data());
+  const auto table = inr::BuildTransferFunction(this->property);
+  for (double x = 0.001; x < 0.999; x += 0.00137) {
+    const glm::vec4 actual = LookUp(table, x);
+    ExpectColour(actual, red(x), 0.25, 1 - red(x), 0.002);
+    EXPECT_NEAR(actual.a, alpha(x), 0.002) << x;
+  }
 }
 
 TEST_F(TransferFunctions, ExistForFunctionsWithoutOrWithOneNode)
