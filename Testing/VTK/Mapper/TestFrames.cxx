@@ -260,6 +260,11 @@ TEST(Frames, KeepWithinATolerance)
   EXPECT_GT(one.mapper->GetCoarsestLevel(), 0);
   EXPECT_LT(one.mapper->GetNumberOfSamples(), samples);
   EXPECT_LT(255 * LargestDifference(exact, rough), 200);
+  // The precision of the cache follows from it, too.
+  one.mapper->SetCachePrecision(vtkINRVolumeMapper::BITS8);
+  EXPECT_EQ(one.scene.capture().pixels, rough.pixels);
+  one.mapper->SetErrorTolerance(0);
+  EXPECT_EQ(one.scene.capture().pixels, exact.pixels);
   one.mapper->SetErrorTolerance(-7); // as it was
   EXPECT_EQ(one.mapper->GetErrorTolerance(), -1);
 }
