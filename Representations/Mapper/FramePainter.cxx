@@ -81,6 +81,12 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   return frame;
 }
 
+/// Whether the application wants a picture soon, as while the camera moves.
+bool IsInteractive(vtkRenderWindow* window)
+{
+  return window->GetDesiredUpdateRate() >= ImageReduction::StillRate;
+}
+
 /// Whether it can become no better.
 bool IsFinal(const FrameStatistics& statistics)
 {
@@ -145,13 +151,15 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   this->Caster->setTransferFunction(this->TransferFunctions.get(property));
   Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
   this->CountSamples = settings.countSamples;
-  frame.timeLimit = this->timeLimit(renderer->GetRenderWindow(), settings.stillTimeLimit);
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  frame.sampleDistance *= IsInteractive(window) ? 2 : 1;
+  frame.timeLimit = this->timeLimit(window, settings.stillTimeLimit);
   if (!this->draw(frame, renderer)) {
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
               "float textures.";
   }
   this->Last.seconds = SecondsSince(start);
-  this->refineLater(renderer->GetRenderWindow(), settings.mode);
+  this->refineLater(window, settings.mode);
   return problem;
 }
 
@@ -176,9 +184,8 @@ void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOpti
 double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) const
 {
   constexpr double glance = 0.5; // what a user waits for without noticing
-  const double rate = window->GetDesiredUpdateRate();
-  if (rate >= ImageReduction::StillRate) {
-    return glance / rate;
+  if (IsInteractive(window)) {
+    return glance / window->GetDesiredUpdateRate();
   }
   if (!RefinementTimer::canRefine(window)) {
     return 0;
@@ -191,7 +198,7 @@ double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) c
 
 void FramePainter::refineLater(vtkRenderWindow* window, RenderMode mode)
 {
-  if (window->GetDesiredUpdateRate() >= ImageReduction::StillRate) {
+  if (IsInteractive(window)) {
     this->Refine.postpone(); // what follows an interactive picture is the application's business
     return;
   }

@@ -44,7 +44,7 @@ struct PaintSettings
   RenderMode mode = RenderMode::RayMarching;
   PathOptions paths;
   int samplesPerPixel = 64;
-  double sampleDistance = 1; ///< voxels
+  double sampleDistance = 0.5; ///< voxels; interactive pictures have twice that
   bool adaptiveSampling = true;
   double levelOfDetailScale = 1;
   std::optional<double> errorTolerance;

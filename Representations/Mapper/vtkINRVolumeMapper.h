@@ -130,7 +130,7 @@ public:
   ///@{
   /**
    * Distance between samples in voxels, along the axis in which the voxels are densest. Smaller is
-   * slower and closer to the integral. Default 1.
+   * slower and closer to the integral. Interactive pictures have twice that. Default 0.5.
    */
   vtkSetClampMacro(SampleDistance, double, 0.01, 100.0);
   vtkGetMacro(SampleDistance, double);
@@ -147,8 +147,9 @@ public:
 
   ///@{
   /**
-   * How coarse the levels are that far voxels are read from: 1, the default, makes a voxel as large
-   * as a pixel; 0 always reads the full resolution; 2 is faster and softer.
+   * How coarse the levels are that far voxels are read from: 1, the default, makes a voxel at most
+   * as large as a pixel, and at least half as large where it is not of the full resolution; 0
+   * always reads the full resolution; 2 is faster and softer.
    */
   vtkSetClampMacro(LevelOfDetailScale, double, 0.0, 64.0);
   vtkGetMacro(LevelOfDetailScale, double);
@@ -157,12 +158,13 @@ public:
   ///@{
   /**
    * By how many 255ths a channel of the picture may differ from the one with every sample from the
-   * full resolution, for 99.9 % of its pixels; levels and distances of samples follow from it, and
-   * LevelOfDetailScale and AdaptiveSampling do not count. 0: not at all. Below 0, the default: they
+   * full resolution, for 99.9 % of its pixels. Levels, distances of samples and the precision of
+   * the cache (FLOAT32 with 0, else BITS16) follow from it; LevelOfDetailScale, AdaptiveSampling
+   * and CachePrecision do not count. 0: not at all. Below 0, the default: they do, and levels
    * follow from the distance to the viewer. Lit, cropped (but to a box), projected and path-traced
-   * pictures are as with 0; what CachePrecision rounds comes on top. It has to know the field,
-   * which the first picture waits for: about as long as decoding all that can be seen; it is only
-   * guessed, on the safe side, for more than 2^31 voxels.
+   * pictures are as with 0. It has to know the field, which the first picture waits for: about as
+   * long as decoding all that can be seen; it is only guessed, on the safe side, for more than 2^31
+   * voxels.
    */
   vtkSetClampMacro(ErrorTolerance, double, -1.0, 255.0);
   vtkGetMacro(ErrorTolerance, double);
@@ -410,7 +412,7 @@ private:
   double Anisotropy = 0.0;
   int MaximumBounces = 16;
   double AmbientLight[3] = {0.5, 0.5, 0.5};
-  double SampleDistance = 1.0;
+  double SampleDistance = 0.5;
   bool AdaptiveSampling = true;
   double LevelOfDetailScale = 1.0;
   double ErrorTolerance = -1.0;
