@@ -13,11 +13,13 @@
 // model made of the data; "knobs", one setting at a time that changes the picture; "tolerance",
 // what takes the place of one of them; "grid", three at once; "loading", what changes how the
 // cache fills (or several of these, with a "+" in between); "paths", path tracing; "model", this
-// model beside the USUAL one. VIEW: the volume as a "whole", from "near", where a voxel is several
-// pixels, or as from "far": the whole in a quarter of the pixels.
+// model beside the USUAL one; "memory", which part takes how much. VIEW: the volume as a "whole",
+// from "near", where a voxel is several pixels, or as from "far": the whole in a quarter of the
+// pixels.
 #include "Core/Model/ModelFile.h"
 #include "Testing/Benchmarks/RawVolume.h"
 #include "Testing/Benchmarks/TradeoffBench.h"
+#include "Testing/Benchmarks/TradeoffMemory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,9 +122,15 @@ void Run(char* const* arguments, const std::string& mode, const std::string& vie
     CompareVolumes(model, volume.data(), arguments[2]);
     return;
   }
+  const std::string name = std::string(arguments[2]) + (view == "whole" ? "" : " " + view);
+  if (mode == "memory") {
+    for (const Scene& scene : Scenes(model->volume, name, view)) {
+      MeasureMemory(arguments[1], scene);
+    }
+    return;
+  }
   const inr::ModelPointer usual = usualModel != nullptr ? inr::ReadModel(usualModel) : model;
   const Subject subject = SubjectOf(model, usual, volume.data());
-  const std::string name = std::string(arguments[2]) + (view == "whole" ? "" : " " + view);
   for (const Scene& scene : Scenes(subject.model->volume, name, view)) {
     if (mode == "model") {
       CompareModels(subject, scene);
@@ -141,8 +149,9 @@ int main(int argc, char* argv[])
   const std::string mode = argc >= 9 ? argv[8] : "";
   const std::string view = argc >= 10 ? argv[9] : "";
   if (view != "whole" && view != "near" && view != "far") {
-    std::cerr << "usage: bench_tradeoff MODEL.inr NAME VOXELS.raw TYPE NX NY NZ "
-                 "volume|knobs|tolerance|grid|loading|paths|model whole|near|far [USUAL.inr]\n";
+    std::cerr
+        << "usage: bench_tradeoff MODEL.inr NAME VOXELS.raw TYPE NX NY NZ "
+           "volume|memory|knobs|tolerance|grid|loading|paths|model whole|near|far [USUAL.inr]\n";
     return 2;
   }
   try {

@@ -108,7 +108,7 @@ inline std::vector<Point> PictureKnobs(const inr::Frame& frame)
     knobs.add("CachePrecision", Name(precision), true,
               [&](Point& point) { point.options.cache.precision = precision; });
   }
-  for (const double step : {0.25, 0.5, 2.0, 4.0}) {
+  for (const double step : {0.25, 1.0, 2.0, 4.0}) {
     knobs.add("SampleDistance", Text(step), false,
               [&](Point& point) { point.frame.sampleDistance = step; });
   }
@@ -118,21 +118,14 @@ inline std::vector<Point> PictureKnobs(const inr::Frame& frame)
   return knobs.points;
 }
 
-/// What takes the place of level of detail, in 255ths of a channel of the picture with all samples:
-/// by default a voxel apart, and half a voxel.
+/// What takes the place of level of detail, in 255ths of a channel of the picture with all samples,
+/// half a voxel apart.
 inline std::vector<Point> ToleranceKnob(const inr::Frame& frame)
 {
   SingleKnobs knobs(frame);
   for (const double tolerance : {0.0, 1.0, 4.0, 16.0}) {
     knobs.add("ErrorTolerance", Text(tolerance), true,
               [&](Point& point) { point.frame.errorTolerance = tolerance; });
-  }
-  for (const double tolerance : {1.0, 4.0}) {
-    knobs.add("ErrorTolerance and SampleDistance", Text(tolerance) + " and 0.5", true,
-              [&](Point& point) {
-                point.frame.errorTolerance = tolerance;
-                point.frame.sampleDistance = 0.5;
-              });
   }
   return knobs.points;
 }

@@ -42,6 +42,7 @@ inline std::vector<Scene> Scenes(const inr::VolumeInfo& volume, const std::strin
   for (const Look& look : Looks(volume)) {
     Scene scene{name + " " + look.name, look.function,
                 view == "near" ? NearView(volume) : View(volume)};
+    scene.frame.sampleDistance = 0.5;
     scene.frame.width = scene.frame.height = view == "far" ? PictureSize / 2 : PictureSize;
     scenes.push_back(scene);
   }

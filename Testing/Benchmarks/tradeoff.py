@@ -37,6 +37,8 @@ PARTS = ([(volume, size, "volume", "whole") for volume in VOLUMES for size in SI
             ("rm_mixing", "default", "tolerance", "whole"),
             ("heptane_fire", "default", "tolerance", "whole"),
             ("rm_mixing", "default", "tolerance", "near")]
+         + [(volume, size, "memory", "whole") for volume in ("rm_mixing", "heptane_fire")
+            for size in ("default", "small")]
          + [(volume, size, "model", "whole") for volume in ("rm_mixing", "les_vorticity")
             for size in ("small", "large")]
          + [("rm_mixing", "default", "paths", "whole")])
@@ -72,7 +74,7 @@ class Bench:
         lines = [json.loads(line) for line in run.stdout.splitlines()]
         for line in lines:
             line["ratio"] = round(self.ratio(model), 1)
-            if what == "volume" or (what == "model" and "knob" not in line):
+            if what in ("volume", "memory") or (what == "model" and "knob" not in line):
                 line["name"] += f", {size} model"
             elif what == "model":
                 line["parameters"], line["setting"] = int(line["setting"]), size
@@ -104,6 +106,10 @@ def result_of(line):
     """A line of bench_tradeoff as a result: what it is about first."""
     line = dict(line)
     name = line.pop("name").rstrip()
+    if "bricks_mib" in line:
+        return results_file.result(name, sum(part for key, part in line.items() if "_mib" in key and
+                                             key != "tolerance_mib"), "MiB", "lower",
+                                   "by part; with a tolerance, tolerance_mib more", **line)
     for key, what in (("psnr", "decoded against original voxels"),
                       ("psnr_a_c", "the decoded voxels' picture against the data's"),
                       ("psnr_a_without_cache", "the decoded voxels' with and without a cache")):

@@ -7,7 +7,6 @@ SCENES = ("rm_mixing sparse", "rm_mixing dense", "heptane_fire sparse", "heptane
 # Knob: colour, marker. The same in every panel.
 KNOBS = {"LevelOfDetailScale": ("#2a78d6", "o"), "SampleDistance": ("#eb6834", "s"),
          "CachePrecision": ("#1baf7a", "^"), "ErrorTolerance": ("#4a3aa7", "v"),
-         "ErrorTolerance and SampleDistance": ("#9085e9", "<"),
          "network only": ("#e34948", "D")}
 
 
@@ -59,7 +58,7 @@ def draw_curve(plot, knob, points, usual):
 def setting_of(point, knob):
     """The number that a knob is set to, by default one."""
     if point["knob"] == "defaults":
-        return 1.0
+        return 0.5 if knob == "SampleDistance" else 1.0
     try:
         return float(point["setting"].split()[0])
     except ValueError:
