@@ -19,6 +19,31 @@ struct Phasors
   const double* sines;
 };
 
+/// Points that are computed at once.
+constexpr int ChannelPoints = 16;
+
+/// A mode as scattered points want it, phases in turns: of the field's waves a turn is 2 pi.
+struct PointMode
+{
+  double nx;
+  double ny;
+  double phase;
+  double vertical; ///< turns per unit of PointPlaces::stretched
+  double along;    ///< turns back per unit of PointPlaces::distance
+  double across;
+  double amplitude;
+};
+
+/// ChannelPoints points: x and y in the unit cube, and what their heights make of modes (see
+/// TurbulentChannel::Height).
+struct PointPlaces
+{
+  double x[ChannelPoints];
+  double y[ChannelPoints];
+  double distance[ChannelPoints];
+  double stretched[ChannelPoints];
+};
+
 /// The sums over modes and waves, for one instruction set. No multiplication is fused with an
 /// addition: every instruction set gives the same bits.
 struct ChannelKernel
@@ -31,6 +56,9 @@ struct ChannelKernel
   /// ChannelTile values of such a row plus `mean`. `coarse` turns each wave to the tile's first
   /// voxel, `fine` (ChannelTile numbers for each wave) from there to every voxel.
   void (*tile)(const double* row, Phasors coarse, Phasors fine, double mean, double* values);
+
+  /// The sums of `count` modes at ChannelPoints points, before TurbulentChannel::Height's strength.
+  void (*points)(const PointMode* modes, int count, const PointPlaces& places, double* sums);
 };
 
 /// The kernel built for `set`, which must be usable.

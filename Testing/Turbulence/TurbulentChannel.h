@@ -66,6 +66,10 @@ public:
     /// Amplitude (x) and phase (y).
     glm::dvec2 of(const Mode& mode) const;
 
+    double distance() const { return this->Distance; }
+    double stretched() const { return this->Stretched; }
+    double strength() const { return this->Strength; } ///< that all modes share
+
   private:
     double Distance;  ///< from the nearer wall in half-heights, smooth in the middle: 1/2 there
     double Stretched; ///< from the middle, finer near the walls
