@@ -3,7 +3,6 @@
 // Many frames in a row, each within its time: what a user sees while the cache fills.
 //
 //   bench_flight MODEL.inr NAME flight FRAMES     through a volume of 4096^3: memory and holes
-//   bench_flight MODEL.inr NAME tour FRAMES       the same through the model's own voxels, 2 GiB
 //   bench_flight MODEL.inr NAME protocol FRAMES   one view of the volume scaled by 4: frame times
 //
 // prints one JSON object per line; flight.py writes the result file.
@@ -65,11 +64,10 @@ double HitRate(const inr::FrameStatistics& statistics)
   return 1 - static_cast<double>(statistics.missed) / samples;
 }
 
-void Fly(const inr::ModelPointer& large, std::int64_t cacheBytes, const std::string& name,
-         int frames)
+void Fly(const inr::ModelPointer& large, const std::string& name, int frames)
 {
   inr::RendererOptions options = Cached();
-  options.cache.bytes = cacheBytes;
+  options.cache.bytes = std::int64_t{64} << 20; // fills on the way
   inr::Renderer renderer(large, options);
   renderer.setTransferFunction(Looks(large->volume)[1].function);
   double hits = 0;
@@ -157,15 +155,13 @@ int main(int argc, char* argv[])
 {
   const std::string mode = argc == 5 ? argv[3] : "";
   const int frames = argc == 5 ? std::atoi(argv[4]) : 0;
-  if ((mode != "flight" && mode != "tour" && mode != "protocol") || frames < 1) {
-    std::cerr << "usage: bench_flight MODEL.inr NAME flight|tour|protocol FRAMES\n";
+  if ((mode != "flight" && mode != "protocol") || frames < 1) {
+    std::cerr << "usage: bench_flight MODEL.inr NAME flight|protocol FRAMES\n";
     return 2;
   }
   const inr::ModelPointer model = inr::ReadModel(argv[1]);
-  if (mode == "flight") { // with a cache that fills on the way
-    Fly(Scaled(model, glm::i64vec3(4096)), std::int64_t{64} << 20, argv[2], frames);
-  } else if (mode == "tour") {
-    Fly(model, std::int64_t{2} << 30, argv[2], frames);
+  if (mode == "flight") {
+    Fly(Scaled(model, glm::i64vec3(4096)), argv[2], frames);
   } else {
     RunProtocol(model, argv[2], frames);
   }

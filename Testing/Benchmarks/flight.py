@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs bench_flight for one or more models and writes flight.json, tour.json or protocol.json.
+"""Runs bench_flight for one or more models and writes flight.json or protocol.json.
 
     cmake --preset core -DINR_BUILD_BENCHMARKS=ON && cmake --build --preset core
-    Testing/Benchmarks/flight.py build-core/Testing/Benchmarks flight|tour|protocol FRAMES NAME=MODEL.inr...
+    Testing/Benchmarks/flight.py build-core/Testing/Benchmarks flight|protocol FRAMES NAME=MODEL.inr...
 """
 import json
 import subprocess

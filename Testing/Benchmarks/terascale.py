@@ -4,12 +4,14 @@
 terascale-PART.json for each part.
 
     cmake --preset release && cmake --build --preset release
-    Testing/with-display.sh Testing/Benchmarks/terascale.py build FOLDER [raw] [half-channel] [channel]
+    Testing/with-display.sh Testing/Benchmarks/terascale.py build FOLDER [PART...]
 
 "raw": 2048^3 floats, 32 GiB that must be free in FOLDER, within MemoryLimit 1024, and beside it every
 fourth voxel trained from memory. "channel": 10240 x 7680 x 1536 doubles, 0.97 TB that are computed
 where they are asked for; "half-channel": half as many along every axis. Models are compared with
-the field itself on 10^8 random voxels.
+the field itself on 10^8 random voxels. "channel-flight", after "channel" in the same FOLDER, opens
+its model in ParaView with a cache of 2 GiB, flies through it, and compares pictures at three
+distances with pictures of the field itself; "half-channel-flight" likewise.
 """
 import json
 import os
@@ -17,6 +19,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import channel_flight
 import results_file
 
 # In pvpython; arguments as JSON, the answer as the last line.
@@ -123,9 +126,21 @@ def channel(name, divisor):
                               f"{good['ratio']:.0f}", target=35)
 
 
+def flight(name, divisor):
+    """With the picture that belongs to them."""
+    dims = [voxels // divisor for voxels in CHANNEL]
+    model = folder / f"{name.replace(' ', '-')}.inr"
+    return channel_flight.results(build, folder / "pictures", model, dims)
+
+
 PARTS = {"raw": raw_file, "half-channel": lambda: channel("half channel", 2),
-         "channel": lambda: channel("channel", 1)}
+         "half-channel-flight": lambda: flight("half channel", 2),
+         "channel": lambda: channel("channel", 1),
+         "channel-flight": lambda: flight("channel", 1)}
 parts = sys.argv[3:] or list(PARTS)
 folder.mkdir(parents=True, exist_ok=True)
 for part in parts:
-    results_file.write(f"terascale-{part}", list(PARTS[part]()))
+    path = results_file.write(f"terascale-{part}", list(PARTS[part]()))
+    picture = folder / "pictures" / "beside.png"
+    if part.endswith("flight"):
+        path.with_suffix(".png").write_bytes(picture.read_bytes())
