@@ -41,6 +41,21 @@ bool Exists(const std::string& path)
   return std::filesystem::exists(path, unknown) || unknown;
 }
 
+/// Renames a file to one that is not there yet.
+void SetAside(const std::string& path)
+{
+  std::string name = path + ".other";
+  for (int number = 2; Exists(name); ++number) {
+    name = path + ".other" + std::to_string(number);
+  }
+  std::error_code error;
+  std::filesystem::rename(path, name, error);
+  if (error && Exists(path)) {
+    throw Error(ErrorCode::CannotWrite,
+                "cannot rename '" + path + "' to '" + name + "': " + error.message());
+  }
+}
+
 } // namespace
 
 CheckpointKeeper::CheckpointKeeper(CheckpointOptions options, TrainingIdentity identity)
@@ -60,7 +75,8 @@ std::optional<TrainingState> CheckpointKeeper::resume(const StateArrays& arrays)
   try {
     const CheckpointFile file(path);
     const std::string difference = Difference(file.identity(), this->Identity);
-    if (!difference.empty()) {
+    this->IsOthers = !difference.empty();
+    if (this->IsOthers) {
       throw Error(ErrorCode::InvalidArgument,
                   "'" + path + "' is of another training: " + difference);
     }
@@ -72,8 +88,9 @@ std::optional<TrainingState> CheckpointKeeper::resume(const StateArrays& arrays)
     return file.state();
   } catch (const Error& error) {
     this->tell(CheckpointEvent::Ignored,
-               std::string(error.what()) +
-                   "; the training begins anew, and its first checkpoint will replace the file");
+               std::string(error.what()) + "; the training begins anew, and its first checkpoint " +
+                   (this->IsOthers ? "will leave the file under another name, '.other' at its end"
+                                   : "will replace the file"));
     return std::nullopt;
   }
 }
@@ -91,6 +108,10 @@ std::string CheckpointKeeper::replace(const TrainingState& state, const StateArr
   const TrainingClock clock;
   std::string problem;
   try {
+    if (this->IsOthers) {
+      SetAside(this->Options.path);
+      this->IsOthers = false;
+    }
     WriteCheckpoint(this->Options.path, this->Identity, state, arrays);
     this->HasWritten = true;
     this->tell(CheckpointEvent::Written,

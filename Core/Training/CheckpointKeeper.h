@@ -45,6 +45,7 @@ private:
   double WriteSeconds = 0; ///< that the last took
   bool HasWritten = false; ///< or gone on from
   bool HasFailed = false;
+  bool IsOthers = false; ///< what is at the path: it is set aside before it is replaced
 };
 
 } // namespace inr

@@ -230,6 +230,25 @@ TEST_F(Resume, IgnoresABrokenFile)
   EXPECT_EQ(model->parameters, this->withoutCheckpoint(this->options(6))->parameters);
 }
 
+TEST_F(Resume, KeepsTheCheckpointOfAnotherTrainingUnderAnotherName)
+{
+  inr::TrainingOptions other = this->options(6);
+  std::vector<std::string> kept;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    other.seed = seed;
+    this->stopAfter(3, other);
+    kept.push_back(ReadBytes(this->Path));
+  }
+  EXPECT_EQ(ReadBytes(this->Path + ".other"), kept[0]);
+  EXPECT_EQ(ReadBytes(this->Path + ".other2"), kept[1]);
+  EXPECT_EQ(this->count(CheckpointEvent::Ignored), 2);
+  std::filesystem::rename(this->Path + ".other", this->Path);
+  other.seed = 1;
+  const inr::ModelPointer whole = this->withoutCheckpoint(other);
+  EXPECT_EQ(this->train(other)->parameters, whole->parameters);
+  EXPECT_EQ(this->count(CheckpointEvent::Resumed), 1);
+}
+
 TEST_F(Resume, BeginsAnewWhenToldTo)
 {
   this->stopAfter(3, this->options(6));
