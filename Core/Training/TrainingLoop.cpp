@@ -44,16 +44,30 @@ void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const Psn
   try {
     this->train(descent, batches, estimate, kernel);
   } catch (const Error& error) {
-    // After a divergence there is nothing to go on from.
-    if (error.code() == ErrorCode::InvalidModel || this->Group.rank() > 0) {
+    if (error.code() == ErrorCode::InvalidModel) {
+      throw; // after a divergence there is nothing to go on from
+    }
+    if (this->Group.rank() > 0) {
+      this->waitForFirst();
       throw;
     }
-    throw Error(error.code(),
-                std::string(error.what()) + "; " +
-                    this->Keeper.writeAtStop(this->state(descent, false), descent.state()));
+    const std::string kept = this->Keeper.writeAtStop(this->state(descent, false), descent.state());
+    this->waitForFirst();
+    throw Error(error.code(), std::string(error.what()) + "; " + kept);
   }
   this->finish(descent);
   this->Keeper.writeAtEnd(this->state(descent, true), descent.state());
+}
+
+/// Until it has written the checkpoint: whoever started the processes may end all of them when one
+/// has ended.
+void TrainingLoop::waitForFirst() const
+{
+  try {
+    this->Group.gather("");
+  } catch (const Error&) {
+    return; // nobody can be reached any more
+  }
 }
 
 void TrainingLoop::planAhead(GradientDescent& descent)

@@ -43,6 +43,7 @@ private:
   void train(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
              const EvaluateKernel& kernel);
   void finish(GradientDescent& descent);
+  void waitForFirst() const;
   TrainingState state(const GradientDescent& descent, bool finished) const;
   void plan(GradientDescent& descent, std::uint64_t steps);
   void planByTheClock(GradientDescent& descent);

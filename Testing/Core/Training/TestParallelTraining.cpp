@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 namespace {
@@ -322,6 +323,21 @@ TEST(ParallelTraining, GoesOnFromItsCheckpoint)
   };
   EXPECT_EQ(Train(pieces, options, watch)[1].model->parameters, whole->parameters);
   EXPECT_EQ(fewest, 5);
+}
+
+// Whoever ends first may take the others with it.
+TEST(ParallelTraining, NobodyLeavesBeforeTheCheckpointIsThere)
+{
+  const TemporaryFolder folder;
+  inr::TrainingOptions options = Options(1000);
+  options.checkpoint.path = folder.file("a.checkpoint");
+  const std::vector<Piece> pieces = Cut(Whole(), 4);
+  InGroup(4, [&](const ThreadGroup& group) {
+    const auto rank = static_cast<std::size_t>(group.rank());
+    const auto watch = [](const inr::TrainingProgress& now) { return now.steps < 3; };
+    EXPECT_THROW(inr::TrainModel(pieces[rank].data(), Info(), options, group, watch), inr::Error);
+    EXPECT_TRUE(std::filesystem::exists(options.checkpoint.path)) << rank;
+  });
 }
 
 TEST(ParallelTraining, RefusesPiecesThatDoNotFit)
