@@ -43,14 +43,18 @@ std::string TrainingReport::text(const inr::TrainingProgress& progress)
   if (training && this->FirstSteps == 0) {
     this->FirstSteps = progress.steps;
     this->FirstStep = Clock::now();
+    // One that goes on from a checkpoint has not done in this time what was done before.
+    this->Start = this->FirstStep;
+    this->FirstFraction = progress.fraction;
   }
   const auto steps = static_cast<double>(progress.steps - this->FirstSteps);
   if (training && steps > 0) {
     const double rate = steps * inr::BatchSize / SecondsSince(this->FirstStep);
     text += Formatted(", %.3g M samples/s", rate / 1e6);
   }
-  if (progress.fraction > SmallestFraction) {
-    const double left = SecondsSince(this->Start) * (1.0 - progress.fraction) / progress.fraction;
+  const double done = progress.fraction - this->FirstFraction;
+  if (done > SmallestFraction) {
+    const double left = SecondsSince(this->Start) * (1.0 - progress.fraction) / done;
     text += left < 120 ? Formatted(", %.0f s left", left) : Formatted(", %.0f min left", left / 60);
   }
   return text;

@@ -16,7 +16,8 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  Clock::time_point Start = Clock::now();
-  Clock::time_point FirstStep; ///< of the training
+  Clock::time_point Start = Clock::now(); ///< from where the rest is reckoned
+  double FirstFraction = 0;               ///< then
+  Clock::time_point FirstStep;            ///< of the training
   std::uint64_t FirstSteps = 0;
 };
