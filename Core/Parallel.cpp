@@ -32,24 +32,39 @@ int AvailableCores()
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-std::uint64_t AvailableCoresKey()
+namespace {
+
+std::uint64_t KeyOf(std::uint64_t key, const void* bytes, std::size_t count)
 {
-  std::uint64_t key = 0;
-  const auto add = [&key](const void* bytes, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      key = RandomBits(key, static_cast<const unsigned char*>(bytes)[k]);
-    }
-  };
+  for (std::size_t k = 0; k < count; ++k) {
+    key = RandomBits(key, static_cast<const unsigned char*>(bytes)[k]);
+  }
+  return key;
+}
+
+} // namespace
+
+std::uint64_t MachineKey()
+{
 #ifdef __linux__
   char host[256] = {};
   gethostname(host, sizeof(host) - 1);
-  add(host, sizeof(host));
+  return KeyOf(0, host, sizeof(host));
+#else
+  return 0;
+#endif
+}
+
+std::uint64_t AvailableCoresKey()
+{
+#ifdef __linux__
   cpu_set_t mask;
   CPU_ZERO(&mask);
   sched_getaffinity(0, sizeof(mask), &mask);
-  add(&mask, sizeof(mask));
+  return KeyOf(MachineKey(), &mask, sizeof(mask));
+#else
+  return MachineKey();
 #endif
-  return key;
 }
 
 #ifdef __SANITIZE_THREAD__

@@ -14,6 +14,9 @@ int AvailableCores();
 /// ever in others.
 std::uint64_t AvailableCoresKey();
 
+/// The same number in all processes of a machine, and hardly ever in others.
+std::uint64_t MachineKey();
+
 /// A set of worker threads of our own, apart from the host application's.
 ///
 /// Work is cut into blocks whose limits depend on the arguments only, never on the number of

@@ -74,6 +74,23 @@ void ControllerGroup::gatherPiece(const std::string& bytes, vtkIdType begin,
   }
 }
 
+std::int64_t ControllerGroup::memoryShare(std::int64_t limit) const
+{
+  const std::vector<std::uint64_t> machines = this->valuesOfAll(inr::MachineKey());
+  std::int64_t share = limit;
+  const std::vector<std::int64_t> limits = this->valuesOfAll(limit);
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    share = std::min(share, limits[k] / std::count(machines.begin(), machines.end(), machines[k]));
+  }
+  return share;
+}
+
+bool ControllerGroup::any(bool said) const
+{
+  const std::vector<int> all = this->valuesOfAll(static_cast<int>(said));
+  return std::count(all.begin(), all.end(), 0) < static_cast<std::ptrdiff_t>(all.size());
+}
+
 int ControllerGroup::threads() const
 {
   if (!this->Controller) {

@@ -5,6 +5,7 @@
 
 #include <vtkType.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,13 @@ public:
 
   /// For this process, so that those on the same machine share its cores; 0 (= all) when alone.
   int threads() const;
+
+  /// Of a limit for a machine the share of each process, where the most are on one; the same in
+  /// all.
+  std::int64_t memoryShare(std::int64_t limit) const;
+
+  /// Whether one of them says so.
+  bool any(bool said) const;
 
 private:
   void gatherPiece(const std::string& bytes, vtkIdType begin, const std::vector<vtkIdType>& lengths,

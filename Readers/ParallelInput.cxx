@@ -8,6 +8,7 @@
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <algorithm>
@@ -21,12 +22,6 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 bool IsEmpty(const int* extent)
 {
   return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
-}
-
-bool Contains(const int* outer, const int* inner)
-{
-  return outer[0] <= inner[0] && outer[1] >= inner[1] && outer[2] <= inner[2] &&
-         outer[3] >= inner[3] && outer[4] <= inner[4] && outer[5] >= inner[5];
 }
 
 /// As VTK cuts an image for the processes of the group; empty for those that are too many.
@@ -78,6 +73,14 @@ void ShareInfo(inr::VolumeInfo& info, const ControllerGroup& group)
 }
 
 } // namespace
+
+bool IsPieceInMemory(vtkInformation* input, const WholeImage& whole, const ControllerGroup& group)
+{
+  auto* image = vtkImageData::SafeDownCast(input->Get(vtkDataObject::DATA_OBJECT()));
+  const std::array<int, 6> piece = PieceExtent(whole, group);
+  return image && image->GetPointData()->GetNumberOfArrays() > 0 &&
+         (IsEmpty(piece.data()) || Contains(image->GetExtent(), piece.data()));
+}
 
 void RequestPiece(vtkInformation* input, const WholeImage& whole, bool inParts,
                   const ControllerGroup& group)

@@ -10,6 +10,9 @@
 class vtkDataObject;
 class vtkInformation;
 
+/// Whether this process' piece of an image, as VTK cuts it, is there before anybody asks for it.
+bool IsPieceInMemory(vtkInformation* input, const WholeImage& whole, const ControllerGroup& group);
+
 /// Asks the pipeline for this process' piece of an image, as VTK cuts it for the processes of the
 /// group; or, if it must not be asked for parts, for all of it.
 void RequestPiece(vtkInformation* input, const WholeImage& whole, bool inParts,

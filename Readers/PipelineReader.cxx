@@ -43,13 +43,34 @@ std::string ToText(const Extent& extent)
   return text;
 }
 
-bool Contains(const int* outer, const Extent& inner)
+/// Lets all data upstream go.
+void ReleaseUpstream(vtkAlgorithm& consumer)
+{
+  for (vtkAlgorithm* algorithm : UpstreamOf(&consumer)) {
+    for (int port = 0; port < algorithm->GetNumberOfOutputPorts(); ++port) {
+      vtkDataObject* data = algorithm->GetOutputDataObject(port);
+      if (data) {
+        data->ReleaseData();
+      }
+    }
+  }
+}
+
+/// Asks for an extent, whichever process this is.
+void Request(vtkInformation* input, const Extent& extent)
+{
+  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  input->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+}
+
+} // namespace
+
+bool Contains(const int* outer, const int* inner)
 {
   return outer[0] <= inner[0] && outer[1] >= inner[1] && outer[2] <= inner[2] &&
          outer[3] >= inner[3] && outer[4] <= inner[4] && outer[5] >= inner[5];
 }
-
-} // namespace
 
 WholeImage WholeImage::Of(vtkInformation* input)
 {
@@ -81,12 +102,13 @@ void WholeImage::ask(vtkInformation* input, bool onlyFirst) const
   for (std::size_t axis = 0; axis < 3 && onlyFirst; ++axis) {
     wanted[2 * axis + 1] = wanted[2 * axis];
   }
-  input->Set(Pipeline::UPDATE_EXTENT(), wanted.data(), 6);
+  Request(input, wanted);
 }
 
 PipelineReader::PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
-                               Finder finder)
-    : Consumer(consumer), Whole(whole), Type(finder(&first).data.type), Find(std::move(finder))
+                               Finder finder, bool afresh)
+    : Consumer(consumer), Whole(whole), Afresh(afresh), Type(finder(&first).data.type),
+      Find(std::move(finder))
 {
   for (vtkDataSetAttributes* data : {static_cast<vtkDataSetAttributes*>(first.GetPointData()),
                                      static_cast<vtkDataSetAttributes*>(first.GetCellData())}) {
@@ -105,16 +127,18 @@ vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) 
   if (!rawProblem.empty()) {
     throw inr::Error(inr::ErrorCode::CannotRead, rawProblem);
   }
+  if (this->Afresh) {
+    ReleaseUpstream(this->Consumer);
+  }
   const UpstreamErrors errors(&this->Consumer);
-  vtkInformation* input = this->Consumer.GetInputInformation();
-  input->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+  Request(this->Consumer.GetInputInformation(), extent);
   auto* producer = Pipeline::SafeDownCast(this->Consumer.GetInputExecutive());
   const int port = this->Consumer.GetInputConnection(0, 0)->GetIndex();
   const bool updated = producer && producer->Update(port) != 0;
   errors.check();
   auto* image = vtkImageData::SafeDownCast(this->Consumer.GetInputDataObject(0, 0));
   const unsigned long problem = producer ? producer->GetAlgorithm()->GetErrorCode() : 0;
-  if (!updated || problem != 0 || !image || !Contains(image->GetExtent(), extent)) {
+  if (!updated || problem != 0 || !image || !Contains(image->GetExtent(), extent.data())) {
     throw inr::Error(inr::ErrorCode::CannotRead, "the source did not give the voxels of extent " +
                                                      ToText(extent) +
                                                      "; what it reported, if anything, says why");

@@ -12,18 +12,21 @@ class vtkAlgorithm;
 class vtkImageData;
 class vtkInformation;
 
+/// Whether an extent holds another one, each of six numbers.
+bool Contains(const int* outer, const int* inner);
+
 /// An image as an algorithm's input tells of it before it is asked for.
 struct WholeImage
 {
   int extent[6] = {0, -1, 0, -1, 0, -1};
   glm::i64vec3 dims{0};
-  bool isInMemory = false;
-  double bytes = 0; ///< of its active scalars; of doubles where these are not known
+  bool isInMemory = false; ///< all of it
+  double bytes = 0;        ///< of its active scalars; of doubles where these are not known
 
   /// Of what is connected to an algorithm. No dims where that is no image.
   static WholeImage Of(vtkInformation* input);
 
-  /// Has the pipeline update all of it, or the first voxel.
+  /// Has the pipeline update all of it, or the first voxel, in this process.
   void ask(vtkInformation* input, bool onlyFirst) const;
 };
 
@@ -35,9 +38,11 @@ public:
   /// Finds what is to be trained on in an image, or throws.
   using Finder = std::function<TrainingInput(vtkImageData*)>;
 
-  /// `first`: a voxel of it, as the source gives it.
+  /// `first`: a voxel of it, as the source gives it. `afresh`: sources have to read each time, even
+  /// what they still have, since others count on it: there are some that work together in several
+  /// processes.
   PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
-                 Finder finder);
+                 Finder finder, bool afresh);
 
   const glm::i64vec3& dims() const override { return this->Whole.dims; }
   inr::ScalarType type() const override { return this->Type; }
@@ -51,6 +56,7 @@ private:
 
   vtkAlgorithm& Consumer;
   WholeImage Whole;
+  bool Afresh;
   inr::ScalarType Type;
   std::int64_t BytesPerVoxel = 0; ///< of all arrays
   Finder Find;

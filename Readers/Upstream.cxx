@@ -90,6 +90,13 @@ std::string FindWholeFileReader(vtkAlgorithm* algorithm)
   return {};
 }
 
+bool ComesFromApplication(vtkAlgorithm* algorithm)
+{
+  const std::vector<vtkAlgorithm*> all = UpstreamOf(algorithm);
+  return std::any_of(all.begin(), all.end(),
+                     [](vtkAlgorithm* other) { return other->IsA("vtkTrivialProducer") != 0; });
+}
+
 std::string FindBadRawFile(vtkAlgorithm* algorithm)
 {
   for (vtkAlgorithm* other : UpstreamOf(algorithm)) {

@@ -19,6 +19,10 @@ std::vector<vtkAlgorithm*> UpstreamOf(vtkAlgorithm* algorithm);
 /// of the part.
 std::string FindWholeFileReader(vtkAlgorithm* algorithm);
 
+/// Whether what is upstream is an application's data, which has what it has: a simulation's piece
+/// of a grid.
+bool ComesFromApplication(vtkAlgorithm* algorithm);
+
 /// Says what is wrong where a raw file upstream cannot be read, or is shorter than its reader was
 /// told: ParaView's complains and gives what it has, or tries for ever to read on. Empty where
 /// nothing is wrong.

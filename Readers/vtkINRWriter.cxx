@@ -53,7 +53,7 @@ public:
   bool InPieces = false;                  ///< whether it is read so
   std::unique_ptr<UpstreamErrors> Errors; ///< while the input is updated
   std::string RawProblem;                 ///< what is wrong with a raw file
-  std::string WholeReader; ///< the class of a reader that must not be asked for pieces
+  std::string WholeReader;                ///< what gives the whole of too much, for the user
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
   inr::ModelPointer Previous; ///< what was written last, if it is of a time step
@@ -90,7 +90,11 @@ vtkTypeBool vtkINRWriter::ProcessRequest(vtkInformation* request, vtkInformation
   }
   const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
   if (input && request->Has(Pipeline::REQUEST_UPDATE_EXTENT())) {
-    this->PlanReading(input);
+    try {
+      this->PlanReading(input);
+    } catch (const std::exception& error) { // other processes cannot be reached
+      this->Internal->Problem = error.what();
+    }
     if (!steps.isEmpty()) {
       input->Set(Pipeline::UPDATE_TIME_STEP(), steps.time());
     }
@@ -130,29 +134,42 @@ std::int64_t vtkINRWriter::MemoryLimitInBytes() const
   return this->MemoryLimit > 0 ? MiB * this->MemoryLimit : PhysicalMemory() / 2;
 }
 
-/// Asks for the whole input, or for one voxel of it where the rest is going to be read in pieces or
-/// not at all.
+/// Asks for the whole input or, in a group, this process' piece of it, or for one voxel where the
+/// rest is going to be read in pieces or not at all.
 void vtkINRWriter::PlanReading(vtkInformation* input)
 {
   this->Internal->Errors = std::make_unique<UpstreamErrors>(this);
   this->Internal->RawProblem = FindBadRawFile(this);
   const WholeImage whole = WholeImage::Of(input);
   this->Internal->Whole = whole;
-  this->Internal->InPieces = false;
+  const ControllerGroup group(this->Internal->Controller);
+  const bool isLarge = this->IsTooLarge(input, group);
+  const std::string wholeReader = FindWholeFileReader(this);
+  this->Internal->WholeReader =
+      isLarge && !wholeReader.empty() ? wholeReader + ", the source" : std::string();
+  this->Internal->InPieces = group.any(isLarge && this->Internal->WholeReader.empty());
   if (whole.dims.x * whole.dims.y * whole.dims.z == 0) {
     return;
   }
   const bool isShort = !this->Internal->RawProblem.empty();
-  const ControllerGroup group(this->Internal->Controller);
-  if (group.size() > 1 && !isShort) {
-    RequestPiece(input, whole, FindWholeFileReader(this).empty(), group);
-    return;
+  if (group.size() > 1 && !isShort && !this->Internal->InPieces) {
+    RequestPiece(input, whole, wholeReader.empty(), group);
+  } else {
+    whole.ask(input, this->Internal->InPieces || isShort);
   }
-  const auto limit = static_cast<double>(this->MemoryLimitInBytes());
-  const bool isLarge = whole.bytes > limit / 2 && !whole.isInMemory;
-  this->Internal->WholeReader = isLarge ? FindWholeFileReader(this) : std::string();
-  this->Internal->InPieces = isLarge && this->Internal->WholeReader.empty();
-  whole.ask(input, this->Internal->InPieces || isShort);
+}
+
+/// Whether to hold what this process would train on is too much for its share of the memory limit;
+/// what it holds already, it keeps.
+bool vtkINRWriter::IsTooLarge(vtkInformation* input, const ControllerGroup& group)
+{
+  const WholeImage& whole = this->Internal->Whole;
+  const auto limit = static_cast<double>(group.memoryShare(this->MemoryLimitInBytes()));
+  if (whole.bytes / group.size() <= limit / 2) {
+    return false;
+  }
+  return group.size() == 1 ? !whole.isInMemory
+                           : !IsPieceInMemory(input, whole, group) && !ComesFromApplication(this);
 }
 
 void vtkINRWriter::WriteData()
@@ -191,14 +208,7 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
   }
   const ControllerGroup group(this->Internal->Controller);
   group.together([&] { errors ? errors->check() : void(); });
-  ParallelInput input;
-  if (group.size() > 1) {
-    input = FindPiece(
-        this->GetInput(), this->Internal->Whole,
-        [this](vtkDataObject* data) { return this->FindInput(data); }, group);
-  } else {
-    input.input = this->FindInput(this->GetInput());
-  }
+  ParallelInput input = this->FindInput(group);
   if (!steps.isEmpty()) {
     input.input.info.time = steps.time();
   }
@@ -209,6 +219,27 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
     }
   });
   this->Train(input, signals, group);
+}
+
+/// What is to be trained on; of what is read in pieces, a voxel of it.
+ParallelInput vtkINRWriter::FindInput(const ControllerGroup& group)
+{
+  bool& inPieces = this->Internal->InPieces;
+  const WholeImage& whole = this->Internal->Whole;
+  auto* image = vtkImageData::SafeDownCast(this->GetInput());
+  const bool isWhole = image && std::equal(whole.extent, whole.extent + 6, image->GetExtent());
+  if (inPieces && !group.any(!isWhole)) { // although a voxel was asked for
+    inPieces = false;
+    this->Internal->WholeReader = "The source";
+  }
+  if (group.size() > 1 && !inPieces) {
+    return FindPiece(
+        this->GetInput(), whole, [this](vtkDataObject* data) { return this->FindInput(data); },
+        group);
+  }
+  ParallelInput found;
+  group.together([&] { found.input = this->FindInput(this->GetInput()); });
+  return found;
 }
 
 TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
@@ -279,19 +310,19 @@ void vtkINRWriter::WarnOfWhole(const std::string& source)
 
 inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
                                               const inr::TrainingOptions& options,
+                                              const ControllerGroup& group,
                                               const inr::TrainingObserver& observe)
 {
   const WholeImage& whole = this->Internal->Whole;
-  auto* image = vtkImageData::SafeDownCast(this->GetInput());
-  if (std::equal(whole.extent, whole.extent + 6, image->GetExtent())) {
-    this->WarnOfWhole("The source");
-    return inr::TrainModel(first.data, first.info, options, observe);
+  if (group.rank() == 0) {
+    vtkLog(INFO, << this->Internal->Target << ": the data take " << whole.bytes / MiB
+                 << " MiB and are read in pieces, within " << options.memoryLimit / MiB << " MiB"
+                 << (group.size() > 1 ? " in each process" : ""));
   }
-  vtkLog(INFO, << this->Internal->Target << ": the data take " << whole.bytes / MiB
-               << " MiB and are read in pieces, within " << options.memoryLimit / MiB << " MiB");
-  PipelineReader reader(*this, whole, *image,
-                        [this](vtkImageData* piece) { return this->FindInput(piece); });
-  return inr::TrainModel(reader, first.info, options, observe);
+  auto* image = vtkImageData::SafeDownCast(this->GetInput());
+  const auto find = [this](vtkImageData* piece) { return this->FindInput(piece); };
+  PipelineReader reader(*this, whole, *image, find, group.size() > 1);
+  return inr::TrainModel(reader, first.info, options, group, observe);
 }
 
 void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
@@ -300,14 +331,15 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   const TrainingInput& input = given.input;
   inr::TrainingOptions options = this->MakeOptions();
   options.threads = group.threads();
+  options.memoryLimit = group.memoryShare(options.memoryLimit);
   options.start = this->FindStart(input.info);
   this->Internal->Previous = nullptr;
   TrainingCheckpoint checkpoint(this, this->Internal->Target, this->CheckpointInterval,
                                 this->Resume);
   options.checkpoint = checkpoint.options();
 
-  if (!this->Internal->WholeReader.empty()) {
-    this->WarnOfWhole(this->Internal->WholeReader + ", the source");
+  if (!this->Internal->WholeReader.empty() && group.rank() == 0) {
+    this->WarnOfWhole(this->Internal->WholeReader);
   }
   TrainingReport report;
   const auto observe = [&](const inr::TrainingProgress& progress) {
@@ -318,11 +350,12 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   };
   inr::ModelPointer model;
   try {
-    if (group.size() > 1) {
+    if (this->Internal->InPieces) {
+      model = this->TrainInPieces(input, options, group, observe);
+    } else if (group.size() > 1) {
       model = inr::TrainModel(given.piece(), input.info, options, group, observe);
     } else {
-      model = this->Internal->InPieces ? this->TrainInPieces(input, options, observe)
-                                       : inr::TrainModel(input.data, input.info, options, observe);
+      model = inr::TrainModel(input.data, input.info, options, observe);
     }
     vtkIdType bytes = 0;
     group.together(

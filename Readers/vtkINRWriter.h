@@ -105,7 +105,7 @@ public:
   ///@{
   /// MiB that training may take. An input that is not in memory yet and would fill more than half
   /// of it is never read as a whole but in pieces, two or three times; the default model is made to
-  /// fit. 0 (default) = half of the machine's memory.
+  /// fit. 0 (default) = half of the machine's memory. Several processes share it on each machine.
   ///
   ///     writer = servermanager.writers.INRWriter(Input=source, FileName="model.inr",
   ///                                              MemoryLimit=1024)
@@ -194,9 +194,9 @@ public:
   ///@{
   /// The processes that train together, each on the piece of the image that it holds, where there
   /// are several: n processes give the model of one whose mini-batches are n times as large. All of
-  /// them call Write and hold their pieces in memory, whatever MemoryLimit says; the first one
-  /// writes the file. Default: the global controller; null = this
-  /// process alone.
+  /// them call Write; the first one writes the file. Where pieces would fill more than half of
+  /// MemoryLimit, each process reads a share of the volume piece by piece, as often as the others
+  /// and at the same time. Default: the global controller; null = this process alone.
   void SetController(vtkMultiProcessController* controller);
   vtkMultiProcessController* GetController();
   ///@}
@@ -230,12 +230,15 @@ private:
   void PlanSteps(vtkInformation* input);
   void PlanReading(vtkInformation* input);
   void WriteInput(const StopSignals& signals);
+  ParallelInput FindInput(const ControllerGroup& group);
   TrainingInput FindInput(vtkDataObject* data);
+  bool IsTooLarge(vtkInformation* input, const ControllerGroup& group);
   std::int64_t MemoryLimitInBytes() const;
   inr::TrainingOptions MakeOptions() const;
   void WarnOfWhole(const std::string& source);
   std::shared_ptr<const inr::Model>
   TrainInPieces(const TrainingInput& first, const inr::TrainingOptions& options,
+                const ControllerGroup& group,
                 const std::function<bool(const inr::TrainingProgress&)>& observe);
   std::shared_ptr<const inr::Model> FindStart(const inr::VolumeInfo& volume) const;
   void Train(const ParallelInput& input, const StopSignals& signals, const ControllerGroup& group);

@@ -34,7 +34,8 @@ public:
   virtual std::string name() const { return "of the volume in memory"; }
 
   /// Called before the items of a step are drawn, by the thread that trains. May wait for data as
-  /// long as `check` lets it.
+  /// long as `check` lets it. In a group all processes call it together: it may call the group, and
+  /// what it throws in one, it has to throw in all.
   virtual void prepare(const TrainingStep&, const StopCheck&) {}
 
   /// Samples of the prepared mini-batch: that are drawn here, and with those of other processes.

@@ -81,11 +81,15 @@ void CellRanges::add(const VolumePiece& piece, const VoxelBox& box, const Arena&
 
 void CellRanges::gather(const TrainingGroup& group)
 {
-  const std::string mine(reinterpret_cast<const char*>(this->Ranges.data()),
-                         this->Ranges.size() * sizeof(Range));
-  for (const std::string& other : group.gather(mine)) {
-    for (std::size_t k = 0; k < this->Ranges.size(); ++k) {
-      this->Ranges[k].extend(FromBytes<Range>(other.data() + k * sizeof(Range)));
+  constexpr std::size_t atOnce = 1 << 16; // a MiB from each process
+  for (std::size_t first = 0; first < this->Ranges.size(); first += atOnce) {
+    const std::size_t count = std::min(atOnce, this->Ranges.size() - first);
+    const std::string mine(reinterpret_cast<const char*>(&this->Ranges[first]),
+                           count * sizeof(Range));
+    for (const std::string& other : group.gather(mine)) {
+      for (std::size_t k = 0; k < count; ++k) {
+        this->Ranges[first + k].extend(FromBytes<Range>(other.data() + k * sizeof(Range)));
+      }
     }
   }
 }

@@ -3,7 +3,7 @@
 
 #include "Core/Inference/HugePages.h"
 #include "Core/Inference/KernelTable.h"
-#include "Core/Random.h"
+#include "Core/Training/RandomStream.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,14 +44,6 @@ std::int64_t SamplesPerCheck(std::uint64_t weights)
 /// From this many updates on an entry's bias correction is 1 to float precision.
 constexpr std::uint16_t LastCorrectedStep = 16384;
 
-/// Streams of random numbers from one seed.
-enum RandomStream : std::uint64_t { InitialStream = 1, BatchStream = 2 };
-
-std::uint64_t StreamSeed(std::uint64_t seed, RandomStream stream)
-{
-  return RandomBits(seed, stream);
-}
-
 /// Adam's bias correction of the learning rate after t = 0 .. LastCorrectedStep updates.
 std::vector<float> BiasCorrections()
 {
@@ -90,7 +82,7 @@ std::vector<float> InitialParameters(const Description& description, const Layou
                                      std::uint64_t seed)
 {
   constexpr float gridBound = 1e-4f;
-  const std::uint64_t stream = StreamSeed(seed, InitialStream);
+  const std::uint64_t stream = StreamSeed(seed, RandomStream::InitialParameters);
   std::vector<float> parameters(layout.parameterCount);
   const auto fill = [&](std::uint64_t begin, std::uint64_t end, float bound) {
     for (std::uint64_t k = begin; k < end; ++k) {
@@ -146,6 +138,8 @@ StateArrays GradientDescent::state()
 
 std::optional<double> GradientDescent::step(BatchSource& batches, const StopCheck& check)
 {
+  batches.prepare({this->Steps, this->PlannedSteps, StreamSeed(this->Seed, RandomStream::Batches)},
+                  check);
   const std::optional<double> loss =
       this->Exchange ? this->computeTogether(batches, check) : this->computeShare(batches, check);
   if (!loss) {
@@ -167,12 +161,10 @@ std::optional<double> GradientDescent::computeTogether(BatchSource& batches, con
 
 std::optional<double> GradientDescent::computeShare(BatchSource& batches, const StopCheck& check)
 {
-  const std::uint64_t stream = StreamSeed(this->Seed, BatchStream);
-  batches.prepare({this->Steps, this->PlannedSteps, stream}, check);
   if (!check.goesOn()) {
     return std::nullopt;
   }
-  this->drawBatch(batches, stream);
+  this->drawBatch(batches, StreamSeed(this->Seed, RandomStream::Batches));
   return this->backpropagate(this->Positions, this->Targets, batches.total(), check);
 }
 

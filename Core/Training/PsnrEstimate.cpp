@@ -3,8 +3,8 @@
 
 #include "Core/Model/Model.h"
 #include "Core/Model/ModelBlobs.h"
-#include "Core/Random.h"
 #include "Core/Training/HalvedCube.h"
+#include "Core/Training/RandomStream.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,6 @@ namespace inr {
 
 namespace {
 constexpr std::int64_t BlockSize = 64;
-constexpr std::uint64_t EstimateStream = 3; // apart from those of GradientDescent
 
 std::vector<float> TargetsAt(const SampleSource& source, const std::vector<glm::vec3>& positions)
 {
@@ -27,7 +26,7 @@ std::vector<float> TargetsAt(const SampleSource& source, const std::vector<glm::
 std::vector<glm::vec3> PsnrEstimate::positions(const glm::i64vec3& dims, std::uint64_t seed,
                                                std::int64_t voxels)
 {
-  const std::uint64_t stream = RandomBits(seed, EstimateStream);
+  const std::uint64_t stream = StreamSeed(seed, RandomStream::Estimate);
   std::vector<glm::vec3> positions(static_cast<std::size_t>(voxels));
   for (std::size_t k = 0; k < positions.size(); ++k) {
     positions[k] = VoxelCentre(RandomPosition(stream, k, dims), dims);

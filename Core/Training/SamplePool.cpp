@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/SamplePool.h"
 
-#include "Core/Random.h"
 #include "Core/Training/GradientDescent.h"
+#include "Core/Training/RandomStream.h"
 
 #include <algorithm>
 #include <chrono>
@@ -14,8 +14,6 @@
 namespace inr {
 
 namespace {
-
-enum RandomStream : std::uint64_t { PositionStream = 4, OrderStream = 5 };
 
 /// Blocks that are read before they are due, so that the training does not wait for the disk.
 constexpr std::int64_t ReadAhead = 4;
@@ -45,18 +43,20 @@ std::vector<std::int64_t> Shuffled(std::int64_t count, std::uint64_t stream)
 
 } // namespace
 
-SamplePool::SamplePool(const BlockGrid& blocks, std::int64_t mostSamples, std::uint64_t seed)
-    : Blocks(blocks), Seed(seed),
+SamplePool::SamplePool(const BlockGrid& blocks, std::int64_t mostSamples, std::uint64_t seed,
+                       const BlockShare& share)
+    : Blocks(blocks), Seed(seed), Share(share),
       Boxes(HalveLongest(blocks.dims(), glm::dvec3(blocks.dims()) * glm::dvec3(blocks.extent()),
                          SamplesPerBlock(blocks.count(), mostSamples))),
-      Values(static_cast<std::size_t>(blocks.count() * this->Boxes.count()),
+      Values(static_cast<std::size_t>(share.blocks() * this->Boxes.count()),
              std::numeric_limits<double>::quiet_NaN()),
-      Rounds(static_cast<std::size_t>(blocks.count()))
+      Rounds(static_cast<std::size_t>(share.blocks()))
 {}
 
 glm::vec3 SamplePool::position(std::int64_t block, std::uint32_t round, std::int64_t sample) const
 {
-  const std::uint64_t stream = RandomBits(RandomBits(this->Seed, PositionStream), round);
+  const std::uint64_t stream =
+      RandomBits(StreamSeed(this->Seed, RandomStream::PoolPositions), round);
   const auto number = static_cast<std::uint64_t>(block * this->Boxes.count() + sample);
   const glm::vec3& extent = this->Blocks.extent();
   const glm::vec3 corner =
@@ -91,14 +91,18 @@ std::string SamplePool::name() const
 
 void SamplePool::put(std::int64_t block, const std::vector<double>& values)
 {
-  std::copy(values.begin(), values.end(), this->Values.begin() + block * this->Boxes.count());
+  std::copy(values.begin(), values.end(), &this->Values[this->place(block)]);
 }
 
 void SamplePool::begin(double low, double high, double rereads)
 {
   this->Low = low;
   this->High = high;
-  this->Order = Shuffled(this->Blocks.count(), RandomBits(this->Seed, OrderStream));
+  this->Order = Shuffled(this->Share.blocks(), StreamSeed(this->Seed, RandomStream::PoolOrder));
+  for (std::int64_t& block : this->Order) {
+    block += this->Share.firstBlock;
+  }
+  this->Order.resize(static_cast<std::size_t>(this->Share.mostBlocks), NoBlock);
   this->Order.resize(static_cast<std::size_t>(rereads * static_cast<double>(this->Order.size())));
 }
 
@@ -110,6 +114,15 @@ std::optional<std::int64_t> SamplePool::wanted()
            this->Asked < this->Due + ReadAhead;
   };
   if (!this->Changed.wait_for(lock, Moment, isWanted)) {
+    return std::nullopt;
+  }
+  return this->Order[static_cast<std::size_t>(this->Asked++)];
+}
+
+std::optional<std::int64_t> SamplePool::owed(const TrainingStep& step)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  if (this->Asked >= this->due(step)) {
     return std::nullopt;
   }
   return this->Order[static_cast<std::size_t>(this->Asked++)];
@@ -158,8 +171,10 @@ void SamplePool::prepare(const TrainingStep& step, const StopCheck& check)
 
 void SamplePool::use(const Offer& offer)
 {
-  this->put(offer.block, offer.values);
-  this->Rounds[static_cast<std::size_t>(offer.block)] = 1;
+  if (offer.block != NoBlock) {
+    this->put(offer.block, offer.values);
+    this->Rounds[static_cast<std::size_t>(offer.block - this->Share.firstBlock)] = 1;
+  }
   ++this->Used;
 }
 
@@ -168,15 +183,20 @@ void SamplePool::draw(std::uint64_t stream, std::uint64_t step, std::int64_t beg
 {
   const std::int64_t perBlock = this->Boxes.count();
   const std::int64_t perItem = this->samples() / BatchSize; // a power of two
+  const auto first = step * static_cast<std::uint64_t>(this->total());
   for (std::int64_t k = begin; k < end; ++k) {
-    const std::uint64_t drawn = step * BatchSize + static_cast<std::uint64_t>(k);
+    const std::int64_t batch = k / this->Share.items();
+    const std::int64_t item = this->Share.firstItem + k % this->Share.items();
+    const std::uint64_t drawn = first + static_cast<std::uint64_t>(batch * BatchSize + item);
     const std::uint64_t within = RandomBits(stream, drawn) % static_cast<std::uint64_t>(perItem);
-    const std::int64_t number = k * perItem + static_cast<std::int64_t>(within);
+    const std::int64_t number = item * perItem + static_cast<std::int64_t>(within);
     const std::int64_t block = number / perBlock;
-    const std::uint32_t round = this->Rounds[static_cast<std::size_t>(block)];
+    const std::int64_t own = block - this->Share.firstBlock;
+    const std::uint32_t round = this->Rounds[static_cast<std::size_t>(own)];
     positions[k - begin] = this->position(block, round, number % perBlock);
-    targets[k - begin] =
-        NormalisedTarget(this->Values[static_cast<std::size_t>(number)], this->Low, this->High);
+    const double value =
+        this->Values[this->place(block) + static_cast<std::size_t>(number % perBlock)];
+    targets[k - begin] = NormalisedTarget(value, this->Low, this->High);
   }
 }
 

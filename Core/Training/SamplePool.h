@@ -4,6 +4,7 @@
 #include "Core/Parallel.h"
 #include "Core/Training/BatchSource.h"
 #include "Core/Training/BlockGrid.h"
+#include "Core/Training/BlockShare.h"
 
 #include <condition_variable>
 #include <cstdint>
@@ -18,6 +19,9 @@ namespace inr {
 /// number in every block, so that no region is ever seen more than another. While the training
 /// goes on, blocks are read again, one after the other, and their samples drawn anew.
 ///
+/// One process of several has those of its share of the blocks. With n processes a mini-batch is n
+/// of those that one process would draw, one after the other.
+///
 /// Two threads share it: one reads and calls sample(), put(), wanted() and offer(); the other
 /// trains. What a mini-batch holds depends on seed, step, plan and `rereads` alone, not on how fast
 /// either is.
@@ -26,10 +30,12 @@ class SamplePool : public BatchSource
 public:
   /// At least `blocks.count()` and BatchSize samples, of 8 bytes each, and as near to `mostSamples`
   /// as a power of two comes. Of all blocks the share `rereads` is read again, while the learning
-  /// rate falls.
-  SamplePool(const BlockGrid& blocks, std::int64_t mostSamples, std::uint64_t seed);
+  /// rate falls. All numbers are those of all processes together; blocks are named by their numbers
+  /// in `blocks`.
+  SamplePool(const BlockGrid& blocks, std::int64_t mostSamples, std::uint64_t seed,
+             const BlockShare& share);
 
-  std::int64_t samples() const { return static_cast<std::int64_t>(this->Values.size()); }
+  std::int64_t samples() const { return this->Blocks.count() * this->Boxes.count(); }
 
   /// Values of a block's samples when it is read for the first time (`round` 0) or again (1), of a
   /// piece that holds blocks.voxels(block).
@@ -47,8 +53,15 @@ public:
   std::optional<std::int64_t> wanted();
   void offer(std::int64_t block, std::vector<double> values);
 
+  /// For one thread that does both: before prepare() of a step, each block that it would wait for;
+  /// as many in all processes. NoBlock, which is to be offered, too, in those that have fewer.
+  std::optional<std::int64_t> owed(const TrainingStep& step);
+  static constexpr std::int64_t NoBlock = -1;
+
   std::string name() const override;
   void prepare(const TrainingStep& step, const StopCheck& check) override;
+  std::int64_t count() const override { return this->Share.processes * this->Share.items(); }
+  std::int64_t total() const override { return this->Share.processes * BatchSize; }
   void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
             glm::vec3* positions, float* targets) const override;
 
@@ -60,14 +73,20 @@ private:
   };
 
   glm::vec3 position(std::int64_t block, std::uint32_t round, std::int64_t sample) const;
+  /// Where a block's samples begin.
+  std::size_t place(std::int64_t block) const
+  {
+    return static_cast<std::size_t>((block - this->Share.firstBlock) * this->Boxes.count());
+  }
   std::int64_t due(const TrainingStep& step) const;
   void use(const Offer& offer);
 
   const BlockGrid& Blocks;
   std::uint64_t Seed;
+  BlockShare Share;
   HalvedCube Boxes; ///< of a block, in units of the block
   std::vector<double> Values;
-  std::vector<std::uint32_t> Rounds; ///< of the values of each block
+  std::vector<std::uint32_t> Rounds; ///< of the values of each block of the share
   double Low = 0;
   double High = 1;
 

@@ -18,6 +18,9 @@ constexpr std::int64_t MiB = std::int64_t{1} << 20;
 /// Threads, code, and the slices that quality is measured on.
 constexpr std::int64_t Overhead = 96 * MiB;
 
+/// Gradients that processes tell each other, for each of them.
+constexpr std::int64_t ExchangeBytes = 10 * MiB;
+
 /// Pieces smaller than this are slow to read, and a small pool repeats itself.
 constexpr std::int64_t SmallestShare = 4 * MiB;
 constexpr std::int64_t LargestBlock = 64 * MiB;
@@ -36,9 +39,10 @@ std::int64_t CellBytes(const VolumeInfo& info, int macroCellSize)
 
 /// What is left for pieces and samples.
 std::int64_t FreeBytes(const VolumeInfo& info, const TrainingOptions& options,
-                       const Description& description)
+                       const Description& description, int processes)
 {
-  return options.memoryLimit - Overhead - CellBytes(info, options.macroCellSize) -
+  const std::int64_t exchanged = processes > 1 ? (processes + 1) * ExchangeBytes : 0;
+  return options.memoryLimit - Overhead - exchanged - CellBytes(info, options.macroCellSize) -
          TrainingBytes(description);
 }
 
@@ -77,17 +81,19 @@ std::int64_t TrainingBytes(const Description& description)
 }
 
 StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
-                        std::int64_t bytesPerVoxel)
+                        std::int64_t bytesPerVoxel, int processes)
 {
   StreamBudget budget{FittingDescription(info, options), 0, 0};
-  const std::int64_t left = FreeBytes(info, options, budget.description);
+  const std::int64_t left = FreeBytes(info, options, budget.description, processes);
   if (left < LeastFreeBytes()) {
     const auto inMiB = [](std::int64_t bytes) { return std::to_string(bytes / MiB + 1) + " MiB"; };
     throw Error(ErrorCode::InvalidArgument,
                 "training a model of " + std::to_string(Layout(budget.description).parameterCount) +
                     " parameters from a volume read in pieces takes " +
                     inMiB(options.memoryLimit - left + LeastFreeBytes()) +
-                    " and the MemoryLimit is " + inMiB(options.memoryLimit - 1) +
+                    (processes > 1 ? " in each process and its share of the MemoryLimit is "
+                                   : " and the MemoryLimit is ") +
+                    inMiB(options.memoryLimit - 1) +
                     "; raise it or ask for a smaller model (TargetRatio)");
   }
   const std::int64_t block = std::clamp(left / (2 * CopiesOfBlock), SmallestShare, LargestBlock);

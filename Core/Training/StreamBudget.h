@@ -20,9 +20,10 @@ struct StreamBudget
 std::int64_t TrainingBytes(const Description& description);
 
 /// The model is the one that the options ask for, or else the default one, made as much smaller as
-/// the limit demands. Throws Error(InvalidArgument) that names the figures where
-/// `options.memoryLimit` cannot hold the training of the model that was asked for.
+/// the limit demands. `options.memoryLimit` is for each of so many processes. Throws
+/// Error(InvalidArgument) that names the figures where `options.memoryLimit` cannot hold the
+/// training of the model that was asked for.
 StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
-                        std::int64_t bytesPerVoxel);
+                        std::int64_t bytesPerVoxel, int processes = 1);
 
 } // namespace inr

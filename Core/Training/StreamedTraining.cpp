@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
+#include "Core/Training/ParallelTraining.h"
 #include "Core/Training/ProgressRelay.h"
 #include "Core/Training/StreamBudget.h"
 #include "Core/Training/StreamedVolume.h"
@@ -69,16 +70,75 @@ void TrainWhileReading(TrainingRun& run, StreamedVolume& volume, SamplePool& poo
   }
 }
 
+/// A pool that is read on the thread that trains: the one from which a process may call the others,
+/// and the host application be called.
+class PoolReadBetweenSteps : public BatchSource
+{
+public:
+  PoolReadBetweenSteps(StreamedVolume& volume, SamplePool& pool) : Volume(volume), Pool(pool) {}
+
+  std::string name() const override { return this->Pool.name(); }
+  void prepare(const TrainingStep& step, const StopCheck& check) override
+  {
+    this->Volume.readBefore(step);
+    this->Pool.prepare(step, check);
+  }
+  std::int64_t count() const override { return this->Pool.count(); }
+  std::int64_t total() const override { return this->Pool.total(); }
+  void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
+            glm::vec3* positions, float* targets) const override
+  {
+    this->Pool.draw(stream, step, begin, end, positions, targets);
+  }
+
+private:
+  StreamedVolume& Volume;
+  SamplePool& Pool;
+};
+
+void Train(TrainingRun& run, StreamedVolume& volume, SamplePool& pool, const TrainingGroup& group,
+           const Arena& arena, ProgressRelay& relay)
+{
+  if (group.size() == 1) {
+    TrainWhileReading(run, volume, pool, arena, relay);
+    return;
+  }
+  PoolReadBetweenSteps batches(volume, pool);
+  run.train(batches, volume.estimate(PsnrEstimate::UsualVoxels), arena);
+}
+
+/// The same in all processes, whose readers may keep different arrays beside the one.
+StreamBudget CommonBudget(const VolumeInfo& whole, const TrainingOptions& options,
+                          const VolumeReader& reader, const TrainingGroup& group)
+{
+  for (const ScalarType type : group.valuesOfAll(whole.type)) {
+    if (type != whole.type) {
+      throw Error(ErrorCode::InvalidArgument, "the processes have values of different types");
+    }
+  }
+  const std::vector<std::int64_t> limits = group.valuesOfAll(options.memoryLimit);
+  const std::vector<std::int64_t> bytes = group.valuesOfAll(reader.bytesPerVoxel());
+  TrainingOptions smallest = options;
+  smallest.memoryLimit = *std::min_element(limits.begin(), limits.end());
+  return PlanStream(whole, smallest, *std::max_element(bytes.begin(), bytes.end()), group.size());
+}
+
 } // namespace
 
 ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const TrainingOptions& asked,
                         const TrainingObserver& observer)
 {
+  return TrainModel(reader, info, asked, TrainingGroup(), observer);
+}
+
+ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const TrainingOptions& asked,
+                        const TrainingGroup& group, const TrainingObserver& observer)
+{
   CheckArguments(reader.dims(), asked);
   VolumeInfo whole = info;
   whole.dims = reader.dims();
   whole.type = reader.type();
-  const StreamBudget budget = PlanStream(whole, asked, reader.bytesPerVoxel());
+  const StreamBudget budget = CommonBudget(whole, asked, reader, group);
   const TrainingOptions options = WithModel(asked, budget);
   const Arena arena(options.threads);
   const auto say = [&](TrainingPhase phase, double fraction, std::uint64_t steps) {
@@ -89,16 +149,17 @@ ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const Trai
     }
   };
 
-  StreamedVolume volume(reader, budget, MacroCellSizeOf(whole, options), options, arena);
+  StreamedVolume volume(reader, budget, MacroCellSizeOf(whole, options), options, group, arena);
   volume.survey([&](double done) { say(TrainingPhase::Reading, ReadingShare * done, 0); });
   ProgressRelay relay(observer, ReadingShare);
   const TrainingObserver relayed = [&](const TrainingProgress& now) { return relay(now); };
-  TrainingRun run(whole, volume.statistics(), options, relayed);
+  TrainingRun run(whole, volume.statistics(), options, relayed, &group);
   if (run.isConstant()) {
     return run.constantModel();
   }
-  TrainWhileReading(run, volume, volume.begin(ShareToRead(volume, options)), arena, relay);
-  const std::shared_ptr<Model> trained = run.store(volume.estimate(PsnrEstimate::StoringVoxels));
+  Train(run, volume, volume.begin(ShareToRead(volume, options)), group, arena, relay);
+  std::shared_ptr<Model> trained;
+  group.together([&] { trained = run.store(volume.estimate(PsnrEstimate::StoringVoxels)); });
 
   const double begin = ReadingShare + (1.0 - ReadingShare) * TrainingShare;
   const DecodedReport report =

@@ -2,7 +2,7 @@
 #include "Core/Training/StreamedVolume.h"
 
 #include "Core/Error.h"
-#include "Core/Random.h"
+#include "Core/Training/RandomStream.h"
 #include "Core/Training/TrainingClock.h"
 #include "Core/Training/TrainingRun.h"
 
@@ -21,14 +21,25 @@ constexpr std::int64_t VoxelsOfBar = std::int64_t{1} << 17;
 constexpr std::int64_t VoxelsOfMeasuredBlock = std::int64_t{1} << 20;
 
 constexpr double MostReadings = 3.0;
-constexpr std::uint64_t BarStream = 6; // apart from those of SamplePool
 
 std::int64_t Voxels(const glm::i64vec3& dims) { return dims.x * dims.y * dims.z; }
+
+/// Blocks of at most so many voxels, and enough of them for each process to have about as many.
+BlockGrid BlocksFor(const glm::i64vec3& dims, std::int64_t mostVoxels, int processes)
+{
+  constexpr std::int64_t enough = 8;
+  BlockGrid blocks(dims, mostVoxels);
+  while (processes > 1 && blocks.count() < enough * processes && mostVoxels > 1) {
+    mostVoxels /= 2;
+    blocks = BlockGrid(dims, mostVoxels);
+  }
+  return blocks;
+}
 
 /// One bar in each of `count` equal parts of them all.
 std::vector<std::int64_t> ChooseBars(std::int64_t bars, std::int64_t count, std::uint64_t seed)
 {
-  const std::uint64_t stream = RandomBits(seed, BarStream);
+  const std::uint64_t stream = StreamSeed(seed, RandomStream::Bars);
   std::vector<std::int64_t> chosen;
   for (std::int64_t k = 0; k < count; ++k) {
     const double within = RandomUnit(stream, static_cast<std::uint64_t>(k));
@@ -56,11 +67,16 @@ std::string ToText(const VoxelBox& box)
 } // namespace
 
 StreamedVolume::StreamedVolume(VolumeReader& reader, const StreamBudget& budget, int macroCellSize,
-                               const TrainingOptions& options, const Arena& arena)
-    : Reader(reader), Threads(arena), MacroCellSize(macroCellSize), Seed(options.seed),
-      MeasuredVoxels(options.measuredVoxels), BlockVoxels(budget.blockVoxels),
-      Blocks(reader.dims(), budget.blockVoxels),
-      Pool(this->Blocks, std::min(budget.poolSamples, 2 * Voxels(reader.dims())), options.seed),
+                               const TrainingOptions& options, const TrainingGroup& group,
+                               const Arena& arena)
+    : Reader(reader), Group(group), Threads(arena), MacroCellSize(macroCellSize),
+      Seed(options.seed), MeasuredVoxels(options.measuredVoxels), BlockVoxels(budget.blockVoxels),
+      Blocks(BlocksFor(reader.dims(), budget.blockVoxels, group.size())),
+      Share(this->Blocks.count(), group.rank(), group.size()),
+      Pool(this->Blocks,
+           std::min(budget.poolSamples * this->Blocks.count() / this->Share.mostBlocks,
+                    2 * Voxels(reader.dims())),
+           options.seed, this->Share),
       Ranges(reader.dims(), macroCellSize),
       EstimatePositions(
           PsnrEstimate::positions(reader.dims(), options.seed, PsnrEstimate::StoringVoxels)),
@@ -90,21 +106,42 @@ VolumePiece StreamedVolume::read(const VoxelBox& box)
   return piece;
 }
 
+/// Takes part in what others read.
+void StreamedVolume::readNothing() { this->read({glm::i64vec3(0), glm::i64vec3(1)}); }
+
 void StreamedVolume::survey(const Progress& progress)
 {
   const TrainingClock clock;
-  for (std::int64_t block = 0; block < this->Blocks.count(); ++block) {
-    progress(static_cast<double>(block) / static_cast<double>(this->Blocks.count()));
-    const VolumePiece piece = this->read(this->Blocks.voxels(block));
-    const VoxelBox own = this->Blocks.ownVoxels(block);
-    this->Statistics.add(MeasureBox(piece, own, this->Threads));
-    if (!this->measuresAll()) {
-      this->Ranges.add(piece, own, this->Threads);
-    }
-    this->Pool.put(block, this->Pool.sample(block, 0, piece, this->Threads));
-    this->sampleEstimate(block, piece);
+  for (std::int64_t k = 0; k < this->Share.mostBlocks; ++k) {
+    const std::int64_t block = this->Share.firstBlock + k;
+    this->Group.together(
+        [&] { progress(static_cast<double>(k) / static_cast<double>(this->Share.mostBlocks)); });
+    this->Group.together(
+        [&] { block < this->Share.endBlock ? this->survey(block) : this->readNothing(); });
   }
-  this->SurveySeconds = clock.seconds();
+  const std::vector<double> seconds = this->Group.valuesOfAll(clock.seconds());
+  this->SurveySeconds = *std::max_element(seconds.begin(), seconds.end());
+  const VolumeStatistics own = this->Statistics;
+  this->Statistics = VolumeStatistics();
+  for (const VolumeStatistics& each : this->Group.valuesOfAll(own)) {
+    this->Statistics.add(each);
+  }
+  if (!this->measuresAll()) {
+    this->Ranges.gather(this->Group);
+  }
+  this->shareEstimates();
+}
+
+void StreamedVolume::survey(std::int64_t block)
+{
+  const VolumePiece piece = this->read(this->Blocks.voxels(block));
+  const VoxelBox own = this->Blocks.ownVoxels(block);
+  this->Statistics.add(MeasureBox(piece, own, this->Threads));
+  if (!this->measuresAll()) {
+    this->Ranges.add(piece, own, this->Threads);
+  }
+  this->Pool.put(block, this->Pool.sample(block, 0, piece, this->Threads));
+  this->sampleEstimate(block, piece);
 }
 
 void StreamedVolume::sampleEstimate(std::int64_t block, const VolumePiece& piece)
@@ -112,6 +149,33 @@ void StreamedVolume::sampleEstimate(std::int64_t block, const VolumePiece& piece
   for (const std::size_t k : this->EstimatesOfBlocks[static_cast<std::size_t>(block)]) {
     SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, 0,
                 &this->EstimateValues[k]);
+  }
+}
+
+/// Each process tells the values in its blocks, in an order that all know.
+void StreamedVolume::shareEstimates()
+{
+  const auto numbers = [this](int rank) {
+    const BlockShare share(this->Blocks.count(), rank, this->Group.size());
+    std::vector<std::size_t> found;
+    for (std::int64_t block = share.firstBlock; block < share.endBlock; ++block) {
+      const std::vector<std::size_t>& here =
+          this->EstimatesOfBlocks[static_cast<std::size_t>(block)];
+      found.insert(found.end(), here.begin(), here.end());
+    }
+    return found;
+  };
+  std::string mine;
+  for (const std::size_t k : numbers(this->Group.rank())) {
+    mine.append(reinterpret_cast<const char*>(&this->EstimateValues[k]), sizeof(double));
+  }
+  const std::vector<std::string> all = this->Group.gather(mine);
+  for (int rank = 0; rank < this->Group.size(); ++rank) {
+    const char* next = all[static_cast<std::size_t>(rank)].data();
+    for (const std::size_t k : numbers(rank)) {
+      this->EstimateValues[k] = FromBytes<double>(next);
+      next += sizeof(double);
+    }
   }
 }
 
@@ -156,12 +220,54 @@ void StreamedVolume::requireKnownRange(const VolumePiece& piece, const VoxelBox&
 void StreamedVolume::readAgain()
 {
   const std::optional<std::int64_t> block = this->Pool.wanted();
-  if (!block) {
-    return;
+  if (block) {
+    this->readAgain(*block);
   }
-  const VolumePiece piece = this->read(this->Blocks.voxels(*block));
-  this->requireKnownRange(piece, this->Blocks.ownVoxels(*block));
-  this->Pool.offer(*block, this->Pool.sample(*block, 1, piece, this->Threads));
+}
+
+void StreamedVolume::readAgain(std::int64_t block)
+{
+  const VolumePiece piece = this->read(this->Blocks.voxels(block));
+  this->requireKnownRange(piece, this->Blocks.ownVoxels(block));
+  this->Pool.offer(block, this->Pool.sample(block, 1, piece, this->Threads));
+}
+
+void StreamedVolume::readBefore(const TrainingStep& step)
+{
+  while (const std::optional<std::int64_t> block = this->Pool.owed(step)) {
+    this->Group.together([&] {
+      if (*block != SamplePool::NoBlock) {
+        this->readAgain(*block);
+      } else {
+        this->readNothing();
+        this->Pool.offer(*block, {});
+      }
+    });
+  }
+}
+
+/// Every n-th of the chosen boxes is of this process.
+void StreamedVolume::measureShare(const BlockGrid& boxes, const std::vector<std::int64_t>& chosen,
+                                  QualityMeter& meter, CellRanges* decoded,
+                                  const Progress& progress)
+{
+  const auto size = static_cast<std::size_t>(this->Group.size());
+  for (std::size_t first = 0; first < chosen.size(); first += size) {
+    const std::size_t k = first + static_cast<std::size_t>(this->Group.rank());
+    const VoxelBox own = k < chosen.size() ? boxes.ownVoxels(chosen[k]) : VoxelBox();
+    this->Group.together([&] {
+      if (own.voxels() == 0) {
+        size > 1 ? this->readNothing() : void();
+        return;
+      }
+      const VolumePiece piece = this->read(own);
+      this->requireKnownRange(piece, own);
+      meter.add(piece, decoded, [&](double part) {
+        progress((static_cast<double>(first) + part * static_cast<double>(size)) /
+                 static_cast<double>(chosen.size()));
+      });
+    });
+  }
 }
 
 DecodedReport StreamedVolume::measure(const Evaluator& evaluator, const Model& model,
@@ -179,20 +285,12 @@ DecodedReport StreamedVolume::measure(const Evaluator& evaluator, const Model& m
   if (all) {
     decoded.emplace(this->Reader.dims(), this->MacroCellSize);
   }
-  std::int64_t done = 0;
-  for (const std::int64_t box : ChooseBars(boxes.count(), count, this->Seed)) {
-    const VoxelBox own = boxes.ownVoxels(box);
-    if (own.voxels() > 0) {
-      const VolumePiece piece = this->read(own);
-      this->requireKnownRange(piece, own);
-      meter.add(piece, all ? &*decoded : nullptr, [&](double part) {
-        progress((static_cast<double>(done) + part) / static_cast<double>(count));
-      });
-    }
-    ++done;
-  }
+  this->measureShare(boxes, ChooseBars(boxes.count(), count, this->Seed), meter,
+                     all ? &*decoded : nullptr, progress);
+  meter.gather(this->Group);
   Quality quality = meter.quality();
   if (all) {
+    decoded->gather(this->Group);
     return {quality, decoded->cells(0.0, 1.0, 0.0, MacroCellProvenance::Decoded)};
   }
   quality.sampledVoxels = static_cast<std::uint64_t>(meter.errors().voxels);

@@ -6,6 +6,7 @@
 #include "Core/Training/Quality.h"
 #include "Core/Training/SamplePool.h"
 #include "Core/Training/StreamBudget.h"
+#include "Core/Training/TrainingGroup.h"
 #include "Core/Training/VolumeReader.h"
 
 #include <cstdint>
@@ -15,7 +16,9 @@
 namespace inr {
 
 /// A volume that is read in pieces, on the thread that made this: first as a whole, then block by
-/// block while a training goes on, then for the quality.
+/// block while a training goes on, then for the quality. Each process of a group reads its share of
+/// the blocks; they call together what is said to be for all, and then read as often as each other,
+/// at the same time, since there are readers that only work together.
 class StreamedVolume
 {
 public:
@@ -23,12 +26,12 @@ public:
   using Progress = std::function<void(double)>;
 
   StreamedVolume(VolumeReader& reader, const StreamBudget& budget, int macroCellSize,
-                 const TrainingOptions& options, const Arena& arena);
+                 const TrainingOptions& options, const TrainingGroup& group, const Arena& arena);
 
-  /// The first reading.
+  /// The first reading; for all.
   void survey(const Progress& progress);
   const VolumeStatistics& statistics() const { return this->Statistics; }
-  double surveySeconds() const { return this->SurveySeconds; }
+  double surveySeconds() const { return this->SurveySeconds; } ///< of the slowest process
 
   /// Of the random voxels of PsnrEstimate the first `voxels`, at most StoringVoxels.
   PsnrEstimate estimate(std::int64_t voxels) const;
@@ -43,22 +46,35 @@ public:
   /// Error(InvalidArgument) where a value is outside the range that the survey found.
   void readAgain();
 
+  /// Reads the blocks again that are to be read before a step, where one thread reads and trains.
+  /// Throws as readAgain. For all.
+  void readBefore(const TrainingStep& step);
+
   /// Compares all voxels, or some where they are many, with a model of them. Throws as readAgain.
+  /// For all.
   DecodedReport measure(const Evaluator& evaluator, const Model& model, const Progress& progress);
 
 private:
   bool measuresAll() const;
   VolumePiece read(const VoxelBox& box);
   void requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const;
+  void readNothing();
+  void survey(std::int64_t block);
   void sampleEstimate(std::int64_t block, const VolumePiece& piece);
+  void shareEstimates();
+  void readAgain(std::int64_t block);
+  void measureShare(const BlockGrid& boxes, const std::vector<std::int64_t>& chosen,
+                    QualityMeter& meter, CellRanges* decoded, const Progress& progress);
 
   VolumeReader& Reader;
+  const TrainingGroup& Group;
   const Arena& Threads;
   int MacroCellSize;
   std::uint64_t Seed;
   std::int64_t MeasuredVoxels; ///< of more than four times as many
   std::int64_t BlockVoxels;    ///< that may be read at a time
   BlockGrid Blocks;
+  BlockShare Share;
   SamplePool Pool;
   VolumeStatistics Statistics;
   CellRanges Ranges; ///< of the data

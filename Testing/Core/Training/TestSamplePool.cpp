@@ -57,7 +57,7 @@ public:
   FieldReader<float> Reader{this->Volume};
   inr::Arena Threads{2};
   inr::BlockGrid Grid{this->Volume.dims, 12000};
-  inr::SamplePool Samples{this->Grid, 1 << 15, 3};
+  inr::SamplePool Samples{this->Grid, 1 << 15, 3, inr::BlockShare(this->Grid.count())};
   int Rereads = 0;
   std::vector<glm::vec3> Positions = std::vector<glm::vec3>(inr::BatchSize);
   std::vector<float> Targets = std::vector<float>(inr::BatchSize);

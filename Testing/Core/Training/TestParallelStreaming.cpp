@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Training from pieces by a group, here of threads.
+#include "Core/Error.h"
+#include "Core/Inference/Evaluator.h"
+#include "Core/Training/ParallelTraining.h"
+#include "Core/Training/Quality.h"
+#include "Core/Training/SamplePool.h"
+#include "Testing/Core/Model/TemporaryFolder.h"
+#include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Training/FieldReader.h"
+#include "Testing/Core/Training/ThreadGroup.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+
+namespace {
+
+constexpr std::int64_t MiB = std::int64_t{1} << 20;
+constexpr glm::i64vec3 Dims(60, 71, 83);
+
+const Field<float>& Volume()
+{
+  static const auto* const field =
+      new Field<float>(Waves<float>(Dims, inr::ScalarType::Float32, -3, 5));
+  return *field;
+}
+
+inr::TrainingOptions Options(std::uint64_t steps)
+{
+  inr::TrainingOptions options = Steps(steps);
+  options.description = SmallDescription();
+  options.memoryLimit = 200 * MiB;
+  options.threads = 1;
+  return options;
+}
+
+/// What each process of the group gets, or what it is told.
+struct Outcome
+{
+  inr::ModelPointer model;
+  std::optional<inr::Error> error;
+  std::int64_t voxelsRead = 0;
+  int reads = 0;
+};
+
+using Before = std::function<void(int rank, int reading)>;
+using Watch = std::function<bool(int rank, const inr::TrainingProgress&)>;
+
+/// Nobody reads before all others do: as with files that are opened together.
+std::vector<Outcome> Train(int size, const inr::TrainingOptions& options, const Before& before = {},
+                           const Watch& watch = {}, const Field<float>& field = Volume())
+{
+  Meeting readers(size);
+  std::vector<Outcome> outcomes(static_cast<std::size_t>(size));
+  InGroup(size, [&](const ThreadGroup& group) {
+    Outcome& outcome = outcomes[static_cast<std::size_t>(group.rank())];
+    FieldReader<float> reader(field);
+    reader.before = [&](int reading) {
+      readers.gather(group.rank(), "");
+      before ? before(group.rank(), reading) : void();
+    };
+    try {
+      outcome.model =
+          inr::TrainModel(reader, {}, options, group, [&](const inr::TrainingProgress& now) {
+            return !watch || watch(group.rank(), now);
+          });
+    } catch (const inr::Error& error) {
+      outcome.error = error;
+    }
+    outcome.voxelsRead = reader.voxelsRead;
+    outcome.reads = reader.reads;
+  });
+  return outcomes;
+}
+
+void ExpectErrors(const std::vector<Outcome>& outcomes, const std::string& words)
+{
+  for (const Outcome& outcome : outcomes) {
+    ASSERT_TRUE(outcome.error.has_value()) << "went on, instead of: " << words;
+    EXPECT_NE(std::string(outcome.error->what()).find(words), std::string::npos)
+        << outcome.error->what();
+  }
+}
+
+std::unique_ptr<inr::SamplePool> PoolOf(const inr::BlockGrid& blocks, FieldReader<float>& reader,
+                                        const inr::BlockShare& share)
+{
+  const inr::Arena arena(1);
+  auto pool = std::make_unique<inr::SamplePool>(blocks, 1 << 16, 3, share);
+  for (std::int64_t block = share.firstBlock; block < share.endBlock; ++block) {
+    pool->put(block, pool->sample(block, 0, reader.read(blocks.voxels(block)), arena));
+  }
+  return pool;
+}
+
+} // namespace
+
+// With few blocks and with more than a batch has items; 3 do not divide them.
+TEST(ParallelStreaming, SharesOutTheBatchesOfOneProcess)
+{
+  FieldReader<float> reader(Volume());
+  for (const std::int64_t mostVoxels : {20000, 100}) {
+    const inr::BlockGrid blocks(Dims, mostVoxels);
+    const auto whole = PoolOf(blocks, reader, inr::BlockShare(blocks.count()));
+    whole->begin(-3, 5, 1);
+    for (const int size : {2, 3, 4}) {
+      SCOPED_TRACE(size);
+      std::vector<glm::vec3> positions;
+      std::vector<float> targets;
+      for (int rank = 0; rank < size; ++rank) {
+        const inr::BlockShare share(blocks.count(), rank, size);
+        const auto pool = PoolOf(blocks, reader, share);
+        pool->begin(-3, 5, 1);
+        EXPECT_EQ(pool->total(), size * inr::BatchSize);
+        const auto count = static_cast<std::size_t>(pool->count());
+        std::vector<glm::vec3> places(count);
+        std::vector<float> values(count);
+        pool->draw(9, 5, 0, pool->count(), places.data(), values.data());
+        // Item by item of its share, batch by batch.
+        for (int batch = 0; batch < size; ++batch) {
+          std::vector<glm::vec3> expectedPlaces(static_cast<std::size_t>(share.items()));
+          std::vector<float> expectedValues(expectedPlaces.size());
+          whole->draw(9, static_cast<std::uint64_t>(5 * size + batch), share.firstItem,
+                      share.endItem, expectedPlaces.data(), expectedValues.data());
+          for (std::size_t k = 0; k < expectedPlaces.size(); ++k) {
+            const std::size_t at = static_cast<std::size_t>(batch) * expectedPlaces.size() + k;
+            ASSERT_EQ(places[at], expectedPlaces[k]);
+            ASSERT_EQ(values[at], expectedValues[k]);
+          }
+        }
+        positions.insert(positions.end(), places.begin(), places.end());
+      }
+      EXPECT_EQ(positions.size(), static_cast<std::size_t>(size * inr::BatchSize));
+    }
+  }
+}
+
+TEST(ParallelStreaming, GivesAllTheSameModelEveryTime)
+{
+  const inr::ModelPointer memory = inr::TrainModel(Volume().data(), {}, Options(24));
+  for (const int size : {1, 2, 3}) {
+    SCOPED_TRACE(size);
+    const std::vector<Outcome> first = Train(size, Options(24));
+    const std::vector<Outcome> again = Train(size, Options(24));
+    for (std::size_t rank = 0; rank < first.size(); ++rank) {
+      ASSERT_TRUE(first[rank].model) << first[rank].error->what();
+      EXPECT_EQ(first[rank].model->parameters, first[0].model->parameters);
+      EXPECT_EQ(again[rank].model->parameters, first[0].model->parameters);
+      EXPECT_EQ(first[rank].model->quality->psnr, first[0].model->quality->psnr);
+      // Its part of three times the volume, and the layers between these small blocks.
+      EXPECT_LT(first[rank].voxelsRead, 5.0 * static_cast<double>(Volume().data().voxels()) / size);
+    }
+    EXPECT_EQ(first[0].model->volume.low, memory->volume.low);
+    EXPECT_EQ(first[0].model->volume.high, memory->volume.high);
+    EXPECT_GT(first[0].model->quality->psnr, memory->quality->psnr - 1);
+  }
+}
+
+TEST(ParallelStreaming, MeasuresTheWholeVolume)
+{
+  Field<float> field = Volume();
+  field.values[4000] = NAN;
+  for (const std::int64_t measured : {std::int64_t{1} << 26, std::int64_t{1} << 14}) {
+    inr::TrainingOptions options = Options(30);
+    options.measuredVoxels = measured;
+    const std::vector<Outcome> outcomes = Train(3, options, {}, {}, field);
+    ASSERT_TRUE(outcomes[1].model) << outcomes[1].error->what();
+    const inr::Model& model = *outcomes[1].model;
+    const inr::DecodedReport truth = inr::MeasureQuality(
+        *inr::MakeEvaluator(outcomes[1].model), field.data(), model.volume, 16, inr::Arena(), {});
+    const bool all = model.quality->sampledVoxels == 0;
+    EXPECT_EQ(all, measured == std::int64_t{1} << 26);
+    EXPECT_NEAR(model.quality->psnr, truth.quality.psnr, all ? 1e-6 : 2);
+    EXPECT_EQ(model.training->nonFinite, 1u);
+    ASSERT_EQ(model.macroCells.ranges.size(), truth.macroCells.ranges.size());
+    for (std::size_t k = 0; k < truth.macroCells.ranges.size(); ++k) {
+      const inr::ValueRange& found = model.macroCells.ranges[k];
+      const inr::ValueRange& decoded = truth.macroCells.ranges[k];
+      EXPECT_LE(found.low, decoded.low + 1e-6);
+      EXPECT_GE(found.high, decoded.high - 1e-6);
+      if (all) {
+        EXPECT_NEAR(found.low, decoded.low, 1e-6);
+        EXPECT_NEAR(found.high, decoded.high, 1e-6);
+      }
+    }
+  }
+}
+
+// While surveying, training and measuring.
+TEST(ParallelStreaming, StopsForAllWhenOneCannotRead)
+{
+  const int reads = Train(3, Options(20))[1].reads;
+  ASSERT_GE(reads, 11 + 2 + 1); // of 32 blocks, some of them again, and a box
+  for (const int failing : {2, 12, reads}) {
+    ExpectErrors(Train(3, Options(20),
+                       [&](int rank, int reading) {
+                         if (rank == 1 && reading == failing) {
+                           throw inr::Error(inr::ErrorCode::CannotRead, "the disk is on fire");
+                         }
+                       }),
+                 "on fire");
+  }
+}
+
+TEST(ParallelStreaming, StopsForAllWhenOneIsToldToInEveryPhase)
+{
+  for (const inr::TrainingPhase phase :
+       {inr::TrainingPhase::Reading, inr::TrainingPhase::Training, inr::TrainingPhase::Measuring}) {
+    ExpectErrors(Train(2, Options(50), {},
+                       [phase](int rank, const inr::TrainingProgress& now) {
+                         return rank == 0 || now.phase != phase;
+                       }),
+                 "stopped");
+  }
+}
+
+TEST(ParallelStreaming, GoesOnFromItsCheckpoint)
+{
+  const TemporaryFolder folder;
+  const inr::ModelPointer whole = Train(2, Options(40))[0].model;
+  inr::TrainingOptions options = Options(40);
+  options.checkpoint.path = folder.file("a.checkpoint");
+  const auto stop = [](int rank, const inr::TrainingProgress& now) {
+    return rank != 1 || now.steps < 23;
+  };
+  const std::vector<Outcome> stopped = Train(2, options, {}, stop);
+  ExpectErrors(stopped, "stopped");
+  EXPECT_NE(std::string(stopped[0].error->what()).find("23 steps are kept"), std::string::npos);
+  EXPECT_EQ(Train(2, options)[1].model->parameters, whole->parameters);
+}
+
+TEST(ParallelStreaming, SaysHowMuchMemoryEachProcessNeeds)
+{
+  inr::TrainingOptions options = Options(10);
+  options.memoryLimit = 100 * MiB;
+  ExpectErrors(Train(2, options), "in each process and its share of the MemoryLimit is 100 MiB");
+}
