@@ -85,14 +85,12 @@ bool IsPieceInMemory(vtkInformation* input, const WholeImage& whole, const Contr
 void RequestPiece(vtkInformation* input, const WholeImage& whole, bool inParts,
                   const ControllerGroup& group)
 {
-  std::array<int, 6> extent = PieceExtent(whole, group);
-  if (!inParts) {
-    std::copy_n(whole.extent, 6, extent.begin());
-  }
+  int extent[6];
+  std::copy_n(whole.extent, 6, extent); // of which the source's executive cuts the piece
   input->Set(Pipeline::UPDATE_PIECE_NUMBER(), inParts ? group.rank() : 0);
   input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), inParts ? group.size() : 1);
   input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  input->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
+  input->Set(Pipeline::UPDATE_EXTENT(), extent, 6);
 }
 
 ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
