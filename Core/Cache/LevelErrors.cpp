@@ -12,7 +12,7 @@ namespace inr {
 
 namespace {
 
-constexpr double BlockEdge = 128; ///< voxels: what lies around them is then less than they are
+constexpr double BlockEdge = 64; ///< voxels: a picture in a limited time waits for one block
 
 glm::i64vec3 PlaceOf(std::int64_t number, const glm::i64vec3& dims)
 {
@@ -66,69 +66,76 @@ ValueBox Cut(const ValueBox& box, const Part& part)
   return cut;
 }
 
-/// Sums along all lines of an axis through a part of a box.
-struct LineSums
+/// Calls `visit` with the index of the first value of each row along x of a part.
+template <typename Visit> void ForEachRow(const ValueBox& box, const Part& part, const Visit& visit)
 {
-  std::vector<float> signedSums;
-  std::vector<float> absoluteSums;
-};
-
-LineSums SumsAlong(int axis, const ValueBox& box, const Part& part)
-{
-  const int across = axis == 0 ? 1 : 0;
-  const int rest = 3 - axis - across;
-  const std::int64_t width = part.size[across];
-  const auto lines = static_cast<std::size_t>(width * part.size[rest]);
-  LineSums sums{std::vector<float>(lines), std::vector<float>(lines)};
-  const float* origin = &box.values[box.index(part.first.x, part.first.y, part.first.z)];
-  const std::int64_t stride = box.stride(across);
-  for (std::int64_t line = 0; line < part.size[rest]; ++line) {
-    float* signedSum = &sums.signedSums[static_cast<std::size_t>(line * width)];
-    float* absoluteSum = &sums.absoluteSums[static_cast<std::size_t>(line * width)];
-    for (std::int64_t k = 0; k < part.size[axis]; ++k) {
-      const float* row = origin + k * box.stride(axis) + line * box.stride(rest);
-      for (std::int64_t i = 0; i < width; ++i) {
-        signedSum[i] += row[i * stride];
-        absoluteSum[i] += std::abs(row[i * stride]);
-      }
+  for (std::int64_t z = 0; z < part.size.z; ++z) {
+    for (std::int64_t y = 0; y < part.size.y; ++y) {
+      visit(box.index(part.first.x, part.first.y + y, part.first.z + z));
     }
   }
-  return sums;
 }
 
-LevelErrors::Error ErrorOf(const ValueBox& differences, const Part& part)
+float LargestOf(const ValueBox& box, const Part& part)
 {
-  LevelErrors::Error error;
+  float largest = 0;
+  ForEachRow(box, part, [&](std::size_t row) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(part.size.x); ++x) {
+      largest = std::max(largest, std::abs(box.values[row + x]));
+    }
+  });
+  return largest;
+}
+
+std::int64_t OffsetOf(const ValueBox& box, const glm::i64vec3& way)
+{
+  return way.x * box.stride(0) + way.y * box.stride(1) + way.z * box.stride(2);
+}
+
+/// Of a gradient whose parts along the axes are the largest that there are.
+float SlopeOf(const ValueBox& box, const Part& part)
+{
+  float sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const LineSums sums = SumsAlong(axis, differences, part);
-    const auto length = static_cast<float>(part.size[axis]);
-    for (std::size_t line = 0; line < sums.signedSums.size(); ++line) {
-      error.mean = std::max(error.mean, std::abs(sums.signedSums[line]) / length);
-      error.spread = std::max(error.spread, sums.absoluteSums[line] / length);
+    Part inner = part;
+    --inner.size[axis];
+    const auto next = static_cast<std::size_t>(box.stride(axis));
+    float largest = 0;
+    ForEachRow(box, inner, [&](std::size_t row) {
+      for (std::size_t k = row; k < row + static_cast<std::size_t>(inner.size.x); ++k) {
+        largest = std::max(largest, std::abs(box.values[k + next] - box.values[k]));
+      }
+    });
+    sum += largest * largest;
+  }
+  return std::sqrt(sum);
+}
+
+/// Along the edges and the diagonals of faces and of the volume of a cube.
+constexpr int Ways[13][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {1, -1, 0},
+                             {1, 0, 1},  {1, 0, -1}, {0, 1, 1},  {0, 1, -1}, {1, 1, 1},
+                             {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
+
+float CurvatureOf(const ValueBox& box, const Part& part)
+{
+  float largest = 0;
+  for (const auto& to : Ways) {
+    const glm::i64vec3 way(to[0], to[1], to[2]);
+    const glm::i64vec3 width = glm::abs(way);
+    const Part inner{part.first + width, part.size - std::int64_t{2} * width};
+    if (glm::min(inner.size.x, glm::min(inner.size.y, inner.size.z)) <= 0) {
+      continue; // flat that way
     }
+    const std::int64_t offset = OffsetOf(box, way);
+    const float perLength = 1.0f / static_cast<float>(width.x + width.y + width.z);
+    ForEachRow(box, inner, [&](std::size_t row) {
+      const float* at = &box.values[row];
+      for (std::int64_t x = 0; x < inner.size.x; ++x, ++at) {
+        largest = std::max(largest, perLength * std::abs(at[offset] + at[-offset] - 2 * *at));
+      }
+    });
   }
-  return error;
-}
-
-/// From each voxel to the next along an axis; 0 at the last.
-ValueBox Changes(const ValueBox& box, int axis)
-{
-  ValueBox changes(box.size);
-  const auto stride = static_cast<std::size_t>(box.stride(axis));
-  for (std::size_t k = 0; k + stride < box.values.size(); ++k) {
-    changes.values[k] = box.values[k + stride] - box.values[k];
-  }
-  return changes;
-}
-
-float SlopeOf(const ValueBox& changes, int axis, Part part)
-{
-  if (--part.size[axis] == 0) {
-    return 0.0f;
-  }
-  const LineSums sums = SumsAlong(axis, changes, part);
-  return *std::max_element(sums.absoluteSums.begin(), sums.absoluteSums.end()) /
-         static_cast<float>(part.size[axis]);
+  return largest;
 }
 
 } // namespace
@@ -221,19 +228,17 @@ std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field)
   }
   const ValueBox around = Sampled(needed, this->Dims, field);
   const ValueBox fine = Cut(around, inner);
-  for (int axis = 0; axis < 3; ++axis) {
-    const ValueBox changes = Changes(fine, axis);
-    this->forEachCell(block, [&](Cell& cell, const Part& part) {
-      cell.slope = std::max(cell.slope, SlopeOf(changes, axis, part));
-    });
-  }
+  this->forEachCell(block, [&](Cell& cell, const Part& part) {
+    cell.slope = SlopeOf(fine, part);
+    cell.curvature = CurvatureOf(fine, part);
+  });
   for (std::size_t level = 0; level < levels.size(); ++level) {
     ValueBox differences = levels[level].apply(around, first);
     for (std::size_t k = 0; k < differences.values.size(); ++k) {
       differences.values[k] -= fine.values[k];
     }
     this->forEachCell(block, [&](Cell& cell, const Part& part) {
-      cell.levels[level] = ErrorOf(differences, part);
+      cell.differences[level] = LargestOf(differences, part);
     });
   }
   this->Measured[static_cast<std::size_t>(number)] = 1;

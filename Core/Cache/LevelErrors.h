@@ -16,21 +16,14 @@ struct ValueBox;
 /// What the coarser levels of a field get wrong in each of its macro-cells: a property of the field
 /// alone, of normalised values. It is measured where somebody asks, in blocks of cells.
 ///
-/// Levels are compared with level 0 at its voxels, along the lines of voxels through a cell in all
-/// three directions: what a ray adds up there is off by the mean of the differences, which is often
-/// much less than the differences are. LevelResampling says what a level is; it asks the field for
-/// nothing but voxels of level 0.
+/// All of it is the largest of what is found at voxels of level 0 in a cell, so that it holds for
+/// rays of any direction: errors that cancel each other along some lines do not along others.
+/// LevelResampling says what a level is; the field is asked for nothing but voxels of level 0, and
+/// taken to be linear in between.
 class LevelErrors
 {
 public:
   static constexpr int Coarsest = 3; ///< level that is looked at
-
-  /// Of one level in one cell.
-  struct Error
-  {
-    float mean = 0;   ///< |mean difference| along a line, the largest of all lines
-    float spread = 0; ///< mean |difference| along a line, the largest of all lines
-  };
 
   /// Of a volume of `dims` voxels, for `cells` macro-cells, each of which is `spacing` wide in the
   /// unit cube.
@@ -51,21 +44,25 @@ public:
     return this->Measured[static_cast<std::size_t>(block)] != 0;
   }
 
-  /// Of a cell in a measured block. `level`: 1 to Coarsest.
-  const Error& error(std::int64_t cell, int level) const
+  /// Of a cell in a measured block: by how much a level differs from level 0. `level`: 1 to
+  /// Coarsest.
+  float difference(std::int64_t cell, int level) const
   {
-    return this->Cells[static_cast<std::size_t>(cell)].levels[static_cast<std::size_t>(level - 1)];
+    return this->of(cell).differences[static_cast<std::size_t>(level - 1)];
   }
-  /// The same: how much values change from voxel to voxel along a line, in the mean; the largest of
-  /// all lines.
-  float slope(std::int64_t cell) const { return this->Cells[static_cast<std::size_t>(cell)].slope; }
+  /// How much values change within a voxel's distance, in any direction.
+  float slope(std::int64_t cell) const { return this->of(cell).slope; }
+  /// And how much slopes do, in any direction: the second derivative, per voxel^2.
+  float curvature(std::int64_t cell) const { return this->of(cell).curvature; }
 
 private:
   struct Cell
   {
-    std::array<Error, Coarsest> levels;
+    std::array<float, Coarsest> differences;
     float slope = 0;
+    float curvature = 0;
   };
+  const Cell& of(std::int64_t cell) const { return this->Cells[static_cast<std::size_t>(cell)]; }
   struct Block;
   Block find(std::int64_t block) const;
   template <typename Visit> void forEachCell(const Block& block, const Visit& visit);

@@ -10,15 +10,59 @@ namespace inr {
 
 namespace {
 
-/// What a step's premultiplied colour and opacity change by per table entry where they are `at`,
-/// and straight colour and opacity change by `change`.
-glm::dvec4 StepSlope(const glm::dvec4& at, const glm::dvec4& change, double stepLength)
+constexpr double Infinite = std::numeric_limits<double>::infinity();
+
+struct Interval
 {
-  const double transmittance = std::log1p(-at.w); // of a unit distance, its logarithm
-  const double opacity = -std::expm1(transmittance * stepLength);
-  const double slope =
-      change.w == 0 ? 0.0 : change.w * stepLength * std::exp(transmittance * (stepLength - 1.0));
-  return {glm::dvec3(change) * opacity + glm::dvec3(at) * slope, slope};
+  double low;
+  double high;
+};
+
+Interval Hull(double a, double b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// Of all products of values of two linear or monotone functions.
+Interval Product(const Interval& a, const Interval& b)
+{
+  const auto [low, high] =
+      std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+  return {low, high};
+}
+
+/// A step at a table entry.
+struct Step
+{
+  double opacity;
+  double slope; ///< of it, per change of the entry's opacity; may be infinite
+};
+
+Step StepAt(double entry, double length)
+{
+  if (entry < 1.0) {
+    const double depth = -std::log1p(-entry); // of a unit distance
+    return {-std::expm1(-depth * length), length * std::exp(-depth * (length - 1.0))};
+  }
+  return {1.0, length < 1.0 ? Infinite : length == 1.0 ? 1.0 : 0.0};
+}
+
+/// Between two entries, the slopes per entry of a channel of straight colour, in front of light
+/// `behind`: those of c A - B A = c' A + (c - B) A'. Both entries, c and A are monotone in between.
+Interval SlopesOf(const glm::dvec2& color, const glm::dvec2& opacity, double behind, double length)
+{
+  const Step first = StepAt(opacity[0], length);
+  const Step second = StepAt(opacity[1], length);
+  const double rise = opacity[1] - opacity[0];
+  const Interval opacities = Hull(first.opacity, second.opacity);
+  const Interval change = Hull(color[1] - color[0], color[1] - color[0]);
+  const Interval own = Product(change, opacities);
+  if (rise == 0.0) {
+    return own;
+  }
+  if (!std::isfinite(first.slope) || !std::isfinite(second.slope)) {
+    return {-Infinite, Infinite};
+  }
+  const Interval steep = Product(Hull(color[0] - behind, color[1] - behind),
+                                 Hull(rise * first.slope, rise * second.slope));
+  return {own.low + steep.low, own.high + steep.high};
 }
 
 std::vector<std::vector<float>> Doubled(std::vector<float> single,
@@ -48,22 +92,36 @@ ColorSensitivity::ColorSensitivity(const ColorLookup& colors, double stepLength)
   };
   this->JumpsBelow = jumps(colors.below, entries[0]);
   this->JumpsAbove = jumps(colors.above, entries[last]);
-  // Of each channel in front of black, of each colour in front of white. Between two entries slopes
-  // are between those at either.
+  double brightest = 1.0;
+  const auto lookAt = [&](const glm::vec4& entry) {
+    brightest = std::max({brightest, double{entry.x}, double{entry.y}, double{entry.z}});
+  };
+  std::for_each(entries, entries + colors.count, lookAt);
+  lookAt(colors.below);
+  lookAt(colors.above);
+  // Of each colour in front of black and in front of the brightest light, and of opacity.
   std::vector<float> smallest[7];
   std::vector<float> largest[7];
+  std::vector<float> depths;
+  const auto depthOf = [&](const glm::vec4& entry) {
+    return static_cast<float>(-std::log1p(-double{entry.w}) * stepLength);
+  };
   for (std::size_t k = 0; k < last; ++k) {
-    const glm::dvec4 change = glm::dvec4(entries[k + 1]) - glm::dvec4(entries[k]);
-    const glm::dvec4 begin = StepSlope(entries[k], change, stepLength);
-    const glm::dvec4 end = StepSlope(entries[k + 1], change, stepLength);
+    const glm::dvec2 opacity(entries[k].w, entries[k + 1].w);
     for (int row = 0; row < 7; ++row) {
       const int channel = row % 4;
-      const double first = row < 4 ? begin[channel] : begin[channel] - begin.w;
-      const double second = row < 4 ? end[channel] : end[channel] - end.w;
-      smallest[row].push_back(static_cast<float>(std::min(first, second)));
-      largest[row].push_back(static_cast<float>(std::max(first, second)));
+      const glm::dvec2 color = channel == 3
+                                   ? glm::dvec2(1.0) // premultiplied, opacity itself
+                                   : glm::dvec2(entries[k][channel], entries[k + 1][channel]);
+      const Interval slopes = SlopesOf(color, opacity, row < 4 ? 0.0 : brightest, stepLength);
+      smallest[row].push_back(static_cast<float>(slopes.low));
+      largest[row].push_back(static_cast<float>(slopes.high));
     }
+    depths.push_back(std::min(depthOf(entries[k]), depthOf(entries[k + 1])));
   }
+  this->Depths.smallest = Doubled(std::move(depths), std::min<float>);
+  this->DepthBelow = depthOf(colors.below);
+  this->DepthAbove = depthOf(colors.above);
   for (int row = 0; row < 7; ++row) {
     this->Channels.push_back({Doubled(std::move(smallest[row]), std::min<float>),
                               Doubled(std::move(largest[row]), std::max<float>)});
@@ -79,12 +137,8 @@ ColorSensitivity::Slopes ColorSensitivity::slopes(const ValueRange& range) const
   const float begin = this->Colors.coordinate(range.low);
   const float end = this->Colors.coordinate(range.high);
   const auto top = static_cast<float>(this->Colors.count - 1);
-  if ((begin <= 0.0f && end >= 0.0f && this->JumpsBelow) ||
-      (begin <= top && end >= top && this->JumpsAbove)) {
-    return {0, infinite};
-  }
   if (end < 0.0f || begin > top) {
-    return {};
+    return {0, 0, end < 0.0f ? this->DepthBelow : this->DepthAbove};
   }
   const auto interval = [&](float coordinate) {
     return static_cast<int>(std::clamp(coordinate, 0.0f, top - 1.0f));
@@ -98,12 +152,24 @@ ColorSensitivity::Slopes ColorSensitivity::slopes(const ValueRange& range) const
   const bool constantBelow = begin < 0.0f; // where the slope is 0
   const bool constantAbove = end > top;
   Slopes slopes;
+  slopes.depth = std::min(this->Depths.smallest[row][left], this->Depths.smallest[row][right]);
+  slopes.depth = constantBelow ? std::min(slopes.depth, this->DepthBelow) : slopes.depth;
+  slopes.depth = constantAbove ? std::min(slopes.depth, this->DepthAbove) : slopes.depth;
+  if ((begin <= 0.0f && end >= 0.0f && this->JumpsBelow) ||
+      (begin <= top && end >= top && this->JumpsAbove)) {
+    slopes.half = infinite;
+    return slopes;
+  }
   for (const Extremes& channel : this->Channels) {
     float smallest = std::min(channel.smallest[row][left], channel.smallest[row][right]);
     float largest = std::max(channel.largest[row][left], channel.largest[row][right]);
     if (constantBelow || constantAbove) {
       smallest = std::min(smallest, 0.0f);
       largest = std::max(largest, 0.0f);
+    }
+    if (!std::isfinite(smallest) || !std::isfinite(largest)) {
+      slopes.half = infinite;
+      return slopes;
     }
     slopes.middle = std::max(slopes.middle, 0.5f * std::abs(smallest + largest));
     slopes.half = std::max(slopes.half, 0.5f * (largest - smallest));
@@ -115,7 +181,7 @@ ColorSensitivity::Slopes ColorSensitivity::slopes(const ValueRange& range) const
     slopes.half += slopes.middle; // the slope of the logarithm is between this and 0
   }
   const auto scaled = [&](float slope) { return slope > 0.0f ? slope * perValue : 0.0f; };
-  return {scaled(slopes.middle), scaled(slopes.half)};
+  return {scaled(slopes.middle), scaled(slopes.half), slopes.depth};
 }
 
 } // namespace inr

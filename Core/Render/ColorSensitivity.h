@@ -12,10 +12,10 @@ namespace inr {
 ///
 /// A step of opacity A and colour c in front of light B from behind leaves c A + (1 - A) B of each
 /// channel, which changes by (c A)' - A' B per value: something between the slopes for B = 0 and
-/// B = 1, and, by the mean value theorem, between the smallest and the largest slope in a range of
-/// values, if nothing leaves that. So what n steps through a range add to a pixel is off by no more
-/// than |middle| times the sum of what their values are off by, plus `half` times the sum of its
-/// magnitudes.
+/// for the brightest B, and, by the mean value theorem, between the smallest and the largest slope
+/// in a range of values, if nothing leaves that. So what steps through a range that are equally
+/// bright behind and in front add to a pixel is off by no more than |middle| times what the sum of
+/// their values is off by, plus `half` times the sum of the magnitudes of that.
 class ColorSensitivity
 {
 public:
@@ -27,7 +27,8 @@ public:
   struct Slopes
   {
     float middle = 0;
-    float half = 0; ///< infinite where colours jump in the range
+    float half = 0;  ///< infinite where colours jump in the range, or change as fast as that
+    float depth = 0; ///< optical depth of a step that all values have at least
   };
   Slopes slopes(const ValueRange& range) const;
 
@@ -43,6 +44,9 @@ private:
   bool JumpsBelow; ///< where the table begins
   bool JumpsAbove;
   std::vector<Extremes> Channels; ///< per table entry
+  Extremes Depths;                ///< of a step
+  float DepthBelow;
+  float DepthAbove;
 };
 
 } // namespace inr

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/LevelChooser.h"
 
+#include "Core/Parallel.h"
 #include "Core/Render/CellBlock.h"
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/Timer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace inr {
@@ -15,10 +16,10 @@ namespace inr {
 namespace {
 
 constexpr std::int64_t CellsPerTask = 4096;
+constexpr std::int64_t RaysPerTask = 64;
+constexpr int RaysAcross = 48;  ///< a picture, at most
+constexpr double Hidden = 1e-3; ///< light from behind that no longer counts: where rays end
 static_assert(LevelErrors::Coarsest <= CoarsestCellLevel, "rays go by blocks of that size");
-
-/// Of a tolerance, what the cells along a ray may come to if they err independently.
-constexpr double Share = 4.0;
 
 /// Of a step whose value may be anything in a range.
 double LargestError(const ColorSensitivity::Slopes& slopes, const ValueRange& range)
@@ -26,40 +27,81 @@ double LargestError(const ColorSensitivity::Slopes& slopes, const ValueRange& ra
   return range.empty() ? 0.0 : (slopes.middle + slopes.half) * (range.high - range.low);
 }
 
+void Raise(std::atomic<std::uint8_t>& number, int to)
+{
+  std::uint8_t now = number.load(std::memory_order_relaxed);
+  while (now < to && !number.compare_exchange_weak(now, static_cast<std::uint8_t>(to))) {
+  }
+}
+
+template <typename Values> void Clear(const Values& values, std::int64_t count)
+{
+  for (std::int64_t k = 0; k < count; ++k) {
+    values[static_cast<std::size_t>(k)].store(0, std::memory_order_relaxed);
+  }
+}
+
 } // namespace
+
+/// A ray's sums, for each of the limits, and the cells that they are of.
+struct LevelChooser::RayWalk
+{
+  std::array<double, LimitCount> sums;
+  std::vector<std::int64_t> cells;
+};
 
 LevelChooser::LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
                            const MajorantGrid& cells, int levels)
-    : Field(std::move(field)), Errors(dims, cells.dims(), cells.spacing()),
+    : Field(std::move(field)), Dims(dims), Errors(dims, cells.dims(), cells.spacing()),
       Coarsest(std::min(levels - 1, LevelErrors::Coarsest)),
       Slopes(static_cast<std::size_t>(cells.count())),
+      Allowed(new std::atomic<std::uint8_t>[static_cast<std::size_t>(cells.count())]),
+      Wanted(new std::atomic<std::uint8_t>[static_cast<std::size_t>(this->Errors.blocks())]),
       Levels(static_cast<std::size_t>(cells.count()), 0)
 {}
 
-LevelChooser::Outcome LevelChooser::choose(const Wish& wish, const MajorantGrid& cells,
-                                           const ColorLookup& colors, const Arena& arena,
-                                           const WorkLimit& limit,
-                                           const std::function<bool()>& keepGoing)
+bool LevelChooser::choose(const Wish& wish, const View& view, const Majorants& majorants,
+                          const ColorLookup& colors, const Arena& arena, const WorkLimit& limit,
+                          const std::function<bool()>& keepGoing)
 {
   const bool known = this->Chosen && *this->Chosen == wish;
-  if (known && this->Complete) {
-    return Outcome::Same;
-  }
+  this->Chosen.reset(); // should measuring be stopped
+  this->Given = wish;
+  this->LeastError = wish.tolerance * wish.step / std::max(wish.step, view.geometry.longest());
+  this->UsesMeasured = true;
   if (!known) {
-    this->Chosen.reset(); // should measuring be stopped
-    this->findSlopes(wish, cells, colors, arena);
+    this->setLimits();
+    this->findSlopes(majorants.grid(0), colors, arena);
   }
-  this->Complete =
-      this->measure(this->unmeasured(cells, this->allowance(wish)), arena, limit, keepGoing);
-  this->chooseLevels(wish, cells, arena);
+  this->sendRays(view, majorants, arena);
+  const std::vector<std::int64_t> wanted = this->wantedBlocks();
+  const bool measures = std::any_of(wanted.begin(), wanted.end(), [this](std::int64_t block) {
+    return !this->Errors.isMeasured(block);
+  });
+  this->UsesMeasured = !this->areTooMany(wanted);
+  if (this->UsesMeasured && measures && !this->measure(wanted, arena, limit, keepGoing)) {
+    return false;
+  }
+  if (measures || !this->UsesMeasured) {
+    this->sendRays(view, majorants, arena);
+  }
+  this->chooseLevels(majorants.grid(0), arena);
   this->Chosen = wish;
-  return this->Complete ? Outcome::Changed : Outcome::Partial;
+  return true;
 }
 
-void LevelChooser::findSlopes(const Wish& wish, const MajorantGrid& cells,
-                              const ColorLookup& colors, const Arena& arena)
+void LevelChooser::setLimits()
 {
-  const ColorSensitivity sensitivity(colors, wish.stepLength);
+  for (std::size_t k = 0; k < LimitCount; ++k) {
+    this->Limits[k] = this->Given.tolerance * std::exp2(-0.5 * static_cast<double>(k));
+  }
+  this->Limits[LimitCount] = 0;
+}
+
+void LevelChooser::findSlopes(const MajorantGrid& cells, const ColorLookup& colors,
+                              const Arena& arena)
+{
+  const ColorSensitivity sensitivity(colors, this->Given.stepLength);
   const auto count = static_cast<std::int64_t>(this->Slopes.size());
   arena.forEachBlock(count, CellsPerTask, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t cell = begin; cell < end; ++cell) {
@@ -68,50 +110,98 @@ void LevelChooser::findSlopes(const Wish& wish, const MajorantGrid& cells,
   });
 }
 
-double LevelChooser::allowance(const Wish& wish) const
+void LevelChooser::sendRays(const View& view, const Majorants& majorants, const Arena& arena)
 {
-  const glm::dvec3& edge = this->Errors.cellEdge();
-  const double steps = std::max(1.0, std::min({edge.x, edge.y, edge.z}) / wish.step); // of a cell
-  const double cells = std::max(1.0, wish.steps / steps);
-  return Share * wish.tolerance / (steps * std::sqrt(cells));
+  Clear(this->Allowed, static_cast<std::int64_t>(this->Levels.size()));
+  Clear(this->Wanted, this->Errors.blocks());
+  const int apart = (std::max(view.width, view.height) + RaysAcross - 1) / RaysAcross;
+  const std::int64_t across = (view.width + apart - 1) / apart;
+  const std::int64_t down = (view.height + apart - 1) / apart;
+  const auto place = [&](std::int64_t number, int pixels) {
+    return std::min(static_cast<int>(number) * apart + apart / 2, pixels - 1);
+  };
+  arena.forEachBlock(across * down, RaysPerTask, [&](std::int64_t begin, std::int64_t end) {
+    RayWalk walk;
+    for (std::int64_t k = begin; k < end; ++k) {
+      const Ray ray =
+          view.geometry.ray(place(k % across, view.width), place(k / across, view.height));
+      if (ray.length > 0) {
+        this->follow(ray, majorants, walk);
+      }
+    }
+  });
 }
 
-std::vector<std::int64_t> LevelChooser::unmeasured(const MajorantGrid& cells,
-                                                   double allowance) const
+void LevelChooser::follow(const Ray& ray, const Majorants& majorants, RayWalk& walk)
 {
-  std::vector<char> wanted(static_cast<std::size_t>(this->Errors.blocks()), 0);
-  for (std::int64_t cell = 0; cell < cells.count(); ++cell) {
+  walk.sums.fill(0.0);
+  walk.cells.clear();
+  const MajorantGrid& grid = majorants.grid(0);
+  CellWalker cells(majorants, this->Dims, ray, 0.0, 1);
+  cells.moveTo(0);
+  double light = 1.0; // of what is here, that is seen
+  for (double t = 0; t < ray.length && light > Hidden && cells.moveToVisible(ray.length);) {
+    const std::int64_t cell = cells.index();
+    const double exit = std::min(cells.exit(), ray.length);
+    const double steps = (exit - std::max(t, cells.enter())) / this->Given.step;
+    const StepErrors errors = this->errorsOf(cell, grid.range(cell));
+    walk.cells.push_back(cell);
+    int level = this->Coarsest;
+    for (std::size_t k = 0; k < LimitCount && level > 0; ++k) {
+      level = std::min(level, this->levelFor(errors, this->Limits[k]));
+      walk.sums[k] += level > 0 ? light * steps * errors[static_cast<std::size_t>(level - 1)] : 0.0;
+    }
     const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
-    if (cells.extinction(cell) > 0.0f && std::isfinite(slopes.half) &&
-        LargestError(slopes, cells.range(cell)) > allowance) {
-      wanted[static_cast<std::size_t>(this->Errors.blockOf(cell))] = 1;
+    if (LargestError(slopes, grid.range(cell)) > this->LeastError && std::isfinite(slopes.half)) {
+      this->Wanted[static_cast<std::size_t>(this->Errors.blockOf(cell))] = 1;
+    }
+    light *= std::exp(-steps * slopes.depth);
+    t = exit;
+    if (t < ray.length) {
+      cells.moveTo(t);
     }
   }
+  const auto within = std::find_if(walk.sums.begin(), walk.sums.end(),
+                                   [this](double sum) { return sum <= this->Given.tolerance; });
+  const auto number = static_cast<int>(within - walk.sums.begin());
+  for (const std::int64_t cell : walk.cells) {
+    Raise(this->Allowed[static_cast<std::size_t>(cell)], number + 1);
+  }
+}
+
+std::vector<std::int64_t> LevelChooser::wantedBlocks() const
+{
   std::vector<std::int64_t> blocks;
   for (std::int64_t block = 0; block < this->Errors.blocks(); ++block) {
-    if (wanted[static_cast<std::size_t>(block)] != 0 && !this->Errors.isMeasured(block)) {
+    if (this->Wanted[static_cast<std::size_t>(block)] != 0) {
       blocks.push_back(block);
     }
   }
+  return blocks;
+}
+
+bool LevelChooser::areTooMany(const std::vector<std::int64_t>& blocks) const
+{
   const std::int64_t cost = this->Errors.blockCost();
-  const bool tooMany =
-      cost > LargestBlock || static_cast<std::int64_t>(blocks.size()) > MostVoxels / cost;
-  return tooMany ? std::vector<std::int64_t>{} : blocks;
+  return cost > LargestBlock || static_cast<std::int64_t>(blocks.size()) > MostVoxels / cost;
 }
 
 bool LevelChooser::measure(const std::vector<std::int64_t>& blocks, const Arena& arena,
                            const WorkLimit& limit, const std::function<bool()>& keepGoing)
 {
-  const auto count = static_cast<std::int64_t>(blocks.size());
+  std::vector<std::int64_t> left;
+  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(left),
+               [this](std::int64_t block) { return !this->Errors.isMeasured(block); });
+  const auto count = static_cast<std::int64_t>(left.size());
   const std::int64_t round = limit.isTimed() ? arena.threads() : count;
   for (std::int64_t first = 0; first < count; first += round) {
-    if (limit.isTimed() && limit.endsWithin(this->SecondsPerRound)) {
+    if (first > 0 && limit.isTimed() && limit.endsWithin(this->SecondsPerRound)) {
       return false;
     }
     const Timer timer;
     std::atomic<std::int64_t> points{0};
     ForEachTile(arena, std::min(round, count - first), keepGoing, [&](std::int64_t k) {
-      points += this->Errors.measure(blocks[static_cast<std::size_t>(first + k)], *this->Field);
+      points += this->Errors.measure(left[static_cast<std::size_t>(first + k)], *this->Field);
     });
     this->Points += points;
     if (round < count) {
@@ -121,44 +211,57 @@ bool LevelChooser::measure(const std::vector<std::int64_t>& blocks, const Arena&
   return true;
 }
 
-void LevelChooser::chooseLevels(const Wish& wish, const MajorantGrid& cells, const Arena& arena)
+void LevelChooser::chooseLevels(const MajorantGrid& cells, const Arena& arena)
 {
   const auto count = static_cast<std::int64_t>(this->Levels.size());
-  const double allowance = this->allowance(wish);
   arena.forEachBlock(count, CellsPerTask, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t cell = begin; cell < end; ++cell) {
-      this->Levels[static_cast<std::size_t>(cell)] =
-          static_cast<std::uint8_t>(this->levelOf(cell, cells.range(cell), wish, allowance));
+      const auto at = static_cast<std::size_t>(cell);
+      const std::uint8_t number = this->Allowed[at];
+      const int level = number == 0 ? 0
+                                    : this->levelFor(this->errorsOf(cell, cells.range(cell)),
+                                                     this->Limits[number - 1u]);
+      this->Levels[at] = static_cast<std::uint8_t>(level);
     }
   });
 }
 
-double LevelChooser::errorOf(std::int64_t cell, int level, double step) const
+LevelChooser::StepErrors LevelChooser::errorsOf(std::int64_t cell, const ValueRange& range) const
 {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
   const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
-  const LevelErrors::Error& error = this->Errors.error(cell, level);
-  // The middle of n steps differs from their mean by n^2/24 of the curvature, of which the level
-  // itself leaves out n^2/8; and from each of them by n/4 of the slope in the mean.
-  const double mean = error.mean * (1.0 + step * step / 3.0);
-  const double spread = error.spread + this->Errors.slope(cell) * step * (1 << level) / 4.0;
-  return slopes.middle * mean + slopes.half * spread;
+  StepErrors errors{};
+  if (!std::isfinite(slopes.half)) {
+    errors.fill(infinite);
+    return errors;
+  }
+  const double most = LargestError(slopes, range);
+  const std::int64_t block = this->Errors.blockOf(cell);
+  // What a picture shows must not depend on what others had measured.
+  if (most <= this->LeastError || !this->UsesMeasured || !this->Errors.isMeasured(block)) {
+    errors.fill(most);
+    return errors;
+  }
+  double least = 0; // a coarser level is not trusted to be better
+  for (int level = 1; level <= LevelErrors::Coarsest; ++level) {
+    const double steps = 1 << level;
+    const double value = this->Errors.difference(cell, level);
+    const double length = steps * this->Given.step;
+    // The mean of n places around a middle differs from that by (n^2 - 1)/24 of the curvature, and
+    // each of them by n/4 of the slope in the mean.
+    const double mean = value + this->Errors.curvature(cell) * this->Given.step * this->Given.step *
+                                    (steps * steps - 1.0) / 24.0;
+    const double spread = value + this->Errors.slope(cell) * length / 4.0;
+    least = std::max(least, std::min(most, slopes.middle * mean + slopes.half * spread));
+    errors[static_cast<std::size_t>(level - 1)] = least;
+  }
+  return errors;
 }
 
-int LevelChooser::levelOf(std::int64_t cell, const ValueRange& range, const Wish& wish,
-                          double allowance) const
+int LevelChooser::levelFor(const StepErrors& errors, double limit) const
 {
-  const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
-  if (!std::isfinite(slopes.half)) {
-    return 0;
-  }
-  if (LargestError(slopes, range) <= allowance) {
-    return this->Coarsest;
-  }
-  if (!this->Errors.isMeasured(this->Errors.blockOf(cell))) {
-    return 0;
-  }
   int level = this->Coarsest;
-  while (level > 0 && this->errorOf(cell, level, wish.step) > allowance) {
+  while (level > 0 && errors[static_cast<std::size_t>(level - 1)] > limit) {
     --level;
   }
   return level;

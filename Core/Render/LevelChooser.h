@@ -3,9 +3,12 @@
 
 #include "Core/Cache/LevelErrors.h"
 #include "Core/Render/ColorSensitivity.h"
-#include "Core/Render/MajorantGrid.h"
+#include "Core/Render/Majorants.h"
+#include "Core/Render/Ray.h"
 #include "Core/Render/WorkLimit.h"
 
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,20 +17,19 @@
 
 namespace inr {
 
-/// Chooses for every macro-cell the coarsest level of the cache that changes no pixel by more than
-/// a tolerance; see Frame::errorTolerance.
+/// Chooses for every macro-cell that can be seen the coarsest level of the cache that changes no
+/// pixel by more than a tolerance; see Frame::errorTolerance.
 ///
 /// A sample of level l stands for 2^l steps and is in their middle. LevelErrors says by how much
-/// the worst line of them through a cell is off, ColorSensitivity by how much that changes a pixel
-/// at most. Cells along a ray do not err together, and most lines are not the worst, so n cells are
-/// each given 4/sqrt(n) of the tolerance: a matter of experience, not of proof
-/// (Testing/Benchmarks/tolerance.py), which keeps to the tolerance in 99.9 % of the pixels. Before
-/// a cell is measured, or where measuring would take too long, nothing is known but that all values
-/// are in its range.
+/// its value may be off in a cell, ColorSensitivity by how much that changes a pixel, of which what
+/// lies in front hides a part. Along a ray these are added up, whatever their signs. Rays through
+/// some of the pixels, some to the width of a cell in most views, find out how much error to a step
+/// each of them can bear, and a cell is given what all rays through it can. Cells that none of them
+/// meets are of level 0, as are those that measuring would take too long for.
 class LevelChooser
 {
 public:
-  /// Only up to so many voxels are measured: some minutes of work.
+  /// Only where so many voxels have to be measured, or fewer: some minutes of work.
   static constexpr std::int64_t MostVoxels = std::int64_t{1} << 31;
   /// And so many at once.
   static constexpr std::int64_t LargestBlock = std::int64_t{1} << 24;
@@ -36,33 +38,33 @@ public:
   LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
                const MajorantGrid& cells, int levels);
 
-  /// What a choice depends on beyond the field.
+  /// What a choice depends on beyond the field and the colours.
   struct Wish
   {
-    double tolerance;  ///< of a pixel's channels, 1 = white; 0: nothing but level 0
-    double step;       ///< between samples of level 0, in voxels
+    double tolerance;  ///< of a pixel's channels, 1 = white; above 0
+    double step;       ///< t between samples of level 0
     double stepLength; ///< the same in opacity unit distances
-    double steps;      ///< of the longest ray
 
     bool operator==(const Wish& other) const
     {
       return this->tolerance == other.tolerance && this->step == other.step &&
-             this->stepLength == other.stepLength && this->steps == other.steps;
+             this->stepLength == other.stepLength;
     }
   };
-
-  enum class Outcome {
-    Same,    ///< nothing has changed since the last call
-    Changed, ///< levels() are others now
-    Partial  ///< they are as coarse as was found in time; asking again may find coarser ones
+  struct View
+  {
+    const RayGeometry& geometry;
+    int width; ///< pixels
+    int height;
   };
 
-  /// `cells`: whose extinctions are those of `colors`. Measures first what is not known of cells
-  /// that can be seen, unless a time limit leaves no time for that. Throws Error(Cancelled) when
-  /// `keepGoing` says so.
-  Outcome choose(const Wish& wish, const MajorantGrid& cells, const ColorLookup& colors,
-                 const Arena& arena, const WorkLimit& limit,
-                 const std::function<bool()>& keepGoing);
+  /// `majorants`: whose extinctions are those of `colors`. Measures first what is not known of
+  /// cells that can be seen, at least a block on each thread, as far as a time limit allows: false
+  /// if that was not all, and levels() are of no use. They depend on nothing but the arguments.
+  /// Throws Error(Cancelled) when `keepGoing` says so.
+  bool choose(const Wish& wish, const View& view, const Majorants& majorants,
+              const ColorLookup& colors, const Arena& arena, const WorkLimit& limit,
+              const std::function<bool()>& keepGoing);
   /// For when these or their extinctions change.
   void forgetColors() { this->Chosen.reset(); }
 
@@ -73,26 +75,41 @@ public:
   const std::uint8_t* levels() const { return this->Levels.data(); }
 
 private:
-  void findSlopes(const Wish& wish, const MajorantGrid& cells, const ColorLookup& colors,
-                  const Arena& arena);
-  /// What a step of a cell may add to a pixel's error.
-  double allowance(const Wish& wish) const;
-  std::vector<std::int64_t> unmeasured(const MajorantGrid& cells, double allowance) const;
+  static constexpr std::size_t LimitCount = 24;
+
+  /// What a step in a cell may add to a pixel's error if it comes from levels 1, 2, ...
+  using StepErrors = std::array<double, LevelErrors::Coarsest>;
+  struct RayWalk;
+
+  void findSlopes(const MajorantGrid& cells, const ColorLookup& colors, const Arena& arena);
+  /// Finds the cells that rays meet, and what they can bear there.
+  void sendRays(const View& view, const Majorants& majorants, const Arena& arena);
+  void follow(const Ray& ray, const Majorants& majorants, RayWalk& walk);
+  std::vector<std::int64_t> wantedBlocks() const;
   /// Whether all were.
   bool measure(const std::vector<std::int64_t>& blocks, const Arena& arena, const WorkLimit& limit,
                const std::function<bool()>& keepGoing);
-  void chooseLevels(const Wish& wish, const MajorantGrid& cells, const Arena& arena);
-  double errorOf(std::int64_t cell, int level, double step) const;
-  int levelOf(std::int64_t cell, const ValueRange& range, const Wish& wish, double allowance) const;
+  bool areTooMany(const std::vector<std::int64_t>& blocks) const;
+  void chooseLevels(const MajorantGrid& cells, const Arena& arena);
+  StepErrors errorsOf(std::int64_t cell, const ValueRange& range) const;
+  int levelFor(const StepErrors& errors, double limit) const;
+  void setLimits();
 
   std::shared_ptr<const Evaluator> Field;
+  glm::dvec3 Dims;
   LevelErrors Errors;
   int Coarsest;
   std::int64_t Points = 0;
   double SecondsPerRound = 0.1; ///< of measuring a block on each thread: a guess at first
   std::optional<Wish> Chosen;
-  bool Complete = false;
+  Wish Given{};
+  double LeastError = 0; ///< of a step, that matters at all
+  bool UsesMeasured = true;
+  std::array<double, LimitCount + 1> Limits{};  ///< of what a step may add, falling to 0
   std::vector<ColorSensitivity::Slopes> Slopes; ///< of each cell
+  std::unique_ptr<std::atomic<std::uint8_t>[]>
+      Allowed; ///< of each cell, 1 + the number of its limit; 0: not met
+  std::unique_ptr<std::atomic<std::uint8_t>[]> Wanted; ///< of each block
   std::vector<std::uint8_t> Levels;
 };
 

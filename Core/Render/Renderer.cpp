@@ -210,15 +210,13 @@ bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometr
                          this->Cached->store().cache().hierarchy().levels());
   }
   const LevelChooser::Wish wish{*frame.errorTolerance / 255.0, settings.step,
-                                settings.step * settings.unitsPerT,
-                                std::max(1.0, geometry.longest() / settings.step)};
-  const LevelChooser::Outcome outcome = this->Levels->choose(
-      wish, this->Cells.grid(0), this->Colors->lookup(), this->Threads, limit, keepGoing);
-  if (outcome != LevelChooser::Outcome::Same) {
-    this->Cached->forgetPicture();
+                                settings.step * settings.unitsPerT};
+  if (!this->Levels->choose(wish, {geometry, frame.width, frame.height}, this->Cells,
+                            this->Colors->lookup(), this->Threads, limit, keepGoing)) {
+    return false;
   }
   settings.cellLevels = this->Levels->levels();
-  return outcome != LevelChooser::Outcome::Partial;
+  return true;
 }
 
 FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
@@ -243,13 +241,13 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   }
   const BrickStore::Call call = this->Cached->call();
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
-  bool final = true;
   const std::int64_t measured = this->measuredPoints();
-  if (this->choosesLevels(frame, settings)) {
-    final = this->chooseLevels(frame, geometry, limit, keepGoing, settings);
-  }
+  const bool final = !this->choosesLevels(frame, settings) ||
+                     this->chooseLevels(frame, geometry, limit, keepGoing, settings);
+  Frame meanwhile = frame; // until all is measured, the picture is as by distance
+  meanwhile.levelOfDetailScale = final ? frame.levelOfDetailScale : 1.0;
   FrameStatistics statistics =
-      this->Cached->render(frame, geometry, this->Cells, this->Colors->lookup(), settings, lit,
+      this->Cached->render(meanwhile, geometry, this->Cells, this->Colors->lookup(), settings, lit,
                            limit, output, keepGoing);
   statistics.complete = statistics.complete && final;
   statistics.work.bricks = call.done();

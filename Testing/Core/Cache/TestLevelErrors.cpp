@@ -102,20 +102,22 @@ inr::LevelErrors Measured(const Field& field, const glm::i64vec3& dims, int edge
 
 TEST(LevelErrors, OfASlopeAreNoneButAtTheVolumesEnds)
 {
-  const glm::i64vec3 dims(160, 48, 48); // two blocks
+  const glm::i64vec3 dims(160, 48, 48); // three blocks
   const inr::LevelErrors errors =
-      Measured([](const glm::vec3& u) { return 0.1f + 0.8f * u.x; }, dims, 16);
-  EXPECT_EQ(errors.blocks(), 2);
-  for (std::int64_t x = 1; x < 9; ++x) { // the blocks meet behind cell 7
+      Measured([](const glm::vec3& u) { return 0.1f + 0.6f * u.x + 0.2f * u.y; }, dims, 16);
+  EXPECT_EQ(errors.blocks(), 3);
+  const double slope = std::hypot(0.6 / 160, 0.2 / 48);
+  for (std::int64_t x = 1; x < 9; ++x) { // blocks meet behind cells 3 and 7
     const std::int64_t inside = x + 10 * (1 + 3 * 1);
-    EXPECT_EQ(errors.blockOf(inside), x < 8 ? 0 : 1);
+    EXPECT_EQ(errors.blockOf(inside), x / 4);
     for (const int level : {1, 2, 3}) {
-      EXPECT_LT(errors.error(inside, level).spread, 1e-6) << x;
+      EXPECT_LT(errors.difference(inside, level), 1e-6) << x;
     }
-    EXPECT_NEAR(errors.slope(inside), 0.8 / 160, 1e-6) << x;
+    EXPECT_NEAR(errors.slope(inside), slope, 1e-6) << x;
+    EXPECT_LT(errors.curvature(inside), 1e-6) << x;
   }
   // Level 3 ends 3.5 voxels inside, with a mean that the end has pulled by half a voxel.
-  EXPECT_GT(errors.error(10 * (1 + 3 * 1), 3).spread, 0.2 * 0.8 / 160);
+  EXPECT_GT(errors.difference(10 * (1 + 3 * 1), 3), 3 * 0.6 / 160);
 }
 
 TEST(LevelErrors, OfAParabolaAreThoseThatOneCalculates)
@@ -131,22 +133,37 @@ TEST(LevelErrors, OfAParabolaAreThoseThatOneCalculates)
   const std::int64_t inside = 1 + 4 * (1 + 4 * 1);
   // A voxel of n = 2^l is the mean of two points n/4 from its centre: + bend n^2/16. Between two of
   // them, at s = 1/(2n), 3/(2n), ... of the way, the chord lies bend n^2 s (1 - s) above; and level
-  // 0 has no error at its voxels.
+  // 0 has no error at its voxels. From level 2 on the points are in the middle between voxels,
+  // where what is linear between those lies bend/4 above.
   for (const int level : {1, 2, 3}) {
     const double n = 1 << level;
-    double mean = 0;
-    for (double s = 0.5 / n; s < 1; s += 1 / n) {
-      mean += bend * n * n * (1.0 / 16 + s * (1 - s)) / n;
-    }
-    // Lines along x have 18 voxels, no multiple of n; those across have one value.
-    const double highest = bend * n * n * (1.0 / 16 + (level == 1 ? 3.0 / 16 : 0.25));
-    EXPECT_GE(errors.error(inside, level).mean, 0.98 * mean) << level;
-    EXPECT_LE(errors.error(inside, level).mean, 1.001 * highest) << level;
-    EXPECT_NEAR(errors.error(inside, level).spread, errors.error(inside, level).mean, 1e-6);
+    const double middle = 0.5 - 0.5 / n; // the voxel of level 0 next to the middle of the chord
+    const double highest =
+        bend * (n * n * (1.0 / 16 + middle * (1 - middle)) + (level > 1 ? 0.25 : 0.0));
+    EXPECT_NEAR(errors.difference(inside, level), highest, 2e-3 * highest) << level;
+  }
+  EXPECT_NEAR(errors.curvature(inside), 2 * bend, 2e-3 * bend);
+  EXPECT_NEAR(errors.slope(inside), 2 * bend * 16, 2e-3 * bend); // from voxel 15 to 16
+}
+
+/// Along each way to a neighbour, which the others see less of.
+TEST(LevelErrors, SeeWhatBendsInAnyDirection)
+{
+  const glm::i64vec3 dims(48, 48, 48);
+  const double bend = 0.0003;
+  for (int number = 14; number < 27; ++number) {
+    const glm::dvec3 way(number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1);
+    const inr::LevelErrors errors = Measured(
+        [&](const glm::vec3& u) {
+          const double along = glm::dot(48.0 * (glm::dvec3(u) - 0.5), way) / glm::length(way);
+          return static_cast<float>(0.1 + bend * along * along);
+        },
+        dims, 16);
+    EXPECT_NEAR(errors.curvature(1 + 3 * (1 + 3 * 1)), 2 * bend, 0.01 * bend) << number;
   }
 }
 
-TEST(LevelErrors, AreThoseOfTheWorstLineOfAThinFeature)
+TEST(LevelErrors, AreThoseOfAThinFeature)
 {
   const glm::i64vec3 dims(48, 48, 48);
   const Voxels voxels(dims, [](const glm::vec3& u) { // a wire along z through voxel (20, 24)
@@ -157,9 +174,11 @@ TEST(LevelErrors, AreThoseOfTheWorstLineOfAThinFeature)
   const auto cell = [](std::int64_t x, std::int64_t y) { return x + 3 * (y + 3 * 1); };
   // Level 1 has a quarter of the wire in each of two by two voxels around it: (3/4)^2 of a quarter
   // where the wire is.
-  EXPECT_NEAR(errors.error(cell(1, 1), 1).mean, 0.8 * (1 - 9.0 / 64), 1e-5);
-  EXPECT_LT(errors.error(cell(2, 0), 1).spread, 1e-6); // out of reach
-  EXPECT_GT(errors.error(cell(1, 1), 3).mean, 0.75);
+  EXPECT_NEAR(errors.difference(cell(1, 1), 1), 0.8 * (1 - 9.0 / 64), 1e-5);
+  EXPECT_NEAR(errors.slope(cell(1, 1)), 0.8 * std::sqrt(2.0), 1e-5);
+  EXPECT_NEAR(errors.curvature(cell(1, 1)), 1.6, 1e-5);
+  EXPECT_LT(errors.difference(cell(2, 0), 1), 1e-6); // out of reach
+  EXPECT_GT(errors.difference(cell(1, 1), 3), 0.75);
 }
 
 } // namespace

@@ -28,9 +28,9 @@ inr::TransferFunction Peak()
   return function;
 }
 
-TEST(ColorSensitivity, BoundsWhatAnyChangeInARangeDoes)
+void ExpectBounds(const inr::TransferFunction& function, double brightest)
 {
-  const inr::ColorTable table(Peak(), VolumeOf(glm::i64vec3(8)));
+  const inr::ColorTable table(function, VolumeOf(glm::i64vec3(8)));
   for (const double stepLength : {0.3, 1.0, 4.0}) {
     const inr::ColorSensitivity sensitivity(table.lookup(), stepLength);
     for (const inr::ValueRange& range : {inr::ValueRange{0.1f, 0.3f},
@@ -44,7 +44,7 @@ TEST(ColorSensitivity, BoundsWhatAnyChangeInARangeDoes)
       for (int k = 0; k < parts; ++k) {
         const float width = (range.high - range.low) / parts;
         const float low = range.low + static_cast<float>(k) * width;
-        for (const double behind : {0.0, 0.4, 1.0}) {
+        for (const double behind : {0.0, 0.4 * brightest, 1.0, brightest}) {
           const glm::dvec4 change = (Passed(table.lookup(), low + width, stepLength, behind) -
                                      Passed(table.lookup(), low, stepLength, behind)) /
                                     static_cast<double>(width);
@@ -58,6 +58,50 @@ TEST(ColorSensitivity, BoundsWhatAnyChangeInARangeDoes)
       EXPECT_GE(steepest, 0.4 * bound - 1e-4) << range.low; // and is no wild guess
     }
   }
+}
+
+TEST(ColorSensitivity, BoundsWhatAnyChangeInARangeDoes)
+{
+  ExpectBounds(Peak(), 1);
+  inr::TransferFunction bright = Peak();
+  for (glm::vec4& entry : bright.table) {
+    entry.y *= 30;
+  }
+  ExpectBounds(bright, 15);
+}
+
+/// Where opacity comes to 1, that of half a unit rises without limit, and that of two ends flat.
+TEST(ColorSensitivity, KnowsOpacitiesOfOne)
+{
+  inr::TransferFunction function;
+  for (int k = 0; k < 65; ++k) {
+    const float x = static_cast<float>(k) / 64;
+    function.table.emplace_back(x, 1 - x, 0, 1 - std::abs(2 * x - 1)); // 1 in the middle
+  }
+  const inr::ColorTable table(function, VolumeOf(glm::i64vec3(8)));
+  for (const inr::ValueRange& middle : {inr::ValueRange{0.49f, 0.495f}, {0.505f, 0.51f}}) {
+    const auto of = [&](double stepLength) {
+      return inr::ColorSensitivity(table.lookup(), stepLength).slopes(middle);
+    };
+    EXPECT_TRUE(std::isinf(of(0.5).half));
+    EXPECT_NEAR(of(1.0).middle + of(1.0).half, 2.5, 0.6); // opacity 2, and colours beside it
+    EXPECT_LT(of(2.0).middle + of(2.0).half, 1.3);
+    EXPECT_FALSE(std::isinf(inr::ColorSensitivity(table.lookup(), 0.5).slopes({0.1f, 0.4f}).half));
+  }
+}
+
+TEST(ColorSensitivity, KnowsHowMuchIsHiddenAtLeast)
+{
+  inr::TransferFunction ramp;
+  for (int k = 0; k < 65; ++k) {
+    ramp.table.emplace_back(1, 1, 1, 0.5f * static_cast<float>(k) / 64);
+  }
+  const inr::ColorTable table(ramp, VolumeOf(glm::i64vec3(8)));
+  const inr::ColorSensitivity sensitivity(table.lookup(), 3.0);
+  const float depth = sensitivity.slopes({0.6f, 0.9f}).depth;
+  EXPECT_LE(depth, -3 * std::log(1 - 0.5 * 0.6) * 1.001);
+  EXPECT_GE(depth, -3 * std::log(1 - 0.5 * 0.6) * 0.9); // an entry's width less
+  EXPECT_LT(sensitivity.slopes({0.0f, 1.0f}).depth, 1e-6);
 }
 
 TEST(ColorSensitivity, IsAllMiddleWhereColoursAreLinear)
