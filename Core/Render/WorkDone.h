@@ -12,7 +12,7 @@ namespace inr {
 /// reports nothing.
 struct WorkDone
 {
-  /// Points at which the field was asked one by one: by rays and paths without a cache, six for
+  /// Points at which the field was asked but for bricks: by rays and paths without a cache, six for
   /// each of their gradients included, by paths whose bricks the cache cannot hold, and by
   /// LevelChooser.
   std::int64_t networkSamples = 0;

@@ -14,6 +14,7 @@ namespace inr {
 /// - whether rays are marched once more through the bricks that have come in meanwhile,
 /// - how many bricks are loaded within a frame, and how far one gets that wants more of them than
 ///   the cache holds,
+/// - whether the field is measured further for an error tolerance,
 /// - how many rounds of paths are traced and, where the network is asked what they meet, through
 ///   how many tiles.
 /// Counted, it is one pass, CacheOptions::maximumRequests bricks at most (so many for each pass

@@ -162,9 +162,10 @@ public:
    * the cache (FLOAT32 with 0, else BITS16) follow from it; LevelOfDetailScale, AdaptiveSampling
    * and CachePrecision do not count. 0: not at all. Below 0, the default: they do, and levels
    * follow from the distance to the viewer. Lit, cropped (but to a box), projected and path-traced
-   * pictures are as with 0. It has to know the field, which the first picture waits for: about as
-   * long as decoding all that can be seen; it is only guessed, on the safe side, for more than 2^31
-   * voxels.
+   * pictures are as with 0. It needs the cache: CacheMode NETWORK_ONLY does without. It has to know
+   * the field where that can be seen, which the first picture waits for: about as long as decoding
+   * all of that; where it is more than some 800 million voxels, all are of the full resolution.
+   * Rays end at 0.999 of opacity, so below 0.3 it cannot be kept in opaque media.
    */
   vtkSetClampMacro(ErrorTolerance, double, -1.0, 255.0);
   vtkGetMacro(ErrorTolerance, double);
@@ -320,8 +321,8 @@ public:
 
   ///@{
   /**
-   * What the last call had to do: points at which the network was asked one by one, bricks that it
-   * decoded (those that come in behind the application belong to the next call), and macro-cells
+   * What the last call had to do: points at which the network was asked but for bricks, bricks that
+   * it decoded (those that come in behind the application belong to the next call), and macro-cells
    * that rays looked at. All 0 where nothing had changed since a picture that is complete: it is
    * shown again.
    */

@@ -260,6 +260,18 @@ inr::TransferFunction Ramp(const glm::vec4& from, const glm::vec4& to)
   return function;
 }
 
+/// One every three voxels of a gradient over 96.
+inr::TransferFunction Peaks()
+{
+  inr::TransferFunction function;
+  for (int k = 0; k < 1024; ++k) {
+    const float place = 32.0f * static_cast<float>(k) / 1023;
+    const float peak = std::max(0.0f, 1 - 4 * std::abs(place - std::floor(place) - 0.5f));
+    function.table.emplace_back(1, 1, 1, 0.3f * peak);
+  }
+  return function;
+}
+
 FieldEvaluator::Function Waves(const glm::vec3& perVoxel)
 {
   return [perVoxel](const glm::vec3& u) {
@@ -281,6 +293,7 @@ std::vector<HardScene> HardScenes()
           {"OpacityOfOne", Waves({1.0f / 30, 0, 1.0f / 50}), opaque, z, 1, 1},
           {"FarApartSlices", Waves({1.0f / 60, 0, 1.0f / 40}), faint, {1, 0.1, 0}, 30, 8},
           {"BrightColours", Waves({1.0f / 40, 1.0f / 50, 0}), bright, {0.3, 0.2, 1}},
+          {"PeaksInAGradient", [](const glm::vec3& u) { return u.z; }, Peaks(), z},
           {"OneOpacity",
            Waves({0, 1.0f / 8, 0}),
            Ramp({0, 1, 0, 0.05f}, {1, 0, 1, 0.05f}),

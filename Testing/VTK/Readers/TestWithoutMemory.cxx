@@ -100,7 +100,7 @@ protected:
     return sum;
   }
 
-  /// `update` makes an algorithm, updates it, and returns it with what it gave.
+  /// `connect` gives an algorithm its input.
   template <typename Algorithm, typename Connect> void survive(const Connect& connect)
   {
     ASSERT_NE(Library.begin, 0u);
