@@ -26,7 +26,7 @@ UNIT = 0.1  # half-heights that the opacities are for
 VIEWS = {
     "far": ([12.57, -20.0, 15.0], [12.57, 4.7, 0.6], 40),
     "middle": ([5.0, 1.0, 3.2], [8.5, 4.5, 0.9], 45),
-    "near": ([12.0, 4.0, 1.05], [12.8, 4.6, 0.7], 50),
+    "near": ([12.0, 4.0, 0.3], [12.25, 4.2, 0.0], 50),
 }
 
 
@@ -103,7 +103,7 @@ def take(name):
     scene = {"dims": given["dims"], "size": PIXELS, "position": position, "focal_point": focus,
              "view_up": [0, 0, 1], "view_angle": angle, "unit_distance": UNIT, "colors": COLORS,
              "clipping_range": list(camera.GetClippingRange()), "seed": 0,
-             "sample_distance": 4 * given["dims"][0] / 10240}
+             "sample_distance": 8 * given["dims"][0] / 10240}
     with open(path + ".json", "w") as file:
         json.dump(scene, file)
     return {"seconds": seconds, "converged": display.GetPropertyValue("Converged"),
