@@ -236,7 +236,7 @@ TEST(Isosurface, DependsOnNeitherThreadsNorTheSizeOfTheCache)
 {
   const BlendScene scene;
   inr::Frame frame = LitFrame(scene);
-  frame.levelOfDetailScale = 0.3; // levels 0 and 1
+  frame.levelOfDetailScale = 0.45; // levels 0 and 1
   BlendScene::Cache large;
   large.threads = 3;
   BlendScene::Cache small;
