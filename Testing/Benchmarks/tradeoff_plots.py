@@ -73,8 +73,9 @@ def draw_pareto(folder, results):
         knobs = single.get(scene, {})
         usual = knobs["defaults"][0]
         others = grid.get(scene, {}).get("grid", [])
-        plot.plot([point["value"] for point in others], [point["psnr_a"] for point in others],
-                  marker=".", linewidth=0, color="#b8b6ae", label="three knobs at once")
+        if others:
+            plot.plot([point["value"] for point in others], [point["psnr_a"] for point in others],
+                      marker=".", linewidth=0, color="#b8b6ae", label="three knobs at once")
         for knob in KNOBS:
             if knob in knobs:
                 draw_curve(plot, knob, knobs[knob], usual)
