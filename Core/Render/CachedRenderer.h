@@ -72,9 +72,6 @@ public:
                          const std::function<bool()>& keepGoing);
   /// Forgets what was made of the colours; for when they change.
   void forgetColors();
-  /// Forgets what is known of the latest picture; for when another one is to be made of the same
-  /// frame.
-  void forgetPicture() { this->Unfinished.reset(); }
 
   const BrickStore& store() const { return *this->Store; }
   const std::shared_ptr<BrickStore>& sharedStore() const { return this->Store; }

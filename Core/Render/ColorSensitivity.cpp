@@ -52,8 +52,8 @@ Interval SlopesOf(const glm::dvec2& color, const glm::dvec2& opacity, double beh
   const Step second = StepAt(opacity[1], length);
   const double rise = opacity[1] - opacity[0];
   const Interval opacities = Hull(first.opacity, second.opacity);
-  const Interval change = Hull(color[1] - color[0], color[1] - color[0]);
-  const Interval own = Product(change, opacities);
+  const double change = color[1] - color[0];
+  const Interval own = Product({change, change}, opacities);
   if (rise == 0.0) {
     return own;
   }

@@ -22,10 +22,11 @@ namespace inr {
 ///
 /// A sample of level l stands for 2^l steps and is in their middle. LevelErrors says by how much
 /// its value may be off in a cell, ColorSensitivity by how much that changes a pixel, of which what
-/// lies in front hides a part. Along a ray these are added up, whatever their signs. Rays through
-/// some of the pixels, some to the width of a cell in most views, find out how much error to a step
-/// each of them can bear, and a cell is given what all rays through it can. Cells that none of them
-/// meets are of level 0, as are those that measuring would take too long for.
+/// lies in front hides a part. Along a ray these are added up, whatever their signs. That is done
+/// for a grid of pixels, at most 48 across: each ray finds the largest error to a step that all of
+/// its cells together may have, and a cell is allowed the least that any ray through it found.
+/// Cells that none of these rays meets are of level 0, as are those that would take too long to
+/// measure.
 class LevelChooser
 {
 public:
