@@ -10,6 +10,7 @@
 #include "Core/Image/Metrics.h"
 #include "Core/Model/ModelFile.h"
 #include "Testing/Benchmarks/FrameScenes.h"
+#include "Testing/Core/Image/PixelDifferences.h"
 
 #include <cmath>
 #include <ctime>
@@ -19,32 +20,6 @@
 namespace {
 
 constexpr int Frames = 3;
-
-/// The largest difference of a channel, in 1/255, of each pixel where either picture shows
-/// something; rising.
-std::vector<float> Differences(const inr::Image& a, const inr::Image& b)
-{
-  std::vector<float> differences;
-  for (std::size_t k = 0; k < a.pixels.size(); k += 4) {
-    if (a.pixels[k + 3] > 0 || b.pixels[k + 3] > 0) {
-      float largest = 0;
-      for (std::size_t channel = k; channel < k + 4; ++channel) {
-        largest = std::max(largest, std::abs(a.pixels[channel] - b.pixels[channel]));
-      }
-      differences.push_back(255 * largest);
-    }
-  }
-  std::sort(differences.begin(), differences.end());
-  return differences;
-}
-
-double ShareWithin(const std::vector<float>& differences, double tolerance)
-{
-  const auto end =
-      std::upper_bound(differences.begin(), differences.end(), static_cast<float>(tolerance));
-  return static_cast<double>(end - differences.begin()) /
-         std::max(1.0, static_cast<double>(differences.size()));
-}
 
 struct Shown
 {
@@ -125,8 +100,8 @@ private:
     std::ostringstream text;
     text << ", tolerance " << tolerance << ", " << this->Name;
     const std::string where = text.str();
-    const std::vector<float> differences = Differences(shown.picture, this->Truth);
-    Report("tolerance held pixels" + where, ShareWithin(differences, tolerance), "", "higher",
+    const std::vector<float> differences = PixelDifferences(shown.picture, this->Truth);
+    Report("tolerance held pixels" + where, ShareWithin(tolerance, differences), "", "higher",
            Target(0.999));
     Report("99.9 % of pixels are within" + where,
            differences.empty() ? 0 : differences[differences.size() * 999 / 1000], "1/255",

@@ -17,7 +17,7 @@ TEST(Cached, EqualsTheMarcherOverTheDenseVoxels)
 {
   CompareWithDense([](const glm::dvec3& dims) { return Oblique(dims); },
                    [](const inr::Image& cached, const inr::Image& dense) {
-                     EXPECT_LT(LargestDifference(cached, dense), 2e-5f);
+                     EXPECT_LT(inr::ImageMaximumError(cached, dense), 2e-5f);
                    });
 }
 
@@ -157,7 +157,7 @@ TEST(Cached, LogarithmicColoursAreTheSameThroughTheCache)
   dense.setTransferFunction(function);
   cached.setTransferFunction(function);
   const inr::Frame frame = Oblique(glm::dvec3(dims));
-  EXPECT_LT(LargestDifference(Render(cached, frame), Render(dense, frame)), 2e-4f);
+  EXPECT_LT(inr::ImageMaximumError(Render(cached, frame), Render(dense, frame)), 2e-4f);
 }
 
 TEST(Cached, KeepsItsBudget)

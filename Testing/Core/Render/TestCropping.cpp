@@ -3,6 +3,7 @@
 // Cropping regions, in ray marching by a sum along the rays in double, in path tracing by clipping
 // planes.
 #include "Core/Error.h"
+#include "Core/Image/Metrics.h"
 #include "Core/Random.h"
 #include "Core/Render/Ray.h"
 #include "Testing/Core/Render/BlendScene.h"
@@ -114,7 +115,7 @@ TEST_P(CroppingRegions, OfABoxAreItsPlanes)
                               {0, 0, 1, -box.low.z},
                               {0, 0, -1, box.high.z}};
     const inr::Image image = Render(renderer, cropped);
-    EXPECT_LT(LargestDifference(image, Render(renderer, clipped)), 1e-4f);
+    EXPECT_LT(inr::ImageMaximumError(image, Render(renderer, clipped)), 1e-4f);
     EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 0.1f);
   }
 }

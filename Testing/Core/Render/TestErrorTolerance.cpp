@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
 #include "Core/Render/LevelChooser.h"
+#include "Testing/Core/Image/PixelDifferences.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -89,23 +90,6 @@ Drawn Draw(inr::Renderer& renderer, const inr::Frame& frame)
   return drawn;
 }
 
-/// Of the pixels that show something, how many differ by no more than a tolerance, in 1/255.
-double ShareWithin(double tolerance, const inr::Image& a, const inr::Image& b)
-{
-  double seen = 0;
-  double within = 0;
-  for (std::size_t k = 0; k < a.pixels.size(); k += 4) {
-    float largest = 0;
-    for (std::size_t channel = k; channel < k + 4; ++channel) {
-      largest = std::max(largest, std::abs(a.pixels[channel] - b.pixels[channel]));
-    }
-    const bool shown = a.pixels[k + 3] > 0 || b.pixels[k + 3] > 0;
-    seen += shown ? 1 : 0;
-    within += shown && 255 * largest <= tolerance ? 1 : 0;
-  }
-  return within / seen;
-}
-
 TEST(ErrorTolerance, OfZeroIsTheFullResolution)
 {
   inr::Renderer renderer = MakeRenderer();
@@ -126,7 +110,8 @@ TEST(ErrorTolerance, IsKeptWithFewerSamples)
   double last = static_cast<double>(exact.statistics.samples);
   for (const double tolerance : {0.5, 2.0, 8.0}) {
     const Drawn drawn = Draw(renderer, FrameWith(tolerance));
-    EXPECT_GE(ShareWithin(tolerance, drawn.picture, exact.picture), 0.999) << tolerance;
+    EXPECT_GE(ShareWithin(tolerance, PixelDifferences(drawn.picture, exact.picture)), 0.999)
+        << tolerance;
     EXPECT_LE(static_cast<double>(drawn.statistics.samples), last);
     last = static_cast<double>(drawn.statistics.samples);
   }
@@ -142,7 +127,7 @@ TEST(ErrorTolerance, IsKeptBetweenTheRaysThatLookAhead)
   const Drawn exact = Draw(renderer, frame);
   frame.errorTolerance = 2.0;
   const Drawn drawn = Draw(renderer, frame);
-  EXPECT_GE(ShareWithin(2.0, drawn.picture, exact.picture), 0.999);
+  EXPECT_GE(ShareWithin(2.0, PixelDifferences(drawn.picture, exact.picture)), 0.999);
   EXPECT_LT(drawn.statistics.samples, exact.statistics.samples);
 }
 
@@ -169,7 +154,7 @@ TEST(ErrorTolerance, AsksForNextToNothingWhereColoursAreTheSame)
   renderer.setTransferFunction(UniformMedium(0.01f));
   const Drawn exact = Draw(renderer, FrameWith(0.0));
   const Drawn drawn = Draw(renderer, FrameWith(0.01));
-  EXPECT_LT(255 * LargestDifference(drawn.picture, exact.picture), 0.01);
+  EXPECT_LT(255 * inr::ImageMaximumError(drawn.picture, exact.picture), 0.01);
   EXPECT_LT(drawn.statistics.samples, exact.statistics.samples / 6);
   EXPECT_EQ(drawn.statistics.levels.finest, inr::LevelErrors::Coarsest);
 }
@@ -224,7 +209,7 @@ TEST(ErrorTolerance, ComesAboutInLimitedTime)
   }
   EXPECT_GT(frames, 2); // eight blocks on two threads
   inr::Renderer unhurried = MakeRenderer();
-  EXPECT_LE(LargestDifference(picture, Draw(unhurried, FrameWith(4.0)).picture), 2e-3f);
+  EXPECT_LE(inr::ImageMaximumError(picture, Draw(unhurried, FrameWith(4.0)).picture), 2e-3f);
 }
 
 TEST(ErrorTolerance, MeasuresTheFieldOnceForAllTolerancesAndColours)
@@ -331,7 +316,8 @@ TEST_P(HardToKeepTo, ATolerance)
   for (const double tolerance : {0.5, 2.0, 8.0, 32.0}) {
     frame.errorTolerance = tolerance;
     const Drawn drawn = Draw(renderer, frame);
-    EXPECT_GE(ShareWithin(tolerance, drawn.picture, exact.picture), 0.999) << tolerance;
+    EXPECT_GE(ShareWithin(tolerance, PixelDifferences(drawn.picture, exact.picture)), 0.999)
+        << tolerance;
   }
 }
 
@@ -362,8 +348,8 @@ TEST(ErrorTolerance, HasPiecesThatMakeUpTheWhole)
     blended.pixels[k] += (1 - near.pixels[k / 4 * 4 + 3]) * behind.pixels[k];
   }
   // Rays end where they are opaque enough, at another place when what is in front is not known.
-  EXPECT_LT(LargestDifference(blended, whole), 2e-3f);
-  EXPECT_GT(LargestDifference(near, whole), 0.02f);
+  EXPECT_LT(inr::ImageMaximumError(blended, whole), 2e-3f);
+  EXPECT_GT(inr::ImageMaximumError(near, whole), 0.02f);
 }
 
 } // namespace

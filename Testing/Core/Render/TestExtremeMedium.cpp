@@ -3,6 +3,7 @@
 // Transfer functions of extreme opacity, steepness and place, and rays of extreme sampling: against
 // closed forms.
 #include "Core/Error.h"
+#include "Core/Image/Metrics.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 namespace {
@@ -158,7 +159,7 @@ TEST_P(ExtremeMedium, IsTheSameForDataOfAnyRange)
   EXPECT_GT(truth.pixels[3], 0.1f);
   for (const glm::dvec2& range : {glm::dvec2(1e9, 1), glm::dvec2(-1e-38, 2e-38),
                                   glm::dvec2(-1e38, 2e38), glm::dvec2(-1e15, 1)}) {
-    EXPECT_LT(LargestDifference(picture(range.x, range.y), truth), 2e-5f) << range.x;
+    EXPECT_LT(inr::ImageMaximumError(picture(range.x, range.y), truth), 2e-5f) << range.x;
   }
 }
 

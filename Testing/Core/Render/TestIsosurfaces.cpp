@@ -3,6 +3,7 @@
 // Isosurfaces along rays, through the cache and straight from the field, against a fine search in
 // double.
 #include "Core/Error.h"
+#include "Core/Image/Metrics.h"
 #include "Core/Render/Shading.h"
 #include "Testing/Core/Render/BlendScene.h"
 
@@ -191,7 +192,7 @@ TEST_P(Isosurfaces, SkipCellsWithoutThemAndShowTheSame)
     inr::Image slow;
     const inr::FrameStatistics fewer = with.render(frame, fast);
     const inr::FrameStatistics all = without.render(frame, slow);
-    EXPECT_LT(LargestDifference(fast, slow), 1e-3f);
+    EXPECT_LT(inr::ImageMaximumError(fast, slow), 1e-3f);
     EXPECT_LT(3 * fewer.samples, 2 * all.samples);
     EXPECT_EQ(fewer.clamped, 0);
   }

@@ -101,7 +101,7 @@ TEST(Shading, ThroughTheCacheEqualsThatOverTheDenseVoxels)
   CompareWithDense([](const glm::dvec3& dims) { return Lit(dims); },
                    [](const inr::Image& cached, const inr::Image& dense) {
                      EXPECT_GT(inr::ImagePsnr(cached, dense), 75);
-                     EXPECT_LT(LargestDifference(cached, dense), 2e-2f);
+                     EXPECT_LT(inr::ImageMaximumError(cached, dense), 2e-2f);
                    });
 }
 
@@ -115,9 +115,9 @@ TEST(Shading, WithoutLightButAmbientIsNone)
     frame.shading.reset();
     const inr::Image plain = Render(renderer, frame);
     frame.shading = inr::Material{1.0f, 0.7f, 0.3f, 3.0f};
-    EXPECT_LT(LargestDifference(Render(renderer, frame), plain), 3e-4f) << cached;
+    EXPECT_LT(inr::ImageMaximumError(Render(renderer, frame), plain), 3e-4f) << cached;
     frame.lights = {Sun({1, 1, 1})};
-    EXPECT_GT(LargestDifference(Render(renderer, frame), plain), 0.05f) << cached;
+    EXPECT_GT(inr::ImageMaximumError(Render(renderer, frame), plain), 0.05f) << cached;
     frame.lights.clear();
   }
 }

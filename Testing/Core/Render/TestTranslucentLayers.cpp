@@ -3,6 +3,7 @@
 // Truth: the parts of the volume in front of and behind a surface, rendered apart (clipped by a
 // plane), and the surface, laid over each other by hand.
 #include "Core/Error.h"
+#include "Core/Image/Metrics.h"
 #include "Testing/Core/Render/PathScene.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
@@ -124,7 +125,7 @@ TEST(TranslucentLayers, OfNothingChangeNothing)
   inr::Frame frame = View();
   const inr::Image alone = Render(renderer, frame);
   AddSurface(frame, 100, {}); // at depth above 1
-  EXPECT_LT(LargestDifference(Render(renderer, frame), alone), 1e-6f);
+  EXPECT_LT(inr::ImageMaximumError(Render(renderer, frame), alone), 1e-6f);
 }
 
 TEST(TranslucentLayers, ThatLetNothingThroughEndTheRay)
@@ -155,7 +156,7 @@ TEST(TranslucentLayers, DoNotMoveTheDepthOfTheVolume)
   AddSurface(frame, 1, Glass);
   AddSurface(frame, 12, Glass);
   renderer.render(frame, rgba, &layered);
-  EXPECT_LT(LargestDifference(alone, layered), 0.1f / 50);
+  EXPECT_LT(inr::ImageMaximumError(alone, layered), 0.1f / 50);
 }
 
 TEST(TranslucentLayers, AreSeenInFrontOfTheFirstCollisionOfPaths)

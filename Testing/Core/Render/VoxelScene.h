@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -88,15 +87,6 @@ inline inr::Frame Oblique(const glm::dvec3& dims, int size = 48)
   frame.levelOfDetailScale = 0;
   frame.sampleDistance = 0.7;
   return frame;
-}
-
-inline float LargestDifference(const inr::Image& a, const inr::Image& b)
-{
-  float largest = 0;
-  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
-    largest = std::max(largest, std::abs(a.pixels[k] - b.pixels[k]));
-  }
-  return largest;
 }
 
 inline inr::CacheOptions Options(inr::CachePrecision precision, int brickSize)

@@ -10,9 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace {
 
 struct Order
@@ -68,15 +65,6 @@ inr::Image Over(const inr::Image& front, const inr::Image& back)
   return result;
 }
 
-float LargestDifference(const inr::Image& a, const inr::Image& b)
-{
-  float largest = 0;
-  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
-    largest = std::max(largest, std::abs(a.pixels[k] - b.pixels[k]));
-  }
-  return largest;
-}
-
 class Several : public testing::TestWithParam<Order>
 {};
 
@@ -87,9 +75,10 @@ TEST_P(Several, AreDrawnFromTheFurthestToTheNearest)
   const inr::Image far = two.capture(false, true);
   const inr::Image both = two.capture(true, true);
   test::WritePng(std::string(INR_TEST_OUTPUT) + "/Several" + this->GetParam().name + ".png", both);
-  EXPECT_LT(LargestDifference(both, Over(near, far)), 3.0f / 255);
-  EXPECT_GT(LargestDifference(both, Over(far, near)), 20.0f / 255); // else there is nothing to see
-  EXPECT_LT(LargestDifference(two.capture(true, true), both), 1e-6f); // frame after frame
+  EXPECT_LT(inr::ImageMaximumError(both, Over(near, far)), 3.0f / 255);
+  EXPECT_GT(inr::ImageMaximumError(both, Over(far, near)),
+            20.0f / 255); // else there is nothing to see
+  EXPECT_LT(inr::ImageMaximumError(two.capture(true, true), both), 1e-6f); // frame after frame
 }
 
 TEST_P(Several, StayWhenTheOtherIsHidden)
@@ -98,9 +87,9 @@ TEST_P(Several, StayWhenTheOtherIsHidden)
   const inr::Image near = two.capture(true, false);
   const inr::Image far = two.capture(false, true);
   two.capture(true, true);
-  EXPECT_LT(LargestDifference(two.capture(true, false), near), 1e-6f);
+  EXPECT_LT(inr::ImageMaximumError(two.capture(true, false), near), 1e-6f);
   two.capture(true, true);
-  EXPECT_LT(LargestDifference(two.capture(false, true), far), 1e-6f);
+  EXPECT_LT(inr::ImageMaximumError(two.capture(false, true), far), 1e-6f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Mapper, Several,

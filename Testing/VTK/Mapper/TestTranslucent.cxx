@@ -174,15 +174,6 @@ inr::Image SheetAlone(double offset)
   return parts.rgba();
 }
 
-double LargestDifference(const inr::Image& a, const inr::Image& b)
-{
-  double largest = 0;
-  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
-    largest = std::max<double>(largest, std::abs(a.pixels[k] - b.pixels[k]));
-  }
-  return largest;
-}
-
 double MeanDifference(const inr::Image& a, const inr::Image& b)
 {
   double sum = 0;
@@ -205,7 +196,7 @@ protected:
     Write(shown, name + this->GetParam().name);
     Write(truth, name + "Truth");
     EXPECT_LT(MeanDifference(shown, truth), 1.2 / 255);
-    EXPECT_LT(LargestDifference(shown, truth), 6.0 / 255);
+    EXPECT_LT(inr::ImageMaximumError(shown, truth), 6.0 / 255);
   }
 };
 
@@ -311,7 +302,7 @@ TEST_P(Translucent, SurviveWindowsAndViewportsOfNoSize)
   scene.scene.window->SetSize(1, 1);
   scene.scene.window->Render();
   scene.scene.window->SetSize(test::Scene::Width, test::Scene::Height);
-  EXPECT_LT(LargestDifference(scene.capture(), before), 1e-6);
+  EXPECT_LT(inr::ImageMaximumError(scene.capture(), before), 1e-6);
   EXPECT_EQ(messages.errors, 0) << messages.last;
 }
 
