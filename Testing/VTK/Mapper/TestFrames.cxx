@@ -1,75 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens around a frame: how it is scheduled, what it reads, what it leaves behind.
+// What happens around a frame: what it reads, what it tells, what it leaves behind.
 #include "Core/Image/Exr.h"
 #include "Core/Image/Metrics.h"
-#include "ImageReduction.h"
-#include "TestModel.h"
-#include "TestScene.h"
-#include "vtkINRVolumeMapper.h"
+#include "OneVolume.h"
 
-#include <vtkActor.h>
 #include <vtkActor2D.h>
-#include <vtkCallbackCommand.h>
-#include <vtkCamera.h>
-#include <vtkColorTransferFunction.h>
-#include <vtkCubeSource.h>
-#include <vtkPiecewiseFunction.h>
 #include <vtkPlane.h>
-#include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkVolumeProperty.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <string>
 
 namespace {
 
-std::string ModelFile() { return test::Write(*test::MakeModel(), "Frames.inr"); }
-
-/// One volume seen in perspective; what most tests here start from.
-struct OneVolume
-{
-  OneVolume() : OneVolume(test::InrMapper(ModelFile())) {}
-  explicit OneVolume(vtkSmartPointer<vtkINRVolumeMapper> inr) : mapper(inr)
-  {
-    this->renderer = this->scene.addRenderer();
-    this->volume = this->scene.addVolume(this->renderer, this->mapper);
-    test::Scene::look(this->renderer);
-  }
-
-  vtkSmartPointer<vtkActor> addCube()
-  {
-    vtkNew<vtkCubeSource> cube;
-    cube->SetCenter(this->volume->GetCenter());
-    cube->SetXLength(20);
-    cube->SetYLength(20);
-    cube->SetZLength(20);
-    vtkNew<vtkPolyDataMapper> polygons;
-    polygons->SetInputConnection(cube->GetOutputPort());
-    auto actor = vtkSmartPointer<vtkActor>::New();
-    actor->SetMapper(polygons);
-    this->renderer->AddActor(actor);
-    return actor;
-  }
-
-  test::Scene scene;
-  vtkSmartPointer<vtkINRVolumeMapper> mapper;
-  vtkRenderer* renderer = nullptr;
-  vtkVolume* volume = nullptr;
-};
-
-float LargestDifference(const inr::Image& a, const inr::Image& b)
-{
-  EXPECT_EQ(a.pixels.size(), b.pixels.size());
-  float largest = 0;
-  for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i) {
-    largest = std::max(largest, std::abs(a.pixels[i] - b.pixels[i]));
-  }
-  return largest;
-}
+using test::OneVolume;
 
 TEST(Frames, SayWhatTheyTook)
 {
@@ -80,75 +27,6 @@ TEST(Frames, SayWhatTheyTook)
   EXPECT_GT(one.mapper->GetNumberOfSamples(), 10000);
   EXPECT_EQ(one.mapper->GetImageReduction(), 1);
   EXPECT_EQ(std::string(one.mapper->GetBackendInUse()).substr(0, 4), "CPU ");
-}
-
-/// Something that makes for another picture.
-struct Change
-{
-  const char* name;
-  std::function<void(OneVolume&)> make;
-};
-
-TEST(Frames, AreNotMadeAgainWhileNothingChanges)
-{
-  const Change changes[] = {
-      {"camera", [](OneVolume& one) { one.renderer->GetActiveCamera()->Azimuth(3); }},
-      {"colours",
-       [](OneVolume& one) {
-         one.volume->GetProperty()->GetRGBTransferFunction()->AddRGBPoint(0.4, 0.1, 0.9, 0.3);
-       }},
-      {"opacity",
-       [](OneVolume& one) { one.volume->GetProperty()->GetScalarOpacity()->AddPoint(0.4, 0.35); }},
-      {"unit distance",
-       [](OneVolume& one) { one.volume->GetProperty()->SetScalarOpacityUnitDistance(0.7); }},
-      {"sample distance", [](OneVolume& one) { one.mapper->SetSampleDistance(0.8); }},
-      {"samples per pixel", [](OneVolume& one) { one.mapper->SetSamplesPerPixel(3); }},
-      {"cache", [](OneVolume& one) { one.mapper->SetCachePrecision(0); }},
-      {"surface in it", [](OneVolume& one) { one.addCube(); }},
-      {"place", [](OneVolume& one) { one.volume->AddPosition(1, 2, 3); }},
-      {"window", [](OneVolume& one) { one.scene.window->SetSize(200, 160); }}};
-  for (const int mode : {0, 1}) { // ray marching, path tracing
-    OneVolume one;
-    one.mapper->SetRenderMode(mode);
-    one.mapper->SetSamplesPerPixel(2);
-    inr::Image shown = one.scene.capture();
-    EXPECT_TRUE(one.mapper->GetConverged());
-    EXPECT_GT(one.mapper->GetNumberOfVisitedCells(), 0);
-    for (const Change& change : changes) {
-      SCOPED_TRACE(change.name);
-      const vtkIdType samples = one.mapper->GetNumberOfSamples();
-      EXPECT_EQ(one.scene.capture().pixels, shown.pixels);
-      EXPECT_EQ(one.mapper->GetNumberOfVisitedCells(), 0);
-      EXPECT_EQ(one.mapper->GetNumberOfNetworkSamples(), 0);
-      EXPECT_EQ(one.mapper->GetNumberOfDecodedBricks(), 0);
-      EXPECT_EQ(one.mapper->GetNumberOfSamples(), samples); // the picture's, as before
-      EXPECT_TRUE(one.mapper->GetConverged());
-      change.make(one);
-      const inr::Image next = one.scene.capture();
-      const std::string name = change.name;
-      const bool matters = mode == 1 || name != "samples per pixel";
-      const bool shows = name != "cache" && (mode == 0 || name != "sample distance");
-      EXPECT_EQ(one.mapper->GetNumberOfVisitedCells() > 0, matters);
-      EXPECT_TRUE(!matters || !shows || next.pixels != shown.pixels);
-      shown = next;
-    }
-  }
-}
-
-TEST(Frames, GiveWayToCoarserOnesWhenTheyComeTooLate)
-{
-  for (const int mode : {0, 1}) { // ray marching, path tracing
-    OneVolume one;
-    one.mapper->SetRenderMode(mode);
-    one.mapper->SetAdaptiveSampling(false);
-    one.mapper->SetSampleDistance(0.001);
-    one.volume->GetProperty()->SetScalarOpacityUnitDistance(mode == 0 ? 1000 : 0.01);
-    one.scene.window->SetDesiredUpdateRate(200);
-    const inr::Image first = one.scene.capture();
-    EXPECT_GT(one.mapper->GetImageReduction(),
-              mode == 0 ? inr::ImageReduction::Unmeasured : inr::ImageReduction::UnmeasuredPaths);
-    EXPECT_GT(*std::max_element(first.pixels.begin(), first.pixels.end()), 0.0f) << mode;
-  }
 }
 
 TEST(Frames, ReadDepthOnlyWhenSomethingOpaqueIsVisible)
@@ -184,10 +62,10 @@ TEST(Frames, SeeMultisampledDepth)
 
 TEST(Frames, DoNotDependOnThePresentedGrid)
 {
-  const std::string file = ModelFile();
+  const std::string file = test::ModelFile();
   OneVolume native(test::InrMapper(file, 0));
   OneVolume coarse(test::InrMapper(file, 1000));
-  EXPECT_LT(LargestDifference(native.scene.capture(), coarse.scene.capture()), 2.5f / 255);
+  EXPECT_LT(inr::ImageMaximumError(native.scene.capture(), coarse.scene.capture()), 2.5f / 255);
 }
 
 TEST(Frames, DoNotDependOnThreads)
@@ -196,7 +74,7 @@ TEST(Frames, DoNotDependOnThreads)
   one.mapper->SetNumberOfThreads(1);
   const inr::Image first = one.scene.capture();
   one.mapper->SetNumberOfThreads(3);
-  EXPECT_EQ(LargestDifference(first, one.scene.capture()), 0);
+  EXPECT_EQ(inr::ImageMaximumError(first, one.scene.capture()), 0);
 }
 
 TEST(Frames, AreWrittenExactly)
@@ -207,7 +85,7 @@ TEST(Frames, AreWrittenExactly)
   ASSERT_TRUE(one.mapper->WriteEXR(file.c_str()));
   inr::Image depth;
   const inr::Image exact = inr::ReadExr(file, &depth);
-  EXPECT_LT(LargestDifference(window, exact), 1.0f / 255); // 8 bits against float
+  EXPECT_LT(inr::ImageMaximumError(window, exact), 1.0f / 255); // 8 bits against float
   ASSERT_EQ(depth.width, exact.width);
   const float nearest = *std::min_element(depth.pixels.begin(), depth.pixels.end());
   EXPECT_GT(nearest, 0);
@@ -259,7 +137,7 @@ TEST(Frames, KeepWithinATolerance)
   const inr::Image rough = one.scene.capture();
   EXPECT_GT(one.mapper->GetCoarsestLevel(), 0);
   EXPECT_LT(one.mapper->GetNumberOfSamples(), samples);
-  EXPECT_LT(255 * LargestDifference(exact, rough), 200);
+  EXPECT_LT(255 * inr::ImageMaximumError(exact, rough), 200);
   // The precision of the cache follows from it, too.
   one.mapper->SetCachePrecision(vtkINRVolumeMapper::BITS8);
   EXPECT_EQ(one.scene.capture().pixels, rough.pixels);
@@ -317,30 +195,6 @@ TEST(Frames, CannotBeWrittenBeforeTheFirstOrToNowhere)
   EXPECT_NE(messages.last.find("/nonexistent-folder/late.exr"), std::string::npos);
 }
 
-TEST(Frames, AreCoarserWhileInteracting)
-{
-  OneVolume one;
-  const inr::Image still = one.scene.capture();
-  one.scene.window->SetDesiredUpdateRate(1e6);
-  const inr::Image moving = one.scene.capture();
-  EXPECT_EQ(one.mapper->GetImageReduction(), inr::ImageReduction::Largest);
-  EXPECT_GT(LargestDifference(still, moving), 0);
-  EXPECT_GT(inr::ImagePsnr(still, moving), 13); // a dozen pixels
-  one.scene.window->SetDesiredUpdateRate(0.002);
-  EXPECT_EQ(LargestDifference(still, one.scene.capture()), 0);
-  EXPECT_EQ(one.mapper->GetImageReduction(), 1);
-}
-
-TEST(Frames, RespectOpaqueDepthWhileInteracting)
-{
-  OneVolume one;
-  one.addCube();
-  const inr::Image still = one.scene.capture();
-  one.scene.window->SetDesiredUpdateRate(1e6);
-  EXPECT_GT(inr::ImagePsnr(still, one.scene.capture()), 13);
-  EXPECT_EQ(one.mapper->GetImageReduction(), inr::ImageReduction::Largest);
-}
-
 TEST(Frames, AreNotConvergedBeforeThereIsOne)
 {
   OneVolume one;
@@ -361,36 +215,16 @@ TEST(Frames, MissNothingWhereThereIsNothingToSee)
   EXPECT_EQ(one.mapper->GetCacheHitRate(), 1);
 }
 
-TEST(Frames, CanBeAborted)
-{
-  OneVolume one;
-  test::Messages messages(one.mapper);
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback([](vtkObject* window, unsigned long, void*, void*) {
-    static_cast<vtkRenderWindow*>(window)->SetAbortRender(1);
-  });
-  const unsigned long tag = one.scene.window->AddObserver(vtkCommand::AbortCheckEvent, abort);
-  const inr::Image aborted = one.scene.capture();
-  EXPECT_EQ(*std::max_element(aborted.pixels.begin(), aborted.pixels.end()), 0);
-  EXPECT_FALSE(one.mapper->GetConverged());
-  EXPECT_EQ(one.mapper->GetNumberOfSamples(), 0);
-  EXPECT_EQ(messages.errors, 0);
-
-  one.scene.window->RemoveObserver(tag);
-  const inr::Image whole = one.scene.capture();
-  EXPECT_GT(*std::max_element(whole.pixels.begin(), whole.pixels.end()), 0);
-}
-
 TEST(Frames, MoveToAnotherWindow)
 {
-  const auto mapper = test::InrMapper(ModelFile());
+  const auto mapper = test::InrMapper(test::ModelFile());
   inr::Image first;
   {
     OneVolume one(mapper);
     first = one.scene.capture();
   }
   OneVolume two(mapper);
-  EXPECT_EQ(LargestDifference(first, two.scene.capture()), 0);
+  EXPECT_EQ(inr::ImageMaximumError(first, two.scene.capture()), 0);
 }
 
 TEST(Frames, ShareAWindowWithTwoOfTheSameMapper)
@@ -403,51 +237,7 @@ TEST(Frames, ShareAWindowWithTwoOfTheSameMapper)
   one.renderer->AddVolume(again);
   const inr::Image both = one.scene.capture();
   again->VisibilityOff();
-  EXPECT_GT(LargestDifference(both, one.scene.capture()), 0.1f);
-}
-
-TEST(ImageReduction, KeepsStillFramesWhole)
-{
-  inr::ImageReduction reduction;
-  reduction.record(100, 1);
-  EXPECT_EQ(reduction.factor(0.002, 1000000), 1);
-}
-
-TEST(ImageReduction, IsAsSmallAsTheRateAllows)
-{
-  inr::ImageReduction reduction;
-  EXPECT_EQ(reduction.factor(5, 1000), inr::ImageReduction::Unmeasured);
-  reduction.record(1.0, 1000); // 1 ms per pixel, so three quarters of 0.2 s are 150 pixels
-  EXPECT_EQ(reduction.factor(5, 150), 1);
-  EXPECT_EQ(reduction.factor(5, 151), 2);
-  EXPECT_EQ(reduction.factor(5, 601), 4);
-  EXPECT_EQ(reduction.factor(5, 9600), 8);
-  EXPECT_EQ(reduction.factor(5, 9601), 16);
-  EXPECT_EQ(reduction.factor(5, 1000000), inr::ImageReduction::Largest);
-}
-
-TEST(ImageReduction, ExpectsFinerPicturesToCostMoreForEachPixel)
-{
-  inr::ImageReduction reduction;
-  reduction.record(0.1, 1000); // four times the pixels: eight times as long
-  EXPECT_EQ(reduction.factor(0.75 / 0.81, 4000), 1);
-  EXPECT_EQ(reduction.factor(0.75 / 0.79, 4000), 2);
-}
-
-TEST(ImageReduction, FallsAtOnceAndRisesByAndBy)
-{
-  inr::ImageReduction reduction;
-  reduction.record(0.1, 1000);
-  EXPECT_EQ(reduction.factor(5, 1000), 1);
-  reduction.record(1.6, 1000);
-  EXPECT_EQ(reduction.factor(5, 1000), 4);
-  int frames = 0;
-  while (reduction.factor(5, 1000) > 1 && frames < 100) {
-    reduction.record(0.1, 1000);
-    ++frames;
-  }
-  EXPECT_GT(frames, 2);
-  EXPECT_LT(frames, 10);
+  EXPECT_GT(inr::ImageMaximumError(both, one.scene.capture()), 0.1f);
 }
 
 } // namespace
