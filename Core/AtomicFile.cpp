@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 namespace inr {
 namespace {
@@ -64,11 +65,16 @@ pid_t WriterOf(const std::string& name, const std::string& target)
 
 bool IsGone(pid_t process) { return kill(process, 0) != 0 && errno == ESRCH; }
 
-// Makes the new name itself durable. A file system that cannot do this has still renamed the file.
-void FlushFolder(const std::string& file)
+std::string FolderOf(const std::string& file)
 {
   const fs::path folder = fs::path(file).parent_path();
-  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY);
+  return folder.empty() ? "." : folder.string();
+}
+
+// Makes a new name in it durable. A file system that cannot do this has still renamed the file.
+void FlushFolder(const std::string& folder)
+{
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY);
   if (descriptor >= 0) {
     (void)fsync(descriptor);
     close(descriptor);
@@ -101,10 +107,10 @@ void AtomicFile::create()
   constexpr int Attempts = 1000;
   const std::string stem = TemporaryStem(this->Target, getpid());
   for (int attempt = 0; attempt < Attempts; ++attempt) {
-    const std::string name = stem + std::to_string(attempt) + ".tmp";
+    std::string name = stem + std::to_string(attempt) + ".tmp";
     this->Descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (this->Descriptor >= 0) {
-      this->Temporary = name;
+      this->Temporary = std::move(name); // takes no memory, of which there may be none
       return;
     }
     if (errno != EEXIST) {
@@ -132,6 +138,7 @@ void AtomicFile::write(const void* data, std::size_t bytes)
 
 void AtomicFile::commit()
 {
+  const std::string folder = FolderOf(this->Target); // no memory is taken once the file is there
   const int descriptor = this->Descriptor;
   if (fsync(descriptor) != 0) {
     this->fail(errno);
@@ -144,7 +151,7 @@ void AtomicFile::commit()
     this->fail(errno);
   }
   this->Temporary.clear();
-  FlushFolder(this->Target);
+  FlushFolder(folder);
 }
 
 void RemoveAbandonedFiles(const std::string& path)

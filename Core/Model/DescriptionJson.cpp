@@ -111,23 +111,24 @@ NetworkDescription ParseNetwork(const json& model)
   return network;
 }
 
-json GridToJson(const GridDescription& grid)
+BsonObject GridSection(const GridDescription& grid)
 {
-  json section = {{"otype", NameOf(EncodingNames, grid.type)},
-                  {"n_levels", grid.levels},
-                  {"n_features_per_level", grid.features},
-                  {"log2_hashmap_size", grid.log2HashmapSize},
-                  {"base_resolution", grid.baseResolution}};
+  BsonObject section;
+  section.text("otype", NameOf(EncodingNames, grid.type))
+      .integer("n_levels", grid.levels)
+      .integer("n_features_per_level", grid.features)
+      .integer("log2_hashmap_size", grid.log2HashmapSize)
+      .integer("base_resolution", grid.baseResolution);
   // What has its default is left out, as in upstream's own files; but the default scale of a dense
   // grid changed in 2025.
   if (grid.perLevelScale != 2.0f || grid.type == GridType::Dense) {
-    section["per_level_scale"] = static_cast<double>(grid.perLevelScale);
+    section.real("per_level_scale", static_cast<double>(grid.perLevelScale));
   }
   if (grid.interpolation != GridInterpolation::Linear) {
-    section["interpolation"] = NameOf(InterpolationNames, grid.interpolation);
+    section.text("interpolation", NameOf(InterpolationNames, grid.interpolation));
   }
   if (grid.hash != HashFunction::CoherentPrime) {
-    section["hash"] = NameOf(HashNames, grid.hash);
+    section.text("hash", NameOf(HashNames, grid.hash));
   }
   return section;
 }
@@ -161,16 +162,23 @@ Description ParseDescription(const std::string& text)
   return ParseDescription(model);
 }
 
-json DescriptionToJson(const Description& description)
+BsonObject DescriptionSection(const Description& description)
 {
   const NetworkDescription& network = description.network;
-  return {{"encoding", GridToJson(description.grid)},
-          {"network",
-           {{"otype", NameOf(NetworkNames, TypeOf(network))},
-            {"n_neurons", network.neurons},
-            {"n_hidden_layers", network.hiddenLayers},
-            {"activation", NameOf(ActivationNames, network.activation)},
-            {"output_activation", NameOf(ActivationNames, network.outputActivation)}}}};
+  return BsonObject()
+      .object("encoding", GridSection(description.grid))
+      .object("network",
+              BsonObject()
+                  .text("otype", NameOf(NetworkNames, TypeOf(network)))
+                  .integer("n_neurons", network.neurons)
+                  .integer("n_hidden_layers", network.hiddenLayers)
+                  .text("activation", NameOf(ActivationNames, network.activation))
+                  .text("output_activation", NameOf(ActivationNames, network.outputActivation)));
+}
+
+json DescriptionToJson(const Description& description)
+{
+  return json::from_bson(DescriptionSection(description).bytes());
 }
 
 } // namespace inr

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Model/BsonObject.h"
 #include "Core/Model/Description.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,6 +20,7 @@ Description ParseDescription(const nlohmann::json& model);
 Description ParseDescription(const std::string& text);
 
 /// The same sections as upstream writes and reads them.
+BsonObject DescriptionSection(const Description& description);
 nlohmann::json DescriptionToJson(const Description& description);
 
 } // namespace inr

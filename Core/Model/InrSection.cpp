@@ -29,12 +29,13 @@ enum class Transform { Linear };
 constexpr NameTable<Transform, 1> TransformNames = {{{"linear", Transform::Linear}}};
 
 // Quality may be infinite or undefined, which no JSON number can be: those are words.
-json RealToJson(double value)
+void SetReal(BsonObject& section, const char* key, double value)
 {
   if (std::isfinite(value)) {
-    return value;
+    section.real(key, value);
+  } else {
+    section.text(key, std::isnan(value) ? "nan" : value > 0 ? "infinity" : "-infinity");
   }
-  return std::isnan(value) ? "nan" : value > 0 ? "infinity" : "-infinity";
 }
 
 double ParseReal(const JsonSection& section, const char* key)
@@ -56,9 +57,9 @@ double ParseReal(const JsonSection& section, const char* key)
   section.refuse(key, "must be a number, 'nan', 'infinity' or '-infinity'");
 }
 
-template <typename Vector> json AxesToJson(const Vector& vector)
+BsonObject AxesSection(const glm::dvec3& vector)
 {
-  return {{"x", vector.x}, {"y", vector.y}, {"z", vector.z}};
+  return BsonObject().real("x", vector.x).real("y", vector.y).real("z", vector.z);
 }
 
 glm::dvec3 ParseReals(const JsonSection& section)
@@ -71,9 +72,9 @@ glm::dvec3 ParseReals(const JsonSection& section)
 }
 
 // Row by row, as one reads a matrix (GLM stores columns).
-json DirectionToJson(const glm::dmat3& direction)
+std::vector<double> RowsOf(const glm::dmat3& direction)
 {
-  json rows = json::array();
+  std::vector<double> rows;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       rows.push_back(direction[column][row]);
@@ -185,7 +186,39 @@ std::int64_t ParseApron(const JsonSection& section, MacroCellProvenance provenan
   return apron;
 }
 
+BsonObject QualitySection(const Quality& quality)
+{
+  BsonObject section;
+  SetReal(section, "psnr", quality.psnr);
+  SetReal(section, "ssim", quality.ssim);
+  SetReal(section, "max_error", quality.maxError);
+  if (quality.sampledVoxels > 0) {
+    section.integer("sampled_voxels", AsSigned(quality.sampledVoxels));
+  }
+  return section;
+}
+
+BsonObject TrainingSection(const TrainingRecord& record)
+{
+  BsonObject section;
+  section.integer("steps", AsSigned(record.steps))
+      .integer("planned_steps", AsSigned(record.plannedSteps))
+      .integer("seed", AsSigned(record.seed))
+      .real("seconds", record.seconds)
+      .text("kernel", record.kernel)
+      .integer("non_finite", AsSigned(record.nonFinite));
+  if (record.earlierSteps) {
+    section.integer("earlier_steps", AsSigned(*record.earlierSteps));
+  }
+  return section;
+}
+
 } // namespace
+
+BsonObject DimsSection(const glm::i64vec3& dims)
+{
+  return BsonObject().integer("x", dims.x).integer("y", dims.y).integer("z", dims.z);
+}
 
 glm::i64vec3 ParseDims(const JsonSection& section)
 {
@@ -228,45 +261,33 @@ InrSection ParseInrSection(const JsonSection& section)
   return result;
 }
 
-json InrSectionToJson(const Model& model, std::uint32_t checksum)
+BsonObject OwnSection(const Model& model, std::uint32_t checksum)
 {
   const VolumeInfo& volume = model.volume;
   const bool compact = model.storedAs == ParameterType::Quantised;
-  json section = {{"format_version", compact ? CompactVersion : PlainVersion},
-                  {"transform", NameOf(TransformNames, Transform::Linear)},
-                  {"dims", AxesToJson(volume.dims)},
-                  {"spacing", AxesToJson(volume.spacing)},
-                  {"origin", AxesToJson(volume.origin)},
-                  {"direction", DirectionToJson(volume.direction)},
-                  {"array_name", volume.arrayName},
-                  {"array_type", ScalarName(volume.type)},
-                  {"data_range", {{"low", volume.low}, {"high", volume.high}}},
-                  {"hash_rule", NameOf(RuleNames, model.description.grid.rule)},
-                  {"macrocell_provenance", NameOf(ProvenanceNames, model.macroCells.provenance)},
-                  {"macrocell_apron",
-                   std::llround(model.macroCells.apron.x * static_cast<double>(volume.dims.x))},
-                  {"checksum", ChecksumToText(checksum)}};
+  BsonObject section;
+  section.integer("format_version", compact ? CompactVersion : PlainVersion)
+      .text("transform", NameOf(TransformNames, Transform::Linear))
+      .object("dims", DimsSection(volume.dims))
+      .object("spacing", AxesSection(volume.spacing))
+      .object("origin", AxesSection(volume.origin))
+      .reals("direction", RowsOf(volume.direction))
+      .text("array_name", volume.arrayName)
+      .text("array_type", ScalarName(volume.type))
+      .object("data_range", BsonObject().real("low", volume.low).real("high", volume.high))
+      .text("hash_rule", NameOf(RuleNames, model.description.grid.rule))
+      .text("macrocell_provenance", NameOf(ProvenanceNames, model.macroCells.provenance))
+      .integer("macrocell_apron",
+               std::llround(model.macroCells.apron.x * static_cast<double>(volume.dims.x)))
+      .text("checksum", ChecksumToText(checksum));
   if (volume.time) {
-    section["time"] = *volume.time;
+    section.real("time", *volume.time);
   }
   if (model.quality) {
-    section["quality"] = {{"psnr", RealToJson(model.quality->psnr)},
-                          {"ssim", RealToJson(model.quality->ssim)},
-                          {"max_error", RealToJson(model.quality->maxError)}};
-    if (model.quality->sampledVoxels > 0) {
-      section["quality"]["sampled_voxels"] = AsSigned(model.quality->sampledVoxels);
-    }
+    section.object("quality", QualitySection(*model.quality));
   }
   if (model.training) {
-    section["training"] = {{"steps", AsSigned(model.training->steps)},
-                           {"planned_steps", AsSigned(model.training->plannedSteps)},
-                           {"seed", AsSigned(model.training->seed)},
-                           {"seconds", model.training->seconds},
-                           {"kernel", model.training->kernel},
-                           {"non_finite", AsSigned(model.training->nonFinite)}};
-    if (model.training->earlierSteps) {
-      section["training"]["earlier_steps"] = AsSigned(*model.training->earlierSteps);
-    }
+    section.object("training", TrainingSection(*model.training));
   }
   return section;
 }

@@ -2,10 +2,9 @@
 #pragma once
 
 #include "Core/Error.h"
+#include "Core/Model/BsonObject.h"
 #include "Core/Model/JsonSection.h"
 #include "Core/Model/Model.h"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -32,10 +31,11 @@ std::int64_t ParseVersion(const JsonSection& section);
 /// values out of range.
 InrSection ParseInrSection(const JsonSection& section);
 
-nlohmann::json InrSectionToJson(const Model& model, std::uint32_t checksum);
+BsonObject OwnSection(const Model& model, std::uint32_t checksum);
 
 /// The integers `x`, `y` and `z` of a section; unchecked.
 glm::i64vec3 ParseDims(const JsonSection& section);
+BsonObject DimsSection(const glm::i64vec3& dims);
 
 /// Throws Error(`code`) unless dims are 1 to 2^31 - 1 with a product of at most 2^53, spacing is
 /// finite and not zero, origin and direction are finite, the direction can be inverted, and low <=

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstring>
+#include <string>
 
 #if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "model files are little-endian and are read and written as they lie in memory"
@@ -15,6 +16,11 @@ template <typename T> T FromBytes(const void* bytes)
   T value;
   std::memcpy(&value, bytes, sizeof(T));
   return value;
+}
+
+template <typename T> std::string ToBytes(const T& value)
+{
+  return {reinterpret_cast<const char*>(&value), sizeof(T)};
 }
 
 } // namespace inr

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
+#include "Core/Model/BsonObject.h"
 #include "Core/Model/CompactBlobs.h"
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/InrSection.h"
@@ -9,16 +10,15 @@
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
 
-#include <nlohmann/json.hpp>
-
 #include <array>
 #include <cstring>
 #include <limits>
+#include <new>
+#include <utility>
+#include <vector>
 
 namespace inr {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::int64_t SizeLimit = std::numeric_limits<std::int32_t>::max();
 constexpr std::size_t LengthSize = sizeof(std::int32_t);
@@ -55,23 +55,21 @@ void AddToLength(std::string& bytes, std::size_t position, std::int64_t amount)
   std::memcpy(bytes.data() + position, &length, LengthSize);
 }
 
-std::string Element(const std::string& key, const json& section)
+std::string Element(const std::string& key, const BsonObject& section)
 {
-  const std::vector<std::uint8_t> document = json::to_bson(section);
   std::string bytes(1, '\x03');
   bytes += key;
   bytes += '\0';
-  bytes.append(document.begin(), document.end());
+  bytes += section.bytes();
   return bytes;
 }
 
 // An element whose binary value `blobKey` has `blobBytes` bytes that are not there yet; they belong
 // between the two results.
-std::pair<std::string, std::string> SplitElement(const std::string& key, json section,
+std::pair<std::string, std::string> SplitElement(const std::string& key, BsonObject section,
                                                  const std::string& blobKey, std::int64_t blobBytes)
 {
-  section[blobKey] = json::binary({});
-  std::string bytes = Element(key, section);
+  std::string bytes = Element(key, section.emptyBinary(blobKey));
   const std::size_t document = 1 + key.size() + 1;
   const std::string marker = '\x05' + blobKey + '\0';
   const std::size_t length = bytes.find(marker, document) + marker.size();
@@ -81,30 +79,35 @@ std::pair<std::string, std::string> SplitElement(const std::string& key, json se
   return {bytes.substr(0, split), bytes.substr(split)};
 }
 
-json MacroCellSection(const MacroCells& cells)
+BsonObject MacroCellSection(const MacroCells& cells)
 {
-  return {{"dims", {{"x", cells.dims.x}, {"y", cells.dims.y}, {"z", cells.dims.z}}},
-          {"spacings", {{"x", cells.spacing.x}, {"y", cells.spacing.y}, {"z", cells.spacing.z}}},
-          {"groundtruth", cells.provenance == MacroCellProvenance::Decoded}};
+  const glm::dvec3& spacing = cells.spacing;
+  return BsonObject()
+      .object("dims", DimsSection(cells.dims))
+      .object("spacings",
+              BsonObject().real("x", spacing.x).real("y", spacing.y).real("z", spacing.z))
+      .flag("groundtruth", cells.provenance == MacroCellProvenance::Decoded);
 }
 
-json ModelSection(const Description& description)
+BsonObject ModelSection(const Description& description)
 {
-  json section = DescriptionToJson(description);
-  section["loss"] = {{"otype", "L1"}}; // upstream cannot build a model without one
-  return section;
+  // Upstream cannot build a model without a loss.
+  return DescriptionSection(description).object("loss", BsonObject().text("otype", "L1"));
 }
 
 bool IsCompact(const Model& model) { return model.storedAs == ParameterType::Quantised; }
 
-json ParameterSection(const Model& model)
+BsonObject ParameterSection(const Model& model)
 {
-  json section = {{"n_params", Layout(model.description).parameterCount},
-                  {"params_type", NameOf(ParameterTypeNames, model.storedAs)}};
+  BsonObject section;
+  section.integer("n_params", static_cast<std::int64_t>(Layout(model.description).parameterCount))
+      .text("params_type", NameOf(ParameterTypeNames, model.storedAs));
   if (IsCompact(model)) {
-    section["steps"] = model.steps.empty()
-                           ? json(ParameterGroups(model.description).size(), 1.0) // for its size
-                           : json(model.steps);
+    std::vector<double> steps(model.steps.begin(), model.steps.end());
+    if (steps.empty()) { // for its size
+      steps.resize(ParameterGroups(model.description).size(), 1.0);
+    }
+    section.reals("steps", steps);
   }
   return section;
 }
@@ -114,8 +117,7 @@ Framing Frame(const Model& model, const BlobSizes& blobs, std::uint32_t checksum
 {
   Framing framing;
   framing.blobs = blobs;
-  framing.text[0] =
-      std::string(LengthSize, '\0') + Element("inr", InrSectionToJson(model, checksum));
+  framing.text[0] = std::string(LengthSize, '\0') + Element("inr", OwnSection(model, checksum));
   if (!model.macroCells.empty()) {
     const auto [before, after] =
         SplitElement("macrocell", MacroCellSection(model.macroCells), "data", blobs.ranges);
@@ -125,8 +127,7 @@ Framing Frame(const Model& model, const BlobSizes& blobs, std::uint32_t checksum
   const auto [before, after] =
       SplitElement("parameters", ParameterSection(model), "params_binary", blobs.parameters);
   framing.text[1] += Element("model", ModelSection(model.description)) + before;
-  const glm::i64vec3& dims = model.volume.dims;
-  const json volume = {{"dims", {{"x", dims.x}, {"y", dims.y}, {"z", dims.z}}}};
+  const BsonObject volume = BsonObject().object("dims", DimsSection(model.volume.dims));
   framing.text[2] = after + Element("volume", volume) + '\0';
   AddToLength(framing.text[0], 0, framing.total());
   return framing;
@@ -236,12 +237,14 @@ std::string ModelToBytes(const Model& model)
 
 std::int64_t WriteModel(const Model& model, const std::string& path)
 {
+  const std::string context = "cannot write '" + path + "': ";
   try {
     return WriteFile(model, path);
   } catch (const Error& error) {
     // AtomicFile's messages say so already.
-    throw error.code() == ErrorCode::CannotWrite ? error
-                                                 : error.inContext("cannot write '" + path + "': ");
+    throw error.code() == ErrorCode::CannotWrite ? error : error.inContext(context);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::TooLarge, context + "there is not enough memory");
   }
 }
 

@@ -3,6 +3,8 @@
 #include "Core/Model/ModelBytes.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cmath>
 #include <limits>
 
@@ -45,6 +47,16 @@ TEST_F(ModelFile, KeepsEveryField)
   EXPECT_EQ(read->macroCells.dims, written->macroCells.dims);
   EXPECT_EQ(read->macroCells.provenance, written->macroCells.provenance);
   EXPECT_EQ(read->macroCells.apron, written->macroCells.apron);
+}
+
+TEST_F(ModelFile, IsWrittenAsUpstreamsLibraryWouldWriteIt)
+{
+  for (const auto& model : {FullModel(), CompactModel(), RandomModel(SmallDescription())}) {
+    const std::string bytes = inr::ModelToBytes(*model);
+    const std::vector<std::uint8_t> again =
+        nlohmann::json::to_bson(nlohmann::json::from_bson(bytes));
+    EXPECT_EQ(std::string(again.begin(), again.end()), bytes);
+  }
 }
 
 TEST_F(ModelFile, TellsNoTimeAndNoEarlierStepsUnlessThereAreSome)
