@@ -205,7 +205,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   settings.sampleDistance = this->SampleDistance;
   settings.adaptiveSampling = this->AdaptiveSampling;
   settings.levelOfDetailScale = this->LevelOfDetailScale;
-  if (this->ErrorTolerance >= 0) {
+  if (!(this->ErrorTolerance < 0)) { // what is no number is refused with the frame
     settings.errorTolerance = this->ErrorTolerance;
   }
   settings.stillTimeLimit = this->StillTimeLimit;

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -69,6 +70,14 @@ vtkSmartPointer<vtkPiecewiseFunction> Ramp(double first, double last)
 }
 
 TEST_F(Refusals, NothingIsWrongWithAnOrdinaryScene) { this->expectDrawn(); }
+
+TEST_F(Refusals, ToleranceThatIsNoNumber)
+{
+  this->mapper->SetErrorTolerance(std::nan(""));
+  this->expectRefused("tolerance");
+  this->mapper->SetErrorTolerance(-1);
+  EXPECT_TRUE(this->draws());
+}
 
 TEST_F(Refusals, GradientOpacity)
 {
