@@ -49,19 +49,17 @@ Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize)
     const auto side = glm::clamp<std::int64_t>(dims[axis], 2, brickSize);
     this->BrickDims[axis] = static_cast<int>(side);
   }
-  glm::i64vec3 size = dims;
   do {
     Level level;
-    level.size = size;
     for (int axis = 0; axis < 3; ++axis) {
-      level.bricks[axis] = BricksAlong(size[axis], this->BrickDims[axis] - 1);
+      level.size[axis] = VoxelsAtLevel(dims[axis], this->levels());
+      level.bricks[axis] = BricksAlong(level.size[axis], this->BrickDims[axis] - 1);
     }
-    level.scale = glm::dvec3(size) / glm::dvec3(dims);
+    level.scale = glm::dvec3(level.size) / glm::dvec3(dims);
     level.bias = 0.5 * level.scale - 0.5;
     level.brickScale = level.scale / glm::dvec3(this->BrickDims - 1);
     level.brickBias = level.bias / glm::dvec3(this->BrickDims - 1);
     this->Levels.push_back(level);
-    size = (size + std::int64_t{1}) / std::int64_t{2};
   } while (this->Levels.back().bricks != glm::i64vec3(1));
 }
 

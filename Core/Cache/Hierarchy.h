@@ -37,6 +37,14 @@ inline BrickId IdOf(BrickKey key)
   return {static_cast<int>(key >> (3 * BrickAxisBits)), {axis(0), axis(1), axis(2)}};
 }
 
+/// Voxels along an axis of a level, where level 0 has `voxels`: half as many for each level, rounded
+/// up.
+inline std::int64_t VoxelsAtLevel(std::int64_t voxels, int level)
+{
+  const std::int64_t together = std::int64_t{1} << level;
+  return (voxels + together - 1) / together; // rounding up level by level is the same
+}
+
 /// The levels of a volume and their bricks.
 ///
 /// Level 0 has the volume's voxels, level l + 1 half as many along every axis, rounded up; voxel v

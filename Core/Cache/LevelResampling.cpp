@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/LevelResampling.h"
 
+#include "Core/Cache/Hierarchy.h"
+
 #include <algorithm>
 
 namespace inr {
@@ -22,12 +24,6 @@ struct Between
   double weight;
 };
 
-std::int64_t SizeOf(std::int64_t size, int level)
-{
-  const std::int64_t voxels = std::int64_t{1} << level; // rounding up level by level is the same
-  return (size + voxels - 1) / voxels;
-}
-
 } // namespace
 
 LevelResampling::LevelResampling(const VoxelSpan (&seen)[3], const glm::i64vec3& dims, int level)
@@ -36,7 +32,7 @@ LevelResampling::LevelResampling(const VoxelSpan (&seen)[3], const glm::i64vec3&
     VoxelSpan& needed = this->Needed[axis];
     needed = seen[axis];
     for (std::int64_t voxel = seen[axis].low; voxel <= seen[axis].high; ++voxel) {
-      const Taps taps = tapsOf(voxel, dims[axis], SizeOf(dims[axis], level));
+      const Taps taps = tapsOf(voxel, dims[axis], VoxelsAtLevel(dims[axis], level));
       const auto [low, high] = std::minmax_element(taps.voxel.begin(), taps.voxel.end());
       needed = {std::min(needed.low, *low), std::max(needed.high, *high)};
       this->Sums[axis].push_back(taps);
