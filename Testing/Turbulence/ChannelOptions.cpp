@@ -65,8 +65,6 @@ std::int64_t ParseInteger(const std::string& text, const std::string& name)
   return Parse<std::int64_t>(text, name);
 }
 
-std::vector<std::string> FieldOptions() { return {"--seed", "--octaves", "--intensity", "--time"}; }
-
 TurbulentChannel::Parameters FieldFrom(const Options& options)
 {
   TurbulentChannel::Parameters field;
@@ -78,10 +76,13 @@ TurbulentChannel::Parameters FieldFrom(const Options& options)
   return field;
 }
 
-int RunProgram(const char* usage, const std::function<void()>& program)
+int RunProgram(int argc, char** argv, const char* usage, const std::vector<std::string>& own,
+               const std::function<void(const Options&)>& program)
 {
   try {
-    program();
+    std::vector<std::string> known = {"--seed", "--octaves", "--intensity", "--time"};
+    known.insert(known.end(), own.begin(), own.end());
+    program(Options(argc, argv, known));
   } catch (const Error& error) {
     std::cerr << error.what() << "\n";
     if (error.code() == ErrorCode::InvalidArgument) {

@@ -33,12 +33,12 @@ private:
 /// A whole number, or Error(InvalidArgument) with what it is called.
 std::int64_t ParseInteger(const std::string& text, const std::string& name);
 
-/// The options that say which field: --seed, --octaves, --intensity, --time.
-std::vector<std::string> FieldOptions();
+/// The field that --seed, --octaves, --intensity and --time say.
 TurbulentChannel::Parameters FieldFrom(const Options& options);
 
-/// Runs `program`; prints what it throws, or for wrong arguments `usage`, too. Returns what `main`
-/// does.
-int RunProgram(const char* usage, const std::function<void()>& program);
+/// A whole `main`: runs `program` with the command line, on which there may be `own` options and
+/// those of the field; prints what is thrown and, for wrong arguments, `usage`, too.
+int RunProgram(int argc, char** argv, const char* usage, const std::vector<std::string>& own,
+               const std::function<void(const Options&)>& program);
 
 } // namespace inr

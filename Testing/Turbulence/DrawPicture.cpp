@@ -122,9 +122,5 @@ void Draw(const inr::Options& options)
 
 int main(int argc, char** argv)
 {
-  return inr::RunProgram(Usage, [&] {
-    std::vector<std::string> known = inr::FieldOptions();
-    known.insert(known.end(), {"--compare", "--beside", "--threads"});
-    Draw(inr::Options(argc, argv, known));
-  });
+  return inr::RunProgram(argc, argv, Usage, {"--compare", "--beside", "--threads"}, Draw);
 }

@@ -54,9 +54,5 @@ void Measure(const inr::Options& options)
 
 int main(int argc, char** argv)
 {
-  return inr::RunProgram(Usage, [&] {
-    std::vector<std::string> known = inr::FieldOptions();
-    known.insert(known.end(), {"--voxels", "--draw", "--threads"});
-    Measure(inr::Options(argc, argv, known));
-  });
+  return inr::RunProgram(argc, argv, Usage, {"--voxels", "--draw", "--threads"}, Measure);
 }

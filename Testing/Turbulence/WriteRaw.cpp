@@ -72,9 +72,5 @@ void Write(const inr::Options& options)
 
 int main(int argc, char** argv)
 {
-  return inr::RunProgram(Usage, [&] {
-    std::vector<std::string> known = inr::FieldOptions();
-    known.insert(known.end(), {"--type", "--endian"});
-    Write(inr::Options(argc, argv, known));
-  });
+  return inr::RunProgram(argc, argv, Usage, {"--type", "--endian"}, Write);
 }
