@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 
 constexpr std::size_t SceneSize = 64;
 
@@ -112,6 +114,30 @@ inline double LongestRay(const inr::VolumeInfo& volume)
   return glm::length(glm::dvec3(volume.dims) * (edges / shortest));
 }
 
+/// None for bytes that are not there; now and then what is refused.
+inline std::optional<double> Tolerance(SceneBytes& bytes)
+{
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  switch (bytes.below(16)) {
+  case 1:
+    return 0.0;
+  case 2:
+    return infinity;
+  case 3:
+    return 1e-300;
+  case 4:
+    return bytes.below(2) == 0 ? -1.0 : nan;
+  case 5:
+  case 6:
+  case 7:
+  case 8:
+    return 8.0 * bytes.power(3);
+  default:
+    return std::nullopt;
+  }
+}
+
 inline void Kind(const inr::VolumeInfo& volume, SceneBytes& bytes, inr::Frame& frame)
 {
   const int kind = bytes.below(10);
@@ -166,5 +192,6 @@ inline FuzzScene MakeFuzzScene(const inr::VolumeInfo& volume, SceneBytes& bytes)
     frame.cropping->flags = bytes.next() * 0x10101u & 0x7ffffffu;
   }
   frame.seed = bytes.next();
+  frame.errorTolerance = fuzz_scene::Tolerance(bytes);
   return scene;
 }

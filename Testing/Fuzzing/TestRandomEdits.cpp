@@ -86,9 +86,15 @@ void EditCamera(inr::Frame& frame, Dice& dice)
   frame.clipToWorld = centre * turn * glm::inverse(centre) * frame.clipToWorld;
 }
 
+std::optional<double> ToleranceOf(int choice)
+{
+  constexpr double tolerances[] = {0, 0.1, 1, 8, 1e9};
+  return choice < 5 ? std::optional<double>(tolerances[choice]) : std::nullopt;
+}
+
 void EditFrame(inr::Frame& frame, Dice& dice)
 {
-  switch (dice.below(6)) {
+  switch (dice.below(8)) {
   case 0:
     frame.mode = static_cast<inr::RenderMode>(dice.below(2));
     frame.samplesPerPixel = 1 + dice.below(2);
@@ -108,6 +114,10 @@ void EditFrame(inr::Frame& frame, Dice& dice)
   case 4:
     frame.shading = dice.below(2) == 0 ? std::optional<inr::Material>() : inr::Material();
     frame.lights.assign(1, {});
+    break;
+  case 5:
+  case 6:
+    frame.errorTolerance = ToleranceOf(dice.below(6));
     break;
   default:
     frame.unitDistance = 1 + dice.below(8);

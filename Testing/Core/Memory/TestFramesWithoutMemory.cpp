@@ -51,7 +51,7 @@ std::vector<Way> Ways()
 {
   constexpr std::int64_t plenty = 8 << 20;
   constexpr std::int64_t little = 12 << 10; // many bricks go for others
-  std::vector<Way> ways(8, {"", Through(6, plenty), Small()});
+  std::vector<Way> ways(9, {"", Through(6, plenty), Small()});
   ways[0].name = "ThroughACache";
   ways[1].name = "ThroughASmallCache";
   ways[1].options.cache.bytes = little;
@@ -73,6 +73,8 @@ std::vector<Way> Ways()
   ways[7].name = "Shaded";
   ways[7].frame.shading.emplace();
   ways[7].frame.lights.emplace_back();
+  ways[8].name = "KeepingToATolerance";
+  ways[8].frame.errorTolerance = 4;
   return ways;
 }
 
