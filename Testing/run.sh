@@ -47,7 +47,8 @@ run_tests() {
 # Everything: Core, the VTK modules, the plugin in ParaView's own tools and window.
 build release && run_tests build "$@"
 
-# The same readers and mapper against plain VTK, unpacked beside the build, no ParaView.
+# The same readers and mapper against plain VTK, unpacked beside the build, no ParaView; of Core and
+# CUDA, all has been built and tested before.
 if [ -d build-vtk/vtk/usr ] || Testing/fetch-vtk.sh build-vtk/vtk; then
   build vtk && run_tests build-vtk -L 'vtk|image' "$@"
 else
