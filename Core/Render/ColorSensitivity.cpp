@@ -155,8 +155,7 @@ ColorSensitivity::Slopes ColorSensitivity::slopes(const ValueRange& range) const
   slopes.depth = std::min(this->Depths.smallest[row][left], this->Depths.smallest[row][right]);
   slopes.depth = constantBelow ? std::min(slopes.depth, this->DepthBelow) : slopes.depth;
   slopes.depth = constantAbove ? std::min(slopes.depth, this->DepthAbove) : slopes.depth;
-  if ((begin <= 0.0f && end >= 0.0f && this->JumpsBelow) ||
-      (begin <= top && end >= top && this->JumpsAbove)) {
+  if ((constantBelow && this->JumpsBelow) || (constantAbove && this->JumpsAbove)) {
     slopes.half = infinite;
     return slopes;
   }
