@@ -47,14 +47,7 @@ ValueBox Sampled(const VoxelSpan (&spans)[3], const glm::i64vec3& dims, const Ev
   return box;
 }
 
-/// Part of a box.
-struct Part
-{
-  glm::i64vec3 first{0};
-  glm::i64vec3 size{0};
-};
-
-ValueBox Cut(const ValueBox& box, const Part& part)
+ValueBox Cut(const ValueBox& box, const BoxPart& part)
 {
   ValueBox cut(part.size);
   for (std::int64_t z = 0; z < part.size.z; ++z) {
@@ -64,78 +57,6 @@ ValueBox Cut(const ValueBox& box, const Part& part)
     }
   }
   return cut;
-}
-
-/// Calls `visit` with the index of the first value of each row along x of a part.
-template <typename Visit> void ForEachRow(const ValueBox& box, const Part& part, const Visit& visit)
-{
-  for (std::int64_t z = 0; z < part.size.z; ++z) {
-    for (std::int64_t y = 0; y < part.size.y; ++y) {
-      visit(box.index(part.first.x, part.first.y + y, part.first.z + z));
-    }
-  }
-}
-
-float LargestOf(const ValueBox& box, const Part& part)
-{
-  float largest = 0;
-  ForEachRow(box, part, [&](std::size_t row) {
-    for (std::size_t x = 0; x < static_cast<std::size_t>(part.size.x); ++x) {
-      largest = std::max(largest, std::abs(box.values[row + x]));
-    }
-  });
-  return largest;
-}
-
-std::int64_t OffsetOf(const ValueBox& box, const glm::i64vec3& way)
-{
-  return way.x * box.stride(0) + way.y * box.stride(1) + way.z * box.stride(2);
-}
-
-/// Of a gradient whose parts along the axes are the largest that there are.
-float SlopeOf(const ValueBox& box, const Part& part)
-{
-  float sum = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    Part inner = part;
-    --inner.size[axis];
-    const auto next = static_cast<std::size_t>(box.stride(axis));
-    float largest = 0;
-    ForEachRow(box, inner, [&](std::size_t row) {
-      for (std::size_t k = row; k < row + static_cast<std::size_t>(inner.size.x); ++k) {
-        largest = std::max(largest, std::abs(box.values[k + next] - box.values[k]));
-      }
-    });
-    sum += largest * largest;
-  }
-  return std::sqrt(sum);
-}
-
-/// Along the edges and the diagonals of faces and of the volume of a cube.
-constexpr int Ways[13][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {1, -1, 0},
-                             {1, 0, 1},  {1, 0, -1}, {0, 1, 1},  {0, 1, -1}, {1, 1, 1},
-                             {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
-
-float CurvatureOf(const ValueBox& box, const Part& part)
-{
-  float largest = 0;
-  for (const auto& to : Ways) {
-    const glm::i64vec3 way(to[0], to[1], to[2]);
-    const glm::i64vec3 width = glm::abs(way);
-    const Part inner{part.first + width, part.size - std::int64_t{2} * width};
-    if (glm::min(inner.size.x, glm::min(inner.size.y, inner.size.z)) <= 0) {
-      continue; // flat that way
-    }
-    const std::int64_t offset = OffsetOf(box, way);
-    const float perLength = 1.0f / static_cast<float>(width.x + width.y + width.z);
-    ForEachRow(box, inner, [&](std::size_t row) {
-      const float* at = &box.values[row];
-      for (std::int64_t x = 0; x < inner.size.x; ++x, ++at) {
-        largest = std::max(largest, perLength * std::abs(at[offset] + at[-offset] - 2 * *at));
-      }
-    });
-  }
-  return largest;
 }
 
 } // namespace
@@ -195,7 +116,7 @@ template <typename Visit> void LevelErrors::forEachCell(const Block& block, cons
   const glm::i64vec3 count = block.end - block.begin;
   for (std::int64_t k = 0; k < count.x * count.y * count.z; ++k) {
     const glm::i64vec3 at = block.begin + PlaceOf(k, count);
-    Part part;
+    BoxPart part;
     for (int axis = 0; axis < 3; ++axis) {
       const VoxelSpan span = VoxelsOf(at[axis], at[axis] + 1, this->Edge[axis], this->Dims[axis]);
       part.first[axis] = span.low - block.seen[axis].low;
@@ -215,7 +136,7 @@ std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field)
   }
   VoxelSpan needed[3];
   glm::i64vec3 first;
-  Part inner;
+  BoxPart inner;
   for (int axis = 0; axis < 3; ++axis) {
     needed[axis] = block.seen[axis];
     for (const LevelResampling& level : levels) {
@@ -228,17 +149,12 @@ std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field)
   }
   const ValueBox around = Sampled(needed, this->Dims, field);
   const ValueBox fine = Cut(around, inner);
-  this->forEachCell(block, [&](Cell& cell, const Part& part) {
-    cell.slope = SlopeOf(fine, part);
-    cell.curvature = CurvatureOf(fine, part);
-  });
   for (std::size_t level = 0; level < levels.size(); ++level) {
-    ValueBox differences = levels[level].apply(around, first);
-    for (std::size_t k = 0; k < differences.values.size(); ++k) {
-      differences.values[k] -= fine.values[k];
-    }
-    this->forEachCell(block, [&](Cell& cell, const Part& part) {
-      cell.differences[level] = LargestOf(differences, part);
+    const ValueBox coarse = levels[level].apply(around, first);
+    this->forEachCell(block, [&](Cell& cell, const BoxPart& part) {
+      const int power = static_cast<int>(level) + 1;
+      cell.levels[level] = FindLineErrors(fine, coarse, part, power);
+      cell.steps[level] = FindLineErrors(fine, fine, part, power);
     });
   }
   this->Measured[static_cast<std::size_t>(number)] = 1;

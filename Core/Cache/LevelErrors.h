@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/LineErrors.h"
 #include "Core/Inference/Evaluator.h"
 
 #include <glm/gtc/type_precision.hpp>
@@ -11,15 +12,13 @@
 
 namespace inr {
 
-struct ValueBox;
-
-/// What the coarser levels of a field get wrong in each of its macro-cells: a property of the field
-/// alone, of normalised values. It is measured where somebody asks, in blocks of cells.
+/// What coarser levels of a field, and samples further apart, get wrong in each of its macro-cells:
+/// a property of the field alone, of normalised values. It is measured where somebody asks, in
+/// blocks of cells.
 ///
-/// All of it is the largest of what is found at voxels of level 0 in a cell, so that it holds for
-/// rays of any direction: errors that cancel each other along some lines do not along others.
-/// LevelResampling says what a level is; the field is asked for nothing but voxels of level 0, and
-/// taken to be linear in between.
+/// All of it is the largest of what is found along lines of voxels of level 0 through a cell, in 13
+/// directions, so that it is that of rays of nearly any. LevelResampling says what a level is; the
+/// field is asked for nothing but voxels of level 0, and taken to be linear in between.
 class LevelErrors
 {
 public:
@@ -44,23 +43,23 @@ public:
     return this->Measured[static_cast<std::size_t>(block)] != 0;
   }
 
-  /// Of a cell in a measured block: by how much a level differs from level 0. `level`: 1 to
-  /// Coarsest.
-  float difference(std::int64_t cell, int level) const
+  /// Of a cell in a measured block, in normalised values: of samples of a level, 2^level voxels
+  /// apart. `level`: 1 to Coarsest.
+  const LineErrors& ofLevel(std::int64_t cell, int level) const
   {
-    return this->of(cell).differences[static_cast<std::size_t>(level - 1)];
+    return this->of(cell).levels[static_cast<std::size_t>(level - 1)];
   }
-  /// How much values change within a voxel's distance, in any direction.
-  float slope(std::int64_t cell) const { return this->of(cell).slope; }
-  /// And how much slopes do, in any direction: the second derivative, per voxel^2.
-  float curvature(std::int64_t cell) const { return this->of(cell).curvature; }
+  /// The same of samples of level 0, 2^power voxels apart. `power`: 1 to Coarsest.
+  const LineErrors& ofSteps(std::int64_t cell, int power) const
+  {
+    return this->of(cell).steps[static_cast<std::size_t>(power - 1)];
+  }
 
 private:
   struct Cell
   {
-    std::array<float, Coarsest> differences;
-    float slope = 0;
-    float curvature = 0;
+    std::array<LineErrors, Coarsest> levels;
+    std::array<LineErrors, Coarsest> steps;
   };
   const Cell& of(std::int64_t cell) const { return this->Cells[static_cast<std::size_t>(cell)]; }
   struct Block;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/ValueBox.h"
+
 #include <glm/gtc/type_precision.hpp>
 
 #include <array>
@@ -8,35 +10,6 @@
 #include <vector>
 
 namespace inr {
-
-/// Voxels [low, high] along an axis.
-struct VoxelSpan
-{
-  std::int64_t low;
-  std::int64_t high;
-
-  std::int64_t count() const { return this->high - this->low + 1; }
-};
-
-/// A box of values, x fastest.
-struct ValueBox
-{
-  explicit ValueBox(const glm::i64vec3& size)
-      : size(size), values(static_cast<std::size_t>(size.x * size.y * size.z))
-  {}
-
-  std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
-  {
-    return static_cast<std::size_t>(x + this->size.x * (y + this->size.y * z));
-  }
-  std::int64_t stride(int axis) const
-  {
-    return axis == 0 ? 1 : axis == 1 ? this->size.x : this->size.x * this->size.y;
-  }
-
-  glm::i64vec3 size;
-  std::vector<float> values;
-};
 
 /// Level 0 made to look like a coarser one: what that has, linear between its voxels, each of which
 /// is the mean of 2 x 2 x 2 points that are linear between voxels of level 0. This is a product of

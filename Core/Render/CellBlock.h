@@ -10,14 +10,22 @@
 
 namespace inr {
 
-/// The coarsest level that a macro-cell may ask for.
-constexpr int CoarsestCellLevel = 3;
+/// The largest power that CellSampling may have.
+constexpr int LargestCellPower = 3;
+
+/// Where a macro-cell's samples come from.
+struct CellSampling
+{
+  std::uint8_t level = 0; ///< of the cache
+  std::uint8_t power = 0; ///< they are 2^power steps apart; at least the level
+};
 
 /// The macro-cells along a part of a ray, taken together.
 struct CellBlock
 {
-  int level = CoarsestCellLevel; ///< the finest that one of them asks for
-  bool matters = false;          ///< whether one of them can be seen
+  int level = LargestCellPower; ///< the finest that one of them asks for
+  int power = LargestCellPower; ///< and the least
+  bool matters = false;         ///< whether one of them can be seen
   ValueRange range;
 
   INR_HOST_DEVICE void extend(const ValueRange& other)
@@ -29,13 +37,15 @@ struct CellBlock
   }
 };
 
-/// Those from where `cells` is up to t = `end`, where it then is. `levels`: of each cell.
-INR_HOST_DEVICE inline CellBlock MeetCells(CellWalker& cells, const std::uint8_t* levels,
+/// Those from where `cells` is up to t = `end`, where it then is. `sampling`: of each cell.
+INR_HOST_DEVICE inline CellBlock MeetCells(CellWalker& cells, const CellSampling* sampling,
                                            double end)
 {
   CellBlock block;
   while (true) {
-    block.level = glm::min(block.level, int{levels[cells.index()]});
+    const CellSampling& wanted = sampling[cells.index()];
+    block.level = glm::min(block.level, int{wanted.level});
+    block.power = glm::min(block.power, int{wanted.power});
     block.matters = block.matters || cells.extinction() > 0.0f;
     block.extend(cells.range());
     if (cells.exit() >= end) {

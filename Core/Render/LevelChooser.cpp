@@ -6,6 +6,8 @@
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/Timer.h"
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,7 +21,7 @@ constexpr std::int64_t CellsPerTask = 4096;
 constexpr std::int64_t RaysPerTask = 64;
 constexpr int RaysAcross = 48;  ///< a picture, at most
 constexpr double Hidden = 1e-3; ///< light from behind that no longer counts: where rays end
-static_assert(LevelErrors::Coarsest <= CoarsestCellLevel, "rays go by blocks of that size");
+static_assert(LevelErrors::Coarsest >= LargestCellPower, "what cells ask for is measured");
 
 /// Of a step whose value may be anything in a range.
 double LargestError(const ColorSensitivity::Slopes& slopes, const ValueRange& range)
@@ -57,7 +59,7 @@ LevelChooser::LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i6
       Slopes(static_cast<std::size_t>(cells.count())),
       Allowed(new std::atomic<std::uint8_t>[static_cast<std::size_t>(cells.count())]),
       Wanted(new std::atomic<std::uint8_t>[static_cast<std::size_t>(this->Errors.blocks())]),
-      Levels(static_cast<std::size_t>(cells.count()), 0)
+      Sampling(static_cast<std::size_t>(cells.count()))
 {}
 
 bool LevelChooser::choose(const Wish& wish, const View& view, const Majorants& majorants,
@@ -112,7 +114,7 @@ void LevelChooser::findSlopes(const MajorantGrid& cells, const ColorLookup& colo
 
 void LevelChooser::sendRays(const View& view, const Majorants& majorants, const Arena& arena)
 {
-  Clear(this->Allowed, static_cast<std::int64_t>(this->Levels.size()));
+  Clear(this->Allowed, static_cast<std::int64_t>(this->Sampling.size()));
   Clear(this->Wanted, this->Errors.blocks());
   const int apart = (std::max(view.width, view.height) + RaysAcross - 1) / RaysAcross;
   const std::int64_t across = (view.width + apart - 1) / apart;
@@ -139,17 +141,21 @@ void LevelChooser::follow(const Ray& ray, const Majorants& majorants, RayWalk& w
   const MajorantGrid& grid = majorants.grid(0);
   CellWalker cells(majorants, this->Dims, ray, 0.0, 1);
   cells.moveTo(0);
+  const double stepsPerVoxel = 1.0 / (this->Given.step * glm::length(ray.direction));
   double light = 1.0; // of what is here, that is seen
   for (double t = 0; t < ray.length && light > Hidden && cells.moveToVisible(ray.length);) {
     const std::int64_t cell = cells.index();
     const double exit = std::min(cells.exit(), ray.length);
     const double steps = (exit - std::max(t, cells.enter())) / this->Given.step;
-    const StepErrors errors = this->errorsOf(cell, grid.range(cell));
+    const CellErrors errors = this->errorsOf(cell, grid.range(cell));
     walk.cells.push_back(cell);
-    int level = this->Coarsest;
-    for (std::size_t k = 0; k < LimitCount && level > 0; ++k) {
-      level = std::min(level, this->levelFor(errors, this->Limits[k]));
-      walk.sums[k] += level > 0 ? light * steps * errors[static_cast<std::size_t>(level - 1)] : 0.0;
+    for (std::size_t k = 0; k < LimitCount; ++k) {
+      const CellSampling sampling = this->samplingFor(errors, this->Limits[k]);
+      if (sampling.power == 0) {
+        break; // nor is it with the limits that follow
+      }
+      const CellError& error = errors.of(sampling);
+      walk.sums[k] += light * std::min(stepsPerVoxel * error.all, steps * error.step);
     }
     const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
     if (LargestError(slopes, grid.range(cell)) > this->LeastError && std::isfinite(slopes.half)) {
@@ -213,58 +219,77 @@ bool LevelChooser::measure(const std::vector<std::int64_t>& blocks, const Arena&
 
 void LevelChooser::chooseLevels(const MajorantGrid& cells, const Arena& arena)
 {
-  const auto count = static_cast<std::int64_t>(this->Levels.size());
+  const auto count = static_cast<std::int64_t>(this->Sampling.size());
   arena.forEachBlock(count, CellsPerTask, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t cell = begin; cell < end; ++cell) {
       const auto at = static_cast<std::size_t>(cell);
       const std::uint8_t number = this->Allowed[at];
-      const int level = number == 0 ? 0
-                                    : this->levelFor(this->errorsOf(cell, cells.range(cell)),
-                                                     this->Limits[number - 1u]);
-      this->Levels[at] = static_cast<std::uint8_t>(level);
+      this->Sampling[at] = number == 0 ? CellSampling{}
+                                       : this->samplingFor(this->errorsOf(cell, cells.range(cell)),
+                                                           this->Limits[number - 1u]);
     }
   });
 }
 
-LevelChooser::StepErrors LevelChooser::errorsOf(std::int64_t cell, const ValueRange& range) const
+LevelChooser::CellErrors LevelChooser::errorsOf(std::int64_t cell, const ValueRange& range) const
 {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
-  StepErrors errors{};
-  if (!std::isfinite(slopes.half)) {
-    errors.fill(infinite);
-    return errors;
-  }
-  const double most = LargestError(slopes, range);
-  const std::int64_t block = this->Errors.blockOf(cell);
+  const double most = std::isfinite(slopes.half) ? LargestError(slopes, range) : infinite;
+  CellErrors errors;
+  errors.level.fill({infinite, most, most});
+  errors.full = errors.level;
   // What a picture shows must not depend on what others had measured.
-  if (most <= this->LeastError || !this->UsesMeasured || !this->Errors.isMeasured(block)) {
-    errors.fill(most);
+  if (most <= this->LeastError || most == infinite || !this->UsesMeasured ||
+      !this->Errors.isMeasured(this->Errors.blockOf(cell))) {
     return errors;
   }
-  double least = 0; // a coarser level is not trusted to be better
-  for (int level = 1; level <= LevelErrors::Coarsest; ++level) {
-    const double steps = 1 << level;
-    const double value = this->Errors.difference(cell, level);
-    const double length = steps * this->Given.step;
-    // The mean of n places around a middle differs from that by (n^2 - 1)/24 of the curvature, and
-    // each of them by n/4 of the slope in the mean.
-    const double mean = value + this->Errors.curvature(cell) * this->Given.step * this->Given.step *
-                                    (steps * steps - 1.0) / 24.0;
-    const double spread = value + this->Errors.slope(cell) * length / 4.0;
-    least = std::max(least, std::min(most, slopes.middle * mean + slopes.half * spread));
-    errors[static_cast<std::size_t>(level - 1)] = least;
+  CellError level; // fewer samples are not trusted to be better
+  CellError full;
+  for (int power = 1; power <= LargestCellPower; ++power) {
+    const auto k = static_cast<std::size_t>(power - 1);
+    if (this->Given.step <= 1.0) {
+      level = this->errorOf(slopes, this->Errors.ofLevel(cell, power), most, level);
+      errors.level[k] = level;
+    }
+    const double voxels = this->Given.step * static_cast<double>(1 << power); // between samples
+    const int apart = std::max(1, static_cast<int>(std::ceil(std::log2(voxels))));
+    if (apart <= LevelErrors::Coarsest) {
+      full = this->errorOf(slopes, this->Errors.ofSteps(cell, apart), most, full);
+      errors.full[k] = full;
+    }
   }
   return errors;
 }
 
-int LevelChooser::levelFor(const StepErrors& errors, double limit) const
+LevelChooser::CellError LevelChooser::errorOf(const ColorSensitivity::Slopes& slopes,
+                                              const LineErrors& lines, double most,
+                                              const CellError& least) const
 {
-  int level = this->Coarsest;
-  while (level > 0 && errors[static_cast<std::size_t>(level - 1)] > limit) {
-    --level;
+  const glm::dvec3& edge = this->Errors.cellEdge();
+  const double longest = std::max(edge.x, std::max(edge.y, edge.z));
+  const double all = slopes.middle * lines.sum + slopes.half * lines.magnitude;
+  const double step = (slopes.middle + slopes.half) * lines.largest;
+  CellError error;
+  error.all = std::max(least.all, all);
+  error.step = std::min(most, std::max(least.step, step));
+  error.perStep = std::min(error.step, error.all / longest);
+  return error;
+}
+
+CellSampling LevelChooser::samplingFor(const CellErrors& errors, double limit) const
+{
+  for (int power = LargestCellPower; power > 0; --power) {
+    const auto k = static_cast<std::size_t>(power - 1);
+    const auto number = static_cast<std::uint8_t>(power);
+    if (power <= this->Coarsest && errors.level[k].perStep <= limit) {
+      return {number, number};
+    }
+    if (errors.full[k].perStep <= limit) {
+      return {0, number};
+    }
   }
-  return level;
+  return {};
 }
 
 } // namespace inr

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Cache/LevelErrors.h"
+#include "Core/Render/CellBlock.h"
 #include "Core/Render/ColorSensitivity.h"
 #include "Core/Render/Majorants.h"
 #include "Core/Render/Ray.h"
@@ -17,16 +18,18 @@
 
 namespace inr {
 
-/// Chooses for every macro-cell that can be seen the coarsest level of the cache that changes no
-/// pixel by more than a tolerance; see Frame::errorTolerance.
+/// Chooses for every macro-cell that can be seen the fewest samples, from the coarsest level of the
+/// cache or the full resolution, that change no pixel by more than a tolerance; see
+/// Frame::errorTolerance.
 ///
-/// A sample of level l stands for 2^l steps and is in their middle. LevelErrors says by how much
-/// its value may be off in a cell, ColorSensitivity by how much that changes a pixel, of which what
-/// lies in front hides a part. Along a ray these are added up, whatever their signs. That is done
-/// for a grid of pixels, at most 48 across: each ray finds the largest error to a step that all of
-/// its cells together may have, and a cell is allowed the least that any ray through it found.
-/// Cells that none of these rays meets are of level 0, as are those that would take too long to
-/// measure.
+/// A sample that stands for n steps is in their middle. LevelErrors says by how much the sum of
+/// samples along any part of a line through a cell may be off, ColorSensitivity by how much that
+/// changes a pixel. What lies in front of a sample hides a part of it, and never less than of those
+/// before, so that errors which cancel each other still do (Abel's inequality). What cells add is
+/// added up along a ray, whatever its signs. That is done for a grid of pixels, at most 48 across:
+/// each ray finds the largest error to a step that all of its cells together may have, and a cell
+/// is allowed the least that any ray through it found. Cells that none of these rays meets have
+/// every sample, from the full resolution, as have those that would take too long to measure.
 class LevelChooser
 {
 public:
@@ -61,7 +64,7 @@ public:
 
   /// `majorants`: whose extinctions are those of `colors`. Measures first what is not known of
   /// cells that can be seen, at least a block on each thread, as far as a time limit allows: false
-  /// if that was not all, and levels() are of no use. They depend on nothing but the arguments.
+  /// if that was not all, and sampling() is of no use. It depends on nothing but the arguments.
   /// Throws Error(Cancelled) when `keepGoing` says so.
   bool choose(const Wish& wish, const View& view, const Majorants& majorants,
               const ColorLookup& colors, const Arena& arena, const WorkLimit& limit,
@@ -73,13 +76,29 @@ public:
   std::int64_t measuredPoints() const { return this->Points; }
 
   /// Of each cell, x fastest.
-  const std::uint8_t* levels() const { return this->Levels.data(); }
+  const CellSampling* sampling() const { return this->Sampling.data(); }
 
 private:
   static constexpr std::size_t LimitCount = 24;
 
-  /// What a step in a cell may add to a pixel's error if it comes from levels 1, 2, ...
-  using StepErrors = std::array<double, LevelErrors::Coarsest>;
+  /// What a cell may add to a pixel's error if its samples are not all of the full resolution.
+  struct CellError
+  {
+    double all = 0;     ///< steps times their length in voxels: of a ray that goes all through it
+    double step = 0;    ///< of any one step
+    double perStep = 0; ///< in the mean of those through its longest edge
+  };
+  /// With 2, 4, ... steps between samples.
+  struct CellErrors
+  {
+    std::array<CellError, LargestCellPower> level; ///< of a level with such voxels
+    std::array<CellError, LargestCellPower> full;  ///< of the full resolution
+
+    const CellError& of(const CellSampling& sampling) const
+    {
+      return (sampling.level > 0 ? this->level : this->full)[sampling.power - 1u];
+    }
+  };
   struct RayWalk;
 
   void findSlopes(const MajorantGrid& cells, const ColorLookup& colors, const Arena& arena);
@@ -92,8 +111,10 @@ private:
                const std::function<bool()>& keepGoing);
   bool areTooMany(const std::vector<std::int64_t>& blocks) const;
   void chooseLevels(const MajorantGrid& cells, const Arena& arena);
-  StepErrors errorsOf(std::int64_t cell, const ValueRange& range) const;
-  int levelFor(const StepErrors& errors, double limit) const;
+  CellErrors errorsOf(std::int64_t cell, const ValueRange& range) const;
+  CellError errorOf(const ColorSensitivity::Slopes& slopes, const LineErrors& lines, double most,
+                    const CellError& least) const;
+  CellSampling samplingFor(const CellErrors& errors, double limit) const;
   void setLimits();
 
   std::shared_ptr<const Evaluator> Field;
@@ -111,7 +132,7 @@ private:
   std::unique_ptr<std::atomic<std::uint8_t>[]>
       Allowed; ///< of each cell, 1 + the number of its limit; 0: not met
   std::unique_ptr<std::atomic<std::uint8_t>[]> Wanted; ///< of each block
-  std::vector<std::uint8_t> Levels;
+  std::vector<CellSampling> Sampling;
 };
 
 } // namespace inr

@@ -215,7 +215,7 @@ bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometr
                             this->Colors->lookup(), this->Threads, limit, keepGoing)) {
     return false;
   }
-  settings.cellLevels = this->Levels->levels();
+  settings.cellSampling = this->Levels->sampling();
   return true;
 }
 

@@ -25,9 +25,8 @@ struct MarchSettings
   Projector projector;    ///< of values, where these are not composited
   bool crops = false;     ///< samples that `cropping` does not show are left out
   Cropping cropping;
-  /// Of each of the finest macro-cells, the level that its samples come from, up to
-  /// CoarsestCellLevel; null: LevelOfDetail chooses.
-  const std::uint8_t* cellLevels = nullptr;
+  /// Of each of the finest macro-cells, where its samples come from; null: LevelOfDetail chooses.
+  const CellSampling* cellSampling = nullptr;
 };
 
 /// Optical depth that needs no finer sampling.
@@ -76,11 +75,12 @@ struct SampleStretch
 {
   double exit = -1;     ///< samples at this place or behind it do not belong to it
   double levelEnd = -1; ///< nor do those whose steps begin here or later
-  int level = 0;        ///< the steps between samples are 2^level
+  int power = 0;        ///< there are 2^power steps between samples
   int faint = 0;        ///< 2^faint of them may be taken at once
   ValueRange range;     ///< of the cells
   double reach = -1;    ///< where cells end that matter; see Projector::findsSurfaces
   bool closed = false;  ///< samples belong to it only with all of their steps, or are of one step
+  int level = 0;        ///< of a closed one, that samples come from
 };
 
 /// Where the samples of a ray are: every 2^l steps where it deserves level l of the cache and the
@@ -89,9 +89,9 @@ struct SampleStretch
 /// stands for n steps from interval k on is at place k + jitter * n. So what is skipped does not
 /// move what follows, and where a walk was interrupted makes no difference.
 ///
-/// Where cells say which level their samples come from, one that stands for n steps is in the
-/// middle of the n that it takes the place of, at k + jitter + (n - 1)/2: those would add up to the
-/// same but for what the field bends between them.
+/// Where cells say where their samples come from, one that stands for n steps is in the middle of
+/// the n that it takes the place of, at k + jitter + (n - 1)/2: those would add up to the same but
+/// for what the field bends between them.
 class SampleWalker
 {
 public:
@@ -183,13 +183,14 @@ private:
           this->firstPlace() < this->Stretch.exit) {
         return true;
       }
-      if (settings.cellLevels != nullptr) {
+      if (settings.cellSampling != nullptr) {
         this->Detail.fix(0); // until the cell is known
+        this->Stretch.power = 0;
       }
       this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
       this->Cells.moveTo(this->firstPlace() * settings.step);
       if (this->Cells.extinction() > 0.0f || this->isLeaving(settings)) {
-        if (settings.cellLevels != nullptr) {
+        if (settings.cellSampling != nullptr) {
           this->beginClosedStretch(settings);
         } else {
           this->beginStretch(settings);
@@ -214,7 +215,7 @@ private:
     if (onRay < 1.0) {
       return {1, 1, power, true};
     }
-    if (power < this->Stretch.level) { // up to the next interval of the level
+    if (power < this->Stretch.power) { // up to the next interval of so many
       return {1, 1, power, false};
     }
     if (this->Stretch.closed && power > 0) {
@@ -244,13 +245,14 @@ private:
     return CountBelow((end - first) / static_cast<double>(samples.steps()), samples.count);
   }
 
-  /// log2 of the steps that the next sample stands for at least: those of the level, if the lattice
-  /// has such an interval here and a closed stretch has room for it.
+  /// log2 of the steps that the next sample stands for at least: as many as others here, if the
+  /// lattice has such an interval and a closed stretch has room for it.
   INR_HOST_DEVICE int shortest() const
   {
     constexpr int any = 62;
     const auto bits = static_cast<std::uint64_t>(this->Next);
-    int power = glm::min(this->Detail.coarsest(), bits == 0 ? any : LowestBit(bits));
+    const int most = this->Stretch.closed ? this->Stretch.power : this->Detail.coarsest();
+    int power = glm::min(most, bits == 0 ? any : LowestBit(bits));
     if (this->Stretch.closed) {
       const double room = glm::min(this->Stretch.exit, this->End) - static_cast<double>(this->Next);
       while (power > 0 && PowerOfTwo(power) > room) {
@@ -341,27 +343,27 @@ private:
     this->Stretch = {last, end * stepsPerT, level, faint, range, reach};
   }
 
-  /// The same where cells say which level their samples come from. A block of the lattice has the
-  /// finest level of all cells that it meets; blocks of one level make a stretch, up to the end of
-  /// a larger block.
+  /// The same where cells say where their samples come from. A block of the lattice has the finest
+  /// level of all cells that it meets, and the shortest steps; blocks of the same make a stretch,
+  /// up to the end of a larger block.
   INR_HOST_DEVICE void beginClosedStretch(const MarchSettings& settings)
   {
-    const double block = PowerOfTwo(CoarsestCellLevel);
+    const double block = PowerOfTwo(LargestCellPower);
     const auto begin = static_cast<double>(this->Next);
     const double enough =
         glm::min((std::floor(begin / BlockLength) + 1.0) * BlockLength, this->End);
     double end = (std::floor(begin / block) + 1.0) * block;
     CellWalker ahead = this->Cells;
-    CellBlock first = MeetCells(ahead, settings.cellLevels, end * settings.step);
-    if (first.level == 0) {
+    CellBlock first = MeetCells(ahead, settings.cellSampling, end * settings.step);
+    if (first.power == 0) {
       this->beginFinestStretch(enough, settings);
       return;
     }
     this->Cells = ahead;
     while (end < enough) {
       ahead.moveTo(end * settings.step);
-      const CellBlock next = MeetCells(ahead, settings.cellLevels, (end + block) * settings.step);
-      if (next.level < first.level || !next.matters) {
+      const CellBlock next = MeetCells(ahead, settings.cellSampling, (end + block) * settings.step);
+      if (next.level < first.level || next.power < first.power || !next.matters) {
         break;
       }
       this->Cells = ahead;
@@ -369,14 +371,14 @@ private:
       end += block;
     }
     this->Detail.fix(first.level);
-    this->Stretch = {end, this->Detail.exit(), first.level, 0, first.range, end, true};
+    this->Stretch = {end, this->Detail.exit(), first.power, 0, first.range, end, true, first.level};
   }
 
-  /// One of level 0, which begins in a cell that matters: as far as all do, to the end of the block
-  /// in which one of another level begins.
+  /// One of single steps, which begins in a cell that matters: as far as all do, to the end of the
+  /// block in which one begins that needs fewer.
   INR_HOST_DEVICE void beginFinestStretch(double enough, const MarchSettings& settings)
   {
-    const double block = PowerOfTwo(CoarsestCellLevel);
+    const double block = PowerOfTwo(LargestCellPower);
     CellBlock cells;
     cells.extend(this->Cells.range());
     double exit = this->Cells.exit() / settings.step;
@@ -386,7 +388,7 @@ private:
         break;
       }
       const double way = this->Cells.exit() / settings.step - exit;
-      if (settings.cellLevels[this->Cells.index()] > 0 && way >= WorthAStretch) {
+      if (settings.cellSampling[this->Cells.index()].power > 0 && way >= WorthAStretch) {
         enough = glm::min(enough, (std::floor(exit / block) + 1.0) * block);
       }
       cells.extend(this->Cells.range());
@@ -394,7 +396,7 @@ private:
     }
     exit = glm::min(exit, enough);
     this->Detail.fix(0);
-    this->Stretch = {exit, this->Detail.exit(), 0, 0, cells.range, exit, true};
+    this->Stretch = {exit, this->Detail.exit(), 0, 0, cells.range, exit, true, 0};
   }
 
   LevelOfDetail Detail;

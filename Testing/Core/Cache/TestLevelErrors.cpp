@@ -106,21 +106,21 @@ TEST(LevelErrors, OfASlopeAreNoneButAtTheVolumesEnds)
   const inr::LevelErrors errors =
       Measured([](const glm::vec3& u) { return 0.1f + 0.6f * u.x + 0.2f * u.y; }, dims, 16);
   EXPECT_EQ(errors.blocks(), 3);
-  const double slope = std::hypot(0.6 / 160, 0.2 / 48);
   for (std::int64_t x = 1; x < 9; ++x) { // blocks meet behind cells 3 and 7
     const std::int64_t inside = x + 10 * (1 + 3 * 1);
     EXPECT_EQ(errors.blockOf(inside), x / 4);
     for (const int level : {1, 2, 3}) {
-      EXPECT_LT(errors.difference(inside, level), 1e-6) << x;
+      const double most = (0.6 / 160 + 0.2 / 48) * ((1 << level) - 1) / 2;
+      EXPECT_LT(errors.ofLevel(inside, level).largest, most + 1e-6) << x; // a step to the middle
+      EXPECT_LT(errors.ofLevel(inside, level).sum, 1e-4 + most * (1 << level)) << x; // and back
     }
-    EXPECT_NEAR(errors.slope(inside), slope, 1e-6) << x;
-    EXPECT_LT(errors.curvature(inside), 1e-6) << x;
   }
   // Level 3 ends 3.5 voxels inside, with a mean that the end has pulled by half a voxel.
-  EXPECT_GT(errors.difference(10 * (1 + 3 * 1), 3), 3 * 0.6 / 160);
+  EXPECT_GT(errors.ofLevel(10 * (1 + 3 * 1), 3).largest, 3 * 0.6 / 160);
 }
 
-TEST(LevelErrors, OfAParabolaAreThoseThatOneCalculates)
+/// Along z through a field that does not change that way, all samples of a line are off by as much.
+TEST(LevelErrors, AddUpAlongLinesThatCancelNothing)
 {
   const glm::i64vec3 dims(64, 64, 64);
   const double bend = 0.0002; // f = bend x^2, x in voxels from the middle
@@ -140,27 +140,39 @@ TEST(LevelErrors, OfAParabolaAreThoseThatOneCalculates)
     const double middle = 0.5 - 0.5 / n; // the voxel of level 0 next to the middle of the chord
     const double highest =
         bend * (n * n * (1.0 / 16 + middle * (1 - middle)) + (level > 1 ? 0.25 : 0.0));
-    EXPECT_NEAR(errors.difference(inside, level), highest, 2e-3 * highest) << level;
+    const inr::LineErrors& lines = errors.ofLevel(inside, level);
+    EXPECT_GE(lines.sum, 18 * (1 - 2e-3) * highest) << level; // the cell's 16 voxels and one around
+    EXPECT_LT(lines.sum, 18 * std::sqrt(3.0) * 1.1 * highest) << level;
+    EXPECT_GE(lines.magnitude, lines.sum);
   }
-  EXPECT_NEAR(errors.curvature(inside), 2 * bend, 2e-3 * bend);
-  EXPECT_NEAR(errors.slope(inside), 2 * bend * 16, 2e-3 * bend); // from voxel 15 to 16
 }
 
-/// Along each way to a neighbour, which the others see less of.
-TEST(LevelErrors, SeeWhatBendsInAnyDirection)
+/// Layers that go the way of lines, each way that is looked.
+TEST(LevelErrors, AreThoseOfLayersInAnyDirection)
 {
   const glm::i64vec3 dims(48, 48, 48);
-  const double bend = 0.0003;
   for (int number = 14; number < 27; ++number) {
     const glm::dvec3 way(number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1);
-    const inr::LevelErrors errors = Measured(
-        [&](const glm::vec3& u) {
-          const double along = glm::dot(48.0 * (glm::dvec3(u) - 0.5), way) / glm::length(way);
-          return static_cast<float>(0.1 + bend * along * along);
-        },
-        dims, 16);
-    EXPECT_NEAR(errors.curvature(1 + 3 * (1 + 3 * 1)), 2 * bend, 0.01 * bend) << number;
+    const glm::dvec3 other = way.x == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 across = glm::normalize(glm::cross(way, other));
+    const Field field = [&](const glm::vec3& u) {
+      return static_cast<float>(0.5 + 0.4 * std::cos(glm::dot(48.0 * glm::dvec3(u), across)));
+    };
+    const inr::LineErrors lines = Measured(field, dims, 16).ofLevel(1 + 3 * (1 + 3 * 1), 3);
+    // Level 3 has next to nothing of waves 6.3 voxels long.
+    EXPECT_GT(lines.sum, 0.75 * 0.4 * 18 * glm::length(way)) << number;
+    EXPECT_LT(lines.largest, 0.85) << number;
   }
+}
+
+TEST(LevelErrors, CancelWhereFieldsAreRough)
+{
+  const glm::i64vec3 dims(48, 48, 48);
+  const Field field = RoughField(dims);
+  const inr::LineErrors lines = Measured(field, dims, 16).ofLevel(1 + 3 * (1 + 3 * 1), 1);
+  EXPECT_GT(lines.largest, 0.4);
+  EXPECT_LT(lines.sum, 0.4 * 18 * std::sqrt(3.0) * lines.largest);
+  EXPECT_GT(lines.magnitude, 1.3 * lines.sum);
 }
 
 TEST(LevelErrors, AreThoseOfAThinFeature)
@@ -174,11 +186,11 @@ TEST(LevelErrors, AreThoseOfAThinFeature)
   const auto cell = [](std::int64_t x, std::int64_t y) { return x + 3 * (y + 3 * 1); };
   // Level 1 has a quarter of the wire in each of two by two voxels around it: (3/4)^2 of a quarter
   // where the wire is.
-  EXPECT_NEAR(errors.difference(cell(1, 1), 1), 0.8 * (1 - 9.0 / 64), 1e-5);
-  EXPECT_NEAR(errors.slope(cell(1, 1)), 0.8 * std::sqrt(2.0), 1e-5);
-  EXPECT_NEAR(errors.curvature(cell(1, 1)), 1.6, 1e-5);
-  EXPECT_LT(errors.difference(cell(2, 0), 1), 1e-6); // out of reach
-  EXPECT_GT(errors.difference(cell(1, 1), 3), 0.75);
+  const double off = 0.8 * (1 - 9.0 / 64);
+  EXPECT_NEAR(errors.ofLevel(cell(1, 1), 1).largest, 0.8 * (1 - 6.0 / 64), 1e-5);
+  EXPECT_NEAR(errors.ofLevel(cell(1, 1), 1).sum, 18 * off, 0.05 * 18 * off); // along the wire
+  EXPECT_LT(errors.ofLevel(cell(2, 0), 1).largest, 1e-6);                    // out of reach
+  EXPECT_GT(errors.ofLevel(cell(1, 1), 3).largest, 0.75);
 }
 
 } // namespace

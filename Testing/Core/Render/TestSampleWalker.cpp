@@ -68,7 +68,8 @@ struct Sample
 inr::SampleWalker WalkerOn(const inr::Ray& ray, const inr::Majorants& majorants,
                            const inr::MarchSettings& settings, double jitter)
 {
-  return {majorants, settings, ray, 1.0, Levels, jitter};
+  const double scale = settings.cellSampling != nullptr ? 0.0 : 1.0; // one of them says levels
+  return {majorants, settings, ray, scale, Levels, jitter};
 }
 
 /// All samples of a ray, taken `most` at a time.
@@ -98,10 +99,41 @@ inr::MarchSettings Settings()
   return settings;
 }
 
-TEST(SampleWalker, StopsWherePleasesWithoutChange)
+/// What each macro-cell asks for: at random, alike in two neighbours of three.
+std::vector<inr::CellSampling> RandomSampling(const inr::Majorants& majorants)
 {
-  const inr::Majorants majorants = MakeMajorants();
-  const inr::MarchSettings settings = Settings();
+  std::vector<inr::CellSampling> sampling(static_cast<std::size_t>(majorants.grid(0).count()));
+  for (std::size_t k = 0; k < sampling.size(); ++k) {
+    const auto power = static_cast<std::uint8_t>(inr::RandomBits(12, k / 3) % 4);
+    const bool coarser = inr::RandomBits(13, k / 3) % 2 == 0;
+    sampling[k] = {coarser ? power : std::uint8_t{0}, power};
+  }
+  return sampling;
+}
+
+/// Whether cells say where samples come from.
+class SampleWalkers : public testing::TestWithParam<bool>
+{
+protected:
+  const inr::Majorants Cells = MakeMajorants();
+  const std::vector<inr::CellSampling> Sampling = RandomSampling(this->Cells);
+
+  inr::MarchSettings settings() const
+  {
+    inr::MarchSettings settings = Settings();
+    settings.cellSampling = GetParam() ? this->Sampling.data() : nullptr;
+    return settings;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(, SampleWalkers, testing::Bool(), [](const auto& info) {
+  return std::string(info.param ? "AsCellsSay" : "ByDistance");
+});
+
+TEST_P(SampleWalkers, StopWherePleasesWithoutChange)
+{
+  const inr::Majorants& majorants = this->Cells;
+  const inr::MarchSettings settings = this->settings();
   for (std::uint64_t number = 0; number < 200; ++number) {
     const inr::Ray ray = RandomRay(number);
     const inr::SampleWalker walker = WalkerOn(ray, majorants, settings, inr::RandomUnit(8, number));
@@ -111,10 +143,10 @@ TEST(SampleWalker, StopsWherePleasesWithoutChange)
   }
 }
 
-TEST(SampleWalker, ResumesFromWhereItOnceWas)
+TEST_P(SampleWalkers, ResumeFromWhereTheyOnceWere)
 {
-  const inr::Majorants majorants = MakeMajorants();
-  const inr::MarchSettings settings = Settings();
+  const inr::Majorants& majorants = this->Cells;
+  const inr::MarchSettings settings = this->settings();
   for (std::uint64_t number = 0; number < 100; ++number) {
     const inr::SampleWalker before =
         WalkerOn(RandomRay(number), majorants, settings, inr::RandomUnit(8, number));
@@ -182,6 +214,52 @@ TEST(SampleWalker, TakesWhatCanBeSeenAndNothingTwice)
     }
   }
   EXPECT_GT(joined, 200);
+}
+
+/// Every step in a cell that can be seen belongs to one sample, which is as fine and stands for as
+/// few steps as all cells ask for that it is taken for.
+TEST(SampleWalker, TakesWhatCellsAskFor)
+{
+  const inr::Majorants majorants = MakeMajorants();
+  const std::vector<inr::CellSampling> sampling = RandomSampling(majorants);
+  inr::MarchSettings settings = Settings();
+  settings.cellSampling = sampling.data();
+  int taken[4][4] = {};
+  for (std::uint64_t number = 0; number < 200; ++number) {
+    const inr::Ray ray = RandomRay(number);
+    const double jitter = inr::RandomUnit(8, number);
+    inr::SampleWalker walker = WalkerOn(ray, majorants, settings, jitter);
+    std::int64_t end = 0;
+    while (walker.moveToVisible(settings)) {
+      const inr::AlikeSamples alike = walker.alike();
+      for (; end < walker.next(); ++end) {
+        const double t = (static_cast<double>(end) + jitter) * settings.step;
+        inr::CellWalker cells(majorants, settings.dims, ray, 0.0, Levels);
+        cells.moveTo(t);
+        EXPECT_EQ(cells.extinction(), 0.0f) << number << " " << end;
+      }
+      EXPECT_EQ(end, walker.next()) << number;
+      const std::int64_t steps = alike.steps();
+      EXPECT_TRUE(alike.last ||
+                  walker.offset(alike) == jitter + 0.5 * static_cast<double>(steps - 1));
+      const int level = walker.detail().level();
+      const int power = steps == 8 ? 3 : steps == 4 ? 2 : steps == 2 ? 1 : 0;
+      EXPECT_EQ(steps, std::int64_t{1} << power);
+      taken[level][power] += alike.count;
+      for (std::int64_t k = 0; k < steps && steps > 1; ++k) { // that the first one is taken for
+        inr::CellWalker cells(majorants, settings.dims, ray, 0.0, Levels);
+        cells.moveTo((static_cast<double>(end + k) + jitter) * settings.step);
+        EXPECT_LE(level, sampling[static_cast<std::size_t>(cells.index())].level);
+        EXPECT_LE(power, sampling[static_cast<std::size_t>(cells.index())].power);
+      }
+      end += steps;
+      walker.pass(alike, 1);
+    }
+  }
+  for (int power = 0; power < 4; ++power) {
+    EXPECT_GT(taken[power][power], 50);
+    EXPECT_GT(taken[0][power], 50);
+  }
 }
 
 TEST(SampleWalker, EndsWithTheRay)
