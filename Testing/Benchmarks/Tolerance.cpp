@@ -2,11 +2,12 @@
 //
 // What a tolerance of errors promises, keeps and saves, beside levels chosen by distance.
 //
-//   bench_tolerance MODEL.inr NAME TIMES
+//   bench_tolerance MODEL.inr NAME TIMES PIXELS
 //
-// of the volume with TIMES as many voxels along every axis, prints one JSON object per line;
-// tolerance.py writes the result file. The reference of all pictures has every sample, from voxels
-// of level 0 in float32 (reference A). Everything is decoded before anything is timed.
+// of the volume with TIMES as many voxels along every axis, in pictures of so many PIXELS across,
+// prints one JSON object per line; tolerance.py writes the result file. The reference of all
+// pictures has every sample, from voxels of level 0 in float32 (reference A). Everything is decoded
+// before anything is timed.
 #include "Core/Image/Metrics.h"
 #include "Core/Model/ModelFile.h"
 #include "Testing/Benchmarks/FrameScenes.h"
@@ -19,7 +20,7 @@
 
 namespace {
 
-constexpr int Frames = 3;
+constexpr int Frames = 4;
 
 struct Shown
 {
@@ -29,12 +30,41 @@ struct Shown
   double milliseconds; ///< processor time of a frame, the least of some
 };
 
+struct Priced
+{
+  double cost;
+  double psnr;
+};
+
+/// What the best of some pictures have at a cost: between two of them, as if those in between were
+/// on a line over the cost's logarithm.
+double PsnrAt(double cost, std::vector<Priced> pictures)
+{
+  std::sort(pictures.begin(), pictures.end(),
+            [](const Priced& a, const Priced& b) { return a.cost < b.cost; });
+  Priced cheaper = pictures.front();
+  for (const Priced& next : pictures) {
+    if (next.psnr <= cheaper.psnr) {
+      continue;
+    }
+    if (next.cost > cost) {
+      const double way = std::log(next.cost / cheaper.cost);
+      const double part = way > 0 ? std::clamp(std::log(cost / cheaper.cost) / way, 0.0, 1.0) : 0.0;
+      return cheaper.psnr + part * (next.psnr - cheaper.psnr);
+    }
+    cheaper = next;
+  }
+  return cheaper.psnr;
+}
+
 class Scene
 {
 public:
-  Scene(const inr::ModelPointer& model, const Look& look, std::string name)
+  Scene(const inr::ModelPointer& model, const Look& look, std::string name, int pixels)
       : Name(std::move(name)), Renderer(model, Cached()), Picture(View(model->volume))
   {
+    this->Picture.width = this->Picture.height = pixels;
+    this->Picture.sampleDistance = inr::Frame{}.sampleDistance;
     this->Renderer.setTransferFunction(look.function);
     inr::RendererOptions exact = Cached();
     exact.cache.precision = inr::CachePrecision::Float32;
@@ -51,8 +81,11 @@ public:
     Report("exact frame, " + this->Name, this->Exact.milliseconds, "ms", "lower");
     Report("samples of the exact frame, " + this->Name, this->Exact.samples, "", "lower");
     this->reportDistance(1, "default");
-    for (double scale = 0.125; scale < 9; scale *= std::sqrt(2.0)) {
-      this->ByDistance.emplace_back(scale, this->showByDistance(scale));
+    for (int octave = -4; octave <= 6; ++octave) { // halves of them
+      const double scale = std::exp2(0.5 * octave);
+      for (const bool adaptive : {true, false}) {
+        this->ByDistance.push_back(this->showByDistance(scale, adaptive));
+      }
     }
     for (const double tolerance : {1.0, 2.0, 4.0, 8.0}) {
       this->compareAt(tolerance);
@@ -76,16 +109,17 @@ private:
     return shown;
   }
 
-  Shown showByDistance(double scale)
+  Shown showByDistance(double scale, bool adaptive)
   {
     inr::Frame frame = this->Picture;
     frame.levelOfDetailScale = scale;
+    frame.adaptiveSampling = adaptive;
     return this->show(frame);
   }
 
   void reportDistance(double scale, const std::string& what)
   {
-    const Shown shown = this->showByDistance(scale);
+    const Shown shown = this->showByDistance(scale, true);
     const std::string where = ", by distance, " + what + ", " + this->Name;
     Report("frame" + where, shown.milliseconds, "ms", "lower");
     Report("samples" + where, shown.samples, "", "lower");
@@ -110,31 +144,28 @@ private:
            "lower");
     Report("frame" + where, shown.milliseconds, "ms", "lower");
     Report("PSNR" + where, shown.psnr, "dB", "higher");
-    this->compareAtEqualTime(shown, where);
+    this->compareAtEqualCost(shown, where);
   }
 
-  /// With the best picture by distance among those whose frames take no longer, and the one whose
-  /// frame is next slower.
-  void compareAtEqualTime(const Shown& shown, const std::string& where)
+  /// With what distance gives in the same time, and with as many samples.
+  void compareAtEqualCost(const Shown& shown, const std::string& where)
   {
-    double best = 0;
-    double bestScale = 0;
-    double nextSlower = std::numeric_limits<double>::infinity();
-    double nextPsnr = 0;
-    for (const auto& [scale, tried] : this->ByDistance) {
-      if (tried.milliseconds <= shown.milliseconds && tried.psnr > best) {
-        best = tried.psnr;
-        bestScale = scale;
-      } else if (tried.milliseconds > shown.milliseconds && tried.milliseconds < nextSlower) {
-        nextSlower = tried.milliseconds;
-        nextPsnr = tried.psnr;
+    const auto report = [&](const std::string& what, const auto& costOf,
+                            const std::string& target) {
+      std::vector<Priced> others;
+      for (const Shown& other : this->ByDistance) {
+        others.push_back({costOf(other), other.psnr});
       }
-    }
-    std::ostringstream note;
-    note << ", \"note\": \"best by distance in the time: scale " << bestScale << ", " << best
-         << " dB; next slower: " << nextSlower << " ms, " << nextPsnr << " dB\"";
-    Report("PSNR gain vs distance LoD" + where, shown.psnr - std::max(best, nextPsnr), "dB",
-           "higher", Target(3) + note.str());
+      const double same = PsnrAt(costOf(shown), others);
+      std::ostringstream note;
+      note << ", \"note\": \"by distance: " << same << " dB\"";
+      Report("PSNR gain vs distance LoD" + what + where, shown.psnr - same, "dB", "higher",
+             target + note.str());
+    };
+    report(
+        "", [](const Shown& picture) { return picture.milliseconds; }, Target(3));
+    report(
+        " at equal samples", [](const Shown& picture) { return picture.samples; }, "");
   }
 
   std::string Name;
@@ -142,21 +173,21 @@ private:
   inr::Frame Picture;
   inr::Image Truth;
   Shown Exact;
-  std::vector<std::pair<double, Shown>> ByDistance; ///< pictures of some scales
+  std::vector<Shown> ByDistance; ///< at many scales, with AdaptiveSampling and without
 };
 
 } // namespace
 
 int main(int argc, char* argv[])
 {
-  if (argc != 4) {
-    std::cerr << "usage: bench_tolerance MODEL.inr NAME TIMES\n";
+  if (argc != 5) {
+    std::cerr << "usage: bench_tolerance MODEL.inr NAME TIMES PIXELS\n";
     return 2;
   }
   const inr::ModelPointer own = inr::ReadModel(argv[1]);
   const inr::ModelPointer model = Scaled(own, own->volume.dims * std::int64_t{std::atoi(argv[3])});
   for (const Look& look : Looks(model->volume)) {
-    Scene(model, look, look.name + ", " + argv[2]).compare();
+    Scene(model, look, look.name + ", " + argv[2], std::atoi(argv[4])).compare();
   }
   return 0;
 }
