@@ -37,6 +37,13 @@ def memory(field):
     return int(line.split()[1]) / 1024
 
 
+def processor_seconds():
+    """Of the machine and of this process."""
+    with open("/proc/stat") as status:
+        user, nice, system = (int(number) for number in status.readline().split()[1:4])
+    return (user + nice + system) / os.sysconf("SC_CLK_TCK"), time.process_time()
+
+
 def place(part):
     """From outside through the middle of the channel and round: as bench_flight does."""
     angle = 2 * math.pi * part
@@ -70,9 +77,10 @@ def show(model):
 
 
 def fly(frames):
-    """What each frame was like, and the memory at the end."""
+    """What each frame was like, the memory at the end, and how busy others kept the machine."""
     seconds, mapper, hits, used = [], [], [], []
     warm = 0
+    all_before, own_before = processor_seconds()
     for k in range(frames):
         part = k / frames
         ahead = place(part + 0.05)
@@ -86,8 +94,10 @@ def fly(frames):
         used.append(display.GetPropertyValue("CacheUsed"))
         if k == frames // 4:
             warm = memory("VmHWM")
+    all_after, own_after = processor_seconds()
+    others = (all_after - all_before) / (own_after - own_before) - 1
     return {"seconds": seconds, "mapper": mapper, "hits": hits, "cache": max(used),
-            "peak": memory("VmHWM") - idle, "growth": memory("VmHWM") - warm}
+            "others": others, "peak": memory("VmHWM") - idle, "growth": memory("VmHWM") - warm}
 
 
 def take(name):
