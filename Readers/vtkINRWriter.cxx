@@ -214,6 +214,7 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
   }
   group.together([&] {
     if (group.rank() == 0) {
+      inr::RemoveAbandonedFiles(fileName);
       // Learn that the target is not writable now, not after minutes of training.
       const inr::AtomicFile attempt(fileName);
     }

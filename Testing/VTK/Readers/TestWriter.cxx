@@ -161,6 +161,18 @@ TEST_F(Writer, StoresTheQualityThatItReports)
   EXPECT_GT(this->Algorithm->GetTrainingSeconds(), 0.0);
 }
 
+TEST_F(Writer, RemovesWhatAKilledOneHasLeft)
+{
+  const std::string abandoned = this->path() + ".4194305.0.tmp"; // above the largest process number
+  const std::string checkpoint = this->path() + ".checkpoint.1.0.tmp";
+  for (const std::string& name : {abandoned, checkpoint}) {
+    std::ofstream(name) << "half of a model";
+  }
+  this->write(MakeImage({9, 8, 7}, VTK_FLOAT, 0, 1));
+  EXPECT_FALSE(std::ifstream(abandoned).good());
+  EXPECT_TRUE(std::ifstream(checkpoint).good()) << "whose writer is alive";
+}
+
 TEST_F(Writer, WritesCompactFilesUnlessToldOtherwise)
 {
   const auto image = MakeImage({40, 30, 20}, VTK_FLOAT, 0, 1);
