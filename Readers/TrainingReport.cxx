@@ -10,9 +10,9 @@ namespace {
 /// Before that a guess is worth nothing.
 constexpr double SmallestFraction = 0.02;
 
-double SecondsSince(std::chrono::steady_clock::time_point start)
+double Seconds(TrainingReport::Clock::duration time)
 {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double>(time).count();
 }
 
 std::string Formatted(const char* format, double number)
@@ -36,25 +36,34 @@ const char* Name(inr::TrainingPhase phase)
 
 } // namespace
 
-std::string TrainingReport::text(const inr::TrainingProgress& progress)
+std::string TimesOfGroup(const inr::TrainingRecord& training)
+{
+  if (training.exchangeSeconds == 0) {
+    return "";
+  }
+  return Formatted(", %.3g s of them to exchange gradients", training.exchangeSeconds) +
+         Formatted(" and %.3g s to wait for those of other processes", training.waitingSeconds);
+}
+
+std::string TrainingReport::text(const inr::TrainingProgress& progress, Clock::time_point now)
 {
   std::string text = Name(progress.phase);
   const bool training = progress.phase == inr::TrainingPhase::Training;
   if (training && this->FirstSteps == 0) {
     this->FirstSteps = progress.steps;
-    this->FirstStep = Clock::now();
+    this->FirstStep = now;
     // One that goes on from a checkpoint has not done in this time what was done before.
     this->Start = this->FirstStep;
     this->FirstFraction = progress.fraction;
   }
   const auto steps = static_cast<double>(progress.steps - this->FirstSteps);
   if (training && steps > 0) {
-    const double rate = steps * inr::BatchSize / SecondsSince(this->FirstStep);
+    const double rate = steps * inr::BatchSize / Seconds(now - this->FirstStep);
     text += Formatted(", %.3g M samples/s", rate / 1e6);
   }
   const double done = progress.fraction - this->FirstFraction;
   if (done > SmallestFraction) {
-    const double left = SecondsSince(this->Start) * (1.0 - progress.fraction) / done;
+    const double left = Seconds(now - this->Start) * (1.0 - progress.fraction) / done;
     text += left < 120 ? Formatted(", %.0f s left", left) : Formatted(", %.0f min left", left / 60);
   }
   return text;

@@ -388,7 +388,8 @@ vtkMultiProcessController* vtkINRWriter::GetController() { return this->Internal
 
 void vtkINRWriter::ForgetResult()
 {
-  this->PSNR = this->SSIM = this->MaximumError = this->Ratio = this->TrainingSeconds = 0;
+  this->PSNR = this->SSIM = this->MaximumError = this->Ratio = 0;
+  this->TrainingSeconds = this->WaitingSeconds = this->ExchangeSeconds = 0;
   this->Steps = 0;
 }
 
@@ -403,12 +404,15 @@ void vtkINRWriter::KeepResult(const inr::Model& model, vtkIdType fileSize)
   this->Ratio = bytes / static_cast<double>(fileSize);
   this->Steps = static_cast<vtkIdType>(model.training->steps);
   this->TrainingSeconds = model.training->seconds;
+  this->WaitingSeconds = model.training->waitingSeconds;
+  this->ExchangeSeconds = model.training->exchangeSeconds;
   if (ControllerGroup(this->Internal->Controller).rank() > 0) {
     return; // the first one says so
   }
   vtkLog(INFO, << this->Internal->Target << ": PSNR " << this->PSNR << " dB, SSIM " << this->SSIM
                << ", largest error " << this->MaximumError << ", ratio " << this->Ratio << ", "
-               << this->Steps << " steps in " << this->TrainingSeconds << " s");
+               << this->Steps << " steps in " << this->TrainingSeconds << " s"
+               << TimesOfGroup(*model.training));
 }
 
 void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)

@@ -210,6 +210,10 @@ public:
   vtkGetMacro(Ratio, double);
   vtkGetMacro(Steps, vtkIdType);
   vtkGetMacro(TrainingSeconds, double);
+  /// Of TrainingSeconds, since the training began or went on: in which this process waited for
+  /// the gradients of the others, and in which they told each other theirs.
+  vtkGetMacro(WaitingSeconds, double);
+  vtkGetMacro(ExchangeSeconds, double);
   ///@}
 
 protected:
@@ -271,6 +275,8 @@ private:
   double Ratio = 0;
   vtkIdType Steps = 0;
   double TrainingSeconds = 0;
+  double WaitingSeconds = 0;
+  double ExchangeSeconds = 0;
 
   std::unique_ptr<Internals> Internal;
 };

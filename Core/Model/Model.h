@@ -82,6 +82,10 @@ struct TrainingRecord
   /// Where it started from another model's parameters: steps that had gone into those, 0 = not
   /// known.
   std::optional<std::uint64_t> earlierSteps;
+  /// Not in the file. Of the seconds since the training began or went on, those in which this
+  /// process waited for the gradients of others, and in which they told each other theirs.
+  double waitingSeconds = 0;
+  double exchangeSeconds = 0;
 };
 
 enum class ParameterType {

@@ -155,7 +155,7 @@ std::optional<double> GradientDescent::step(BatchSource& batches, const StopChec
 std::optional<double> GradientDescent::computeTogether(BatchSource& batches, const StopCheck& check)
 {
   std::optional<double> loss;
-  this->Exchange->group().together([&] { loss = this->computeShare(batches, check); });
+  this->Exchange->together([&] { loss = this->computeShare(batches, check); });
   return this->Exchange->sum(loss, this->Gradient.data(), this->Shape.gridOffset, this->Grid);
 }
 

@@ -57,6 +57,12 @@ public:
   /// processes stay the same. The group must outlive this.
   void share(const TrainingGroup& group);
 
+  /// How long this process has waited for the others and told them its gradients.
+  ExchangeTimes exchangeTimes() const
+  {
+    return this->Exchange ? this->Exchange->times() : ExchangeTimes();
+  }
+
   /// Spreads the learning rate over so many steps (default: no end in sight, a constant rate).
   void plan(std::uint64_t steps) { this->PlannedSteps = steps; }
 

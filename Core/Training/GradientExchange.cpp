@@ -2,6 +2,7 @@
 #include "Core/Training/GradientExchange.h"
 
 #include "Core/Model/LittleEndian.h"
+#include "Core/Training/TrainingClock.h"
 
 #include <algorithm>
 #include <cstring>
@@ -95,9 +96,20 @@ std::string WeightsMessage(const std::optional<double>& loss, const float* weigh
 
 } // namespace
 
-std::optional<double> GradientExchange::sum(const std::optional<double>& loss, float* weights,
-                                            std::size_t count, GridGradient& grid) const
+void GradientExchange::together(const std::function<void()>& work)
 {
+  TrainingClock clock;
+  this->Group.together([&] {
+    work();
+    clock = TrainingClock();
+  });
+  this->Times.waiting += clock.seconds();
+}
+
+std::optional<double> GradientExchange::sum(const std::optional<double>& loss, float* weights,
+                                            std::size_t count, GridGradient& grid)
+{
+  const TrainingClock clock;
   const std::vector<std::string> all = this->Group.gather(WeightsMessage(loss, weights, count));
   const auto stopped = [](const std::string& message) { return message.empty(); };
   if (std::any_of(all.begin(), all.end(), stopped)) {
@@ -116,6 +128,7 @@ std::optional<double> GradientExchange::sum(const std::optional<double>& loss, f
   for (std::size_t begin = 0; begin < pieces; begin += PiecesAtATime) {
     this->sumPieces(grid, begin, std::min(begin + PiecesAtATime, pieces));
   }
+  this->Times.exchanging += clock.seconds();
   return total;
 }
 

@@ -157,6 +157,8 @@ void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, cons
   model.training->steps = descent.steps();
   model.training->plannedSteps = loop.plannedSteps();
   model.training->seconds = loop.seconds();
+  model.training->waitingSeconds = descent.exchangeTimes().waiting;
+  model.training->exchangeSeconds = descent.exchangeTimes().exchanging;
   model.parameters = std::move(descent.parameters());
 }
 

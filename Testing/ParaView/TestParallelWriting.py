@@ -40,9 +40,13 @@ if sys.argv[1] == "write":
         check(os.path.exists(output_file(name)), "no file", name)
     # Without SaveData, which has updated the source by then.
     with Messages() as messages:
-        servermanager.writers.INRWriter(Input=wavelet(), FileName=output_file(DIRECT), TimeLimit=0,
-                                        MaximumSteps=STEPS).UpdatePipeline()
+        writer = servermanager.writers.INRWriter(Input=wavelet(), FileName=output_file(DIRECT),
+                                                 TimeLimit=0, MaximumSteps=STEPS)
+        writer.UpdatePipeline()
     check(messages.errors() == 0, "the writer reported", messages.text)
+    told = writer.GetClientSideObject()
+    took = told.GetTrainingSeconds(), told.GetExchangeSeconds(), told.GetWaitingSeconds()
+    check(took[1] > 0 and took[2] > 0 and sum(took[1:]) < took[0], "times", took)
     # What fails in one, fails in all, and nobody waits for ever.
     with Messages() as messages:
         try:

@@ -15,9 +15,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <optional>
+#include <thread>
 
 namespace {
 
@@ -214,6 +217,51 @@ TEST(ParallelTraining, HasTheGradientOfOneProcessWithALargerBatch)
   }
 }
 
+/// Few samples, for which rank 1 takes half a second longer than rank 0.
+class LateOnRankOne : public inr::StratifiedBatches
+{
+public:
+  LateOnRankOne(const inr::SampleSource& source, std::promise<void>& firstIsDone, int rank)
+      : StratifiedBatches(source), FirstIsDone(firstIsDone), Rank(rank)
+  {}
+
+  std::int64_t count() const override { return 16; }
+  void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
+            glm::vec3* positions, float* targets) const override
+  {
+    StratifiedBatches::draw(stream, step, begin, end, positions, targets);
+    if (this->Rank == 0) {
+      this->FirstIsDone.set_value();
+    } else {
+      this->FirstIsDone.get_future().wait();
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    }
+  }
+
+private:
+  std::promise<void>& FirstIsDone;
+  int Rank;
+};
+
+TEST(ParallelTraining, TellsWaitingFromExchanging)
+{
+  const Field<float> field = Whole();
+  const inr::InMemorySource source(field.data(), -1, 1);
+  std::promise<void> firstIsDone;
+  inr::ExchangeTimes times[2];
+  InGroup(2, [&](const ThreadGroup& group) {
+    const inr::Arena arena(1);
+    inr::GradientDescent descent(SmallDescription(), 1, inr::ChooseInstructionSet(""), arena);
+    descent.share(group);
+    LateOnRankOne batches(source, firstIsDone, group.rank());
+    descent.step(batches);
+    times[group.rank()] = descent.exchangeTimes();
+  });
+  EXPECT_GT(times[0].waiting, 0.25); // what is left to a busy machine
+  EXPECT_LT(times[1].waiting, times[0].waiting);
+  EXPECT_LT(times[0].exchanging, times[0].waiting);
+}
+
 TEST(ParallelTraining, GivesAllTheSameModelEveryTime)
 {
   const Field<float> field = Whole();
@@ -226,6 +274,10 @@ TEST(ParallelTraining, GivesAllTheSameModelEveryTime)
       EXPECT_EQ(first[rank].model->parameters, first[0].model->parameters);
       EXPECT_EQ(again[rank].model->parameters, first[0].model->parameters);
       EXPECT_EQ(first[rank].model->quality->psnr, first[0].model->quality->psnr);
+      const inr::TrainingRecord& record = first[rank].model->training.value();
+      EXPECT_EQ(record.exchangeSeconds > 0, count > 1);
+      EXPECT_EQ(record.waitingSeconds > 0, count > 1);
+      EXPECT_LE(record.waitingSeconds + record.exchangeSeconds, record.seconds);
     }
     const inr::ModelPointer one = Train(OnOne(field, count), Options(30))[0].model;
     EXPECT_NEAR(first[0].model->quality->psnr, one->quality->psnr, 0.5);
