@@ -232,6 +232,66 @@ TEST(ParallelStreaming, GoesOnFromItsCheckpoint)
   EXPECT_EQ(Train(2, options)[1].model->parameters, whole->parameters);
 }
 
+// Both have to read the same blocks.
+TEST(ParallelStreaming, HeedsTheSmallestMemoryLimitAndTheLargestVoxels)
+{
+  class WithOtherArrays : public FieldReader<float>
+  {
+  public:
+    WithOtherArrays(const Field<float>& field, std::int64_t bytes)
+        : FieldReader<float>(field), Bytes(bytes)
+    {}
+    std::int64_t bytesPerVoxel() const override { return this->Bytes; }
+
+  private:
+    std::int64_t Bytes;
+  };
+  struct Process
+  {
+    std::int64_t limit;
+    std::int64_t bytesPerVoxel;
+  };
+  const auto train = [](const Process& first, const Process& second) {
+    std::vector<inr::ModelPointer> models(2);
+    InGroup(2, [&](const ThreadGroup& group) {
+      const Process& process = group.rank() == 0 ? first : second;
+      inr::TrainingOptions options = Options(3);
+      options.memoryLimit = process.limit;
+      WithOtherArrays reader(Volume(), process.bytesPerVoxel);
+      models[static_cast<std::size_t>(group.rank())] = inr::TrainModel(reader, {}, options, group);
+    });
+    EXPECT_EQ(models[0]->parameters, models[1]->parameters);
+    return models[0]->parameters;
+  };
+  const Process small{150 * MiB, 400};
+  const Process large{400 * MiB, 400};
+  const Process narrow{150 * MiB, 4};
+  const std::vector<float> expected = train(small, small);
+  EXPECT_NE(train(large, large), expected) << "the limit does not matter here";
+  EXPECT_EQ(train(small, large), expected);
+  EXPECT_EQ(train(large, small), expected);
+  EXPECT_NE(train(narrow, narrow), expected) << "other arrays do not matter here";
+  EXPECT_EQ(train(narrow, small), expected);
+  EXPECT_EQ(train(small, narrow), expected);
+}
+
+TEST(ParallelStreaming, RefusesDifferentTypes)
+{
+  const Field<double> doubles = Waves<double>(Dims, inr::ScalarType::Float64, -3, 5);
+  std::vector<Outcome> outcomes(2);
+  InGroup(2, [&](const ThreadGroup& group) {
+    FieldReader<float> floatReader(Volume());
+    FieldReader<double> doubleReader(doubles);
+    inr::VolumeReader* const readers[] = {&floatReader, &doubleReader};
+    try {
+      inr::TrainModel(*readers[group.rank()], {}, Options(2), group);
+    } catch (const inr::Error& error) {
+      outcomes[static_cast<std::size_t>(group.rank())].error = error;
+    }
+  });
+  ExpectErrors(outcomes, "different types");
+}
+
 TEST(ParallelStreaming, SaysHowMuchMemoryEachProcessNeeds)
 {
   inr::TrainingOptions options = Options(10);
