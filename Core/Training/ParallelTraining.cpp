@@ -36,6 +36,8 @@ DecodedReport MeasureParts(const Evaluator& evaluator, const VolumePart& part,
     const VoxelBox voxels = part.voxels();
     if (voxels.voxels() > 0) {
       meter.add(part.piece(), voxels, &cells, check);
+    } else { // it may stop the others, too
+      check(0);
     }
   });
   meter.gather(group);

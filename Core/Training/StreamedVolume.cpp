@@ -255,17 +255,19 @@ void StreamedVolume::measureShare(const BlockGrid& boxes, const std::vector<std:
   for (std::size_t first = 0; first < chosen.size(); first += size) {
     const std::size_t k = first + static_cast<std::size_t>(this->Group.rank());
     const VoxelBox own = k < chosen.size() ? boxes.ownVoxels(chosen[k]) : VoxelBox();
+    const auto done = [&](double part) {
+      progress((static_cast<double>(first) + part * static_cast<double>(size)) /
+               static_cast<double>(chosen.size()));
+    };
     this->Group.together([&] {
       if (own.voxels() == 0) {
+        done(0); // who has nothing to do may stop the others, too
         size > 1 ? this->readNothing() : void();
         return;
       }
       const VolumePiece piece = this->read(own);
       this->requireKnownRange(piece, own);
-      meter.add(piece, decoded, [&](double part) {
-        progress((static_cast<double>(first) + part * static_cast<double>(size)) /
-                 static_cast<double>(chosen.size()));
-      });
+      meter.add(piece, decoded, done);
     });
   }
 }

@@ -329,6 +329,11 @@ TEST(ParallelTraining, StopsForAllWhenOneIsStopped)
     };
     ExpectErrors(Train(pieces, Options(3), later), inr::ErrorCode::Cancelled, "stopped");
   }
+  const auto byOneWithNothing = [](int rank, const inr::TrainingProgress& now) {
+    return rank != 1 || now.phase == inr::TrainingPhase::Training;
+  };
+  ExpectErrors(Train(OnOne(Whole(), 2), Options(3), byOneWithNothing), inr::ErrorCode::Cancelled,
+               "stopped");
 }
 
 TEST(ParallelTraining, StopsForAllByTheClockOfTheFirst)
