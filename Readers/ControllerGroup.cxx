@@ -7,10 +7,14 @@
 #include <vtkMultiProcessController.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace {
 
 constexpr vtkIdType PieceSize = vtkIdType{1} << 22;
+
+/// MPI counts in 32 bits.
+constexpr vtkIdType LargestMessage = vtkIdType{1} << 30;
 
 void RequireReached(int result)
 {
@@ -51,7 +55,30 @@ std::vector<std::string> ControllerGroup::gather(const std::string& bytes) const
   return parts;
 }
 
-/// Of all that have so many bytes the next ones: MPI counts in 32 bits.
+void ControllerGroup::gatherInto(const char* bytes, std::size_t count,
+                                 inr::GatheredBytes& all) const
+{
+  if (!this->Controller) {
+    this->TrainingGroup::gatherInto(bytes, count, all);
+    return;
+  }
+  const auto own = static_cast<vtkIdType>(count);
+  std::vector<vtkIdType> lengths(static_cast<std::size_t>(this->size()));
+  RequireReached(this->Controller->AllGather(&own, lengths.data(), 1));
+  std::vector<vtkIdType> offsets(lengths.size());
+  std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
+  const vtkIdType total = offsets.back() + lengths.back();
+  if (total > LargestMessage) {
+    this->TrainingGroup::gatherInto(bytes, count, all);
+    return;
+  }
+  all.begins.assign(offsets.begin(), offsets.end());
+  all.bytes.resize(std::max(all.bytes.size(), static_cast<std::size_t>(total)));
+  RequireReached(
+      this->Controller->AllGatherV(bytes, all.bytes.data(), own, lengths.data(), offsets.data()));
+}
+
+/// Of all that have so many bytes the next ones.
 void ControllerGroup::gatherPiece(const std::string& bytes, vtkIdType begin,
                                   const std::vector<vtkIdType>& lengths,
                                   std::vector<std::string>& parts) const

@@ -21,6 +21,7 @@ public:
   int rank() const override;
   int size() const override;
   std::vector<std::string> gather(const std::string& bytes) const override;
+  void gatherInto(const char* bytes, std::size_t count, inr::GatheredBytes& all) const override;
 
   /// For this process, so that those on the same machine share its cores; 0 (= all) when alone.
   int threads() const;

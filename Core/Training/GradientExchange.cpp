@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
+#include <string>
 
 namespace inr {
 
@@ -24,63 +26,79 @@ std::int64_t LineSize(const GridGradient::Piece& piece, std::int64_t line)
   return std::min(GradientLine, piece.count - line * GradientLine);
 }
 
-/// A byte that says so for each line, then the touched ones; they become zero, and untouched.
-std::string TakeOut(const GridGradient::Piece& piece, float* values)
+/// A piece's part of a message: a byte for each line that says whether it is touched, then the
+/// touched ones.
+std::size_t PartSize(const GridGradient::Piece& piece)
 {
   const std::int64_t lines = LinesOf(piece);
-  std::string bytes(reinterpret_cast<const char*>(piece.touched), static_cast<std::size_t>(lines));
+  std::int64_t floats = std::count(piece.touched, piece.touched + lines, 1) * GradientLine;
+  if (piece.touched[lines - 1] != 0) { // of a level's end
+    floats -= GradientLine - LineSize(piece, lines - 1);
+  }
+  return static_cast<std::size_t>(lines) + static_cast<std::size_t>(floats) * sizeof(float);
+}
+
+/// Of a whole line the compiler knows the size.
+void CopyLine(void* to, const void* from, std::int64_t floats)
+{
+  if (floats == GradientLine) {
+    std::memcpy(to, from, GradientLine * sizeof(float));
+  } else {
+    std::memcpy(to, from, static_cast<std::size_t>(floats) * sizeof(float));
+  }
+}
+
+void WritePart(const GridGradient::Piece& piece, const float* values, char* part)
+{
+  const std::int64_t lines = LinesOf(piece);
+  std::memcpy(part, piece.touched, static_cast<std::size_t>(lines));
+  char* next = part + lines;
   for (std::int64_t line = 0; line < lines; ++line) {
     if (piece.touched[line] != 0) {
-      float* const first = values + line * GradientLine;
-      const std::int64_t count = LineSize(piece, line);
-      bytes.append(reinterpret_cast<const char*>(first),
-                   static_cast<std::size_t>(count) * sizeof(float));
-      std::fill_n(first, count, 0.0f);
-      piece.touched[line] = 0;
+      const std::int64_t floats = LineSize(piece, line);
+      CopyLine(next, values + line * GradientLine, floats);
+      next += static_cast<std::size_t>(floats) * sizeof(float);
     }
   }
-  return bytes;
 }
 
-void Add(const GridGradient::Piece& piece, float* values, const char* bytes)
+/// Where the next line of each process' part is, and its marks.
+struct PartReader
+{
+  const char* marks;
+  const char* next;
+};
+
+/// Adds a line of all processes that touched it; says whether any did.
+bool AddLine(std::vector<PartReader>& parts, std::int64_t line, std::int64_t floats, float* sum)
+{
+  bool any = false;
+  for (PartReader& part : parts) {
+    if (part.marks[line] != 0) {
+      float values[GradientLine] = {};
+      CopyLine(values, part.next, floats);
+      for (std::int64_t k = 0; k < GradientLine; ++k) {
+        sum[k] += values[k];
+      }
+      part.next += static_cast<std::size_t>(floats) * sizeof(float);
+      any = true;
+    }
+  }
+  return any;
+}
+
+/// What this process had in the piece is among the parts.
+void AddParts(const GridGradient::Piece& piece, float* values, std::vector<PartReader>& parts)
 {
   const std::int64_t lines = LinesOf(piece);
-  const char* next = bytes + lines;
   for (std::int64_t line = 0; line < lines; ++line) {
-    if (bytes[line] == 0) {
-      continue;
+    const std::int64_t floats = LineSize(piece, line);
+    float sum[GradientLine] = {};
+    if (AddLine(parts, line, floats, sum)) {
+      CopyLine(values + line * GradientLine, sum, floats);
+      piece.touched[line] = 1;
     }
-    piece.touched[line] = 1;
-    for (std::int64_t k = 0; k < LineSize(piece, line); ++k, next += sizeof(float)) {
-      values[line * GradientLine + k] += FromBytes<float>(next);
-    }
   }
-}
-
-/// Parts one after the other, with their sizes in front.
-std::string Joined(const std::vector<std::string>& parts)
-{
-  std::string bytes;
-  for (const std::string& part : parts) {
-    const std::uint64_t size = part.size();
-    bytes.append(reinterpret_cast<const char*>(&size), sizeof(size));
-  }
-  for (const std::string& part : parts) {
-    bytes += part;
-  }
-  return bytes;
-}
-
-/// Where each of `count` joined parts begins.
-std::vector<const char*> PartsOf(const std::string& bytes, std::size_t count)
-{
-  std::vector<const char*> parts;
-  const char* next = bytes.data() + count * sizeof(std::uint64_t);
-  for (std::size_t k = 0; k < count; ++k) {
-    parts.push_back(next);
-    next += FromBytes<std::uint64_t>(bytes.data() + k * sizeof(std::uint64_t));
-  }
-  return parts;
 }
 
 std::string WeightsMessage(const std::optional<double>& loss, const float* weights,
@@ -132,24 +150,47 @@ std::optional<double> GradientExchange::sum(const std::optional<double>& loss, f
   return total;
 }
 
-void GradientExchange::sumPieces(GridGradient& grid, std::size_t begin, std::size_t end) const
+void GradientExchange::sumPieces(GridGradient& grid, std::size_t begin, std::size_t end)
 {
-  const auto count = static_cast<std::int64_t>(end - begin);
-  std::vector<std::string> mine(end - begin);
-  this->Threads.forEachBlock(count, 1, [&](std::int64_t k, std::int64_t) {
-    const GridGradient::Piece& piece = grid.pieces()[begin + static_cast<std::size_t>(k)];
-    mine[static_cast<std::size_t>(k)] = TakeOut(piece, grid.values(piece));
+  this->pack(grid, begin, end);
+  this->Group.gatherInto(this->Mine.data(), this->Begins.back(), this->All);
+  this->addUp(grid, begin, end);
+}
+
+/// Where each part begins, then the parts.
+void GradientExchange::pack(GridGradient& grid, std::size_t begin, std::size_t end)
+{
+  const std::size_t count = end - begin;
+  const auto tasks = static_cast<std::int64_t>(count);
+  this->Begins.assign(count + 1, count * sizeof(std::uint64_t));
+  this->Threads.forEachBlock(tasks, 1, [&](std::int64_t k, std::int64_t) {
+    const auto at = static_cast<std::size_t>(k);
+    this->Begins[at + 1] = PartSize(grid.pieces()[begin + at]);
   });
-  const std::vector<std::string> all = this->Group.gather(Joined(mine));
-  std::vector<std::vector<const char*>> parts;
-  for (const std::string& message : all) {
-    parts.push_back(PartsOf(message, end - begin));
-  }
-  this->Threads.forEachBlock(count, 1, [&](std::int64_t k, std::int64_t) {
+  std::partial_sum(this->Begins.begin(), this->Begins.end(), this->Begins.begin());
+  this->Mine.resize(std::max(this->Mine.size(), this->Begins.back()));
+  this->Threads.forEachBlock(tasks, 1, [&](std::int64_t k, std::int64_t) {
+    const auto at = static_cast<std::size_t>(k);
+    const std::uint64_t first = this->Begins[at];
+    std::memcpy(&this->Mine[at * sizeof(first)], &first, sizeof(first));
+    const GridGradient::Piece& piece = grid.pieces()[begin + at];
+    WritePart(piece, grid.values(piece), &this->Mine[first]);
+  });
+}
+
+void GradientExchange::addUp(GridGradient& grid, std::size_t begin, std::size_t end) const
+{
+  const auto tasks = static_cast<std::int64_t>(end - begin);
+  this->Threads.forEachBlock(tasks, 1, [&](std::int64_t k, std::int64_t) {
     const GridGradient::Piece& piece = grid.pieces()[begin + static_cast<std::size_t>(k)];
-    for (const std::vector<const char*>& ofRank : parts) {
-      Add(piece, grid.values(piece), ofRank[static_cast<std::size_t>(k)]);
+    std::vector<PartReader> parts;
+    for (const std::size_t ofProcess : this->All.begins) {
+      const char* const message = this->All.bytes.data() + ofProcess;
+      const char* const part =
+          message + FromBytes<std::uint64_t>(message + k * sizeof(std::uint64_t));
+      parts.push_back({part, part + LinesOf(piece)});
     }
+    AddParts(piece, grid.values(piece), parts);
   });
 }
 

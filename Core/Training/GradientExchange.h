@@ -5,10 +5,9 @@
 #include "Core/Training/GridGradient.h"
 #include "Core/Training/TrainingGroup.h"
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace inr {
@@ -40,11 +39,16 @@ public:
   const ExchangeTimes& times() const { return this->Times; }
 
 private:
-  void sumPieces(GridGradient& grid, std::size_t begin, std::size_t end) const;
+  void sumPieces(GridGradient& grid, std::size_t begin, std::size_t end);
+  void pack(GridGradient& grid, std::size_t begin, std::size_t end);
+  void addUp(GridGradient& grid, std::size_t begin, std::size_t end) const;
 
   const TrainingGroup& Group;
   const Arena& Threads;
   ExchangeTimes Times;
+  std::vector<std::size_t> Begins; ///< in Mine, of the pieces' parts; then its end
+  std::vector<char> Mine;
+  GatheredBytes All;
 };
 
 } // namespace inr

@@ -18,6 +18,17 @@ std::string Described(const Error& error)
 
 } // namespace
 
+void TrainingGroup::gatherInto(const char* bytes, std::size_t count, GatheredBytes& all) const
+{
+  const std::vector<std::string> parts = this->gather(std::string(bytes, count));
+  all.bytes.clear();
+  all.begins.clear();
+  for (const std::string& part : parts) {
+    all.begins.push_back(all.bytes.size());
+    all.bytes.insert(all.bytes.end(), part.begin(), part.end());
+  }
+}
+
 std::string TrainingGroup::fromFirst(const std::string& bytes) const
 {
   return this->gather(this->rank() == 0 ? bytes : std::string()).front();

@@ -3,11 +3,19 @@
 
 #include "Core/Model/LittleEndian.h"
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace inr {
+
+/// What all processes gave; its memory is kept from one time to the next.
+struct GatheredBytes
+{
+  std::vector<char> bytes;         ///< and maybe some that were there before
+  std::vector<std::size_t> begins; ///< of the processes' parts
+};
 
 /// Processes that train one model together, each from the piece of the volume that it holds. All of
 /// them make the same calls in the same order; a call ends when all have made it. This one is a
@@ -23,6 +31,9 @@ public:
   /// The bytes that each process gives, in the order of ranks, the same for all. Throws Error when
   /// a process cannot be reached.
   virtual std::vector<std::string> gather(const std::string& bytes) const { return {bytes}; }
+
+  /// The same for megabytes that are told often.
+  virtual void gatherInto(const char* bytes, std::size_t count, GatheredBytes& all) const;
 
   /// What rank 0 gives.
   std::string fromFirst(const std::string& bytes) const;
