@@ -13,14 +13,22 @@ namespace {
 
 constexpr vtkIdType PieceSize = vtkIdType{1} << 22;
 
-/// MPI counts in 32 bits.
-constexpr vtkIdType LargestMessage = vtkIdType{1} << 30;
-
 void RequireReached(int result)
 {
   if (result == 0) {
     throw inr::Error(inr::ErrorCode::CannotRead, "the other processes cannot be reached");
   }
+}
+
+/// For parts of these lengths, one after the other; returns where they go.
+std::vector<vtkIdType> MakeRoom(const std::vector<vtkIdType>& lengths, inr::GatheredBytes& parts)
+{
+  std::vector<vtkIdType> offsets(lengths.size());
+  std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
+  parts.begins.assign(offsets.begin(), offsets.end());
+  const auto total = static_cast<std::size_t>(offsets.back() + lengths.back());
+  parts.bytes.resize(std::max(parts.bytes.size(), total));
+  return offsets;
 }
 
 } // namespace
@@ -65,20 +73,37 @@ void ControllerGroup::gatherInto(const char* bytes, std::size_t count,
   const auto own = static_cast<vtkIdType>(count);
   std::vector<vtkIdType> lengths(static_cast<std::size_t>(this->size()));
   RequireReached(this->Controller->AllGather(&own, lengths.data(), 1));
-  std::vector<vtkIdType> offsets(lengths.size());
-  std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
-  const vtkIdType total = offsets.back() + lengths.back();
-  if (total > LargestMessage) {
-    this->TrainingGroup::gatherInto(bytes, count, all);
-    return;
-  }
-  all.begins.assign(offsets.begin(), offsets.end());
-  all.bytes.resize(std::max(all.bytes.size(), static_cast<std::size_t>(total)));
+  std::vector<vtkIdType> offsets = MakeRoom(lengths, all);
   RequireReached(
       this->Controller->AllGatherV(bytes, all.bytes.data(), own, lengths.data(), offsets.data()));
 }
 
-/// Of all that have so many bytes the next ones.
+void ControllerGroup::distribute(const char* bytes, const std::vector<std::size_t>& begins,
+                                 inr::GatheredBytes& mine) const
+{
+  if (!this->Controller) {
+    this->TrainingGroup::distribute(bytes, begins, mine);
+    return;
+  }
+  const auto size = static_cast<std::size_t>(this->size());
+  std::vector<vtkIdType> own(size);
+  for (std::size_t k = 0; k < size; ++k) {
+    own[k] = static_cast<vtkIdType>(begins[k + 1] - begins[k]);
+  }
+  std::vector<vtkIdType> ofAll(size * size);
+  RequireReached(this->Controller->AllGather(own.data(), ofAll.data(), this->size()));
+  std::vector<vtkIdType> lengths(size);
+  for (std::size_t k = 0; k < size; ++k) {
+    lengths[k] = ofAll[k * size + static_cast<std::size_t>(this->rank())];
+  }
+  std::vector<vtkIdType> offsets = MakeRoom(lengths, mine);
+  for (std::size_t k = 0; k < size; ++k) {
+    RequireReached(this->Controller->GatherV(bytes + begins[k], mine.bytes.data(), own[k],
+                                             lengths.data(), offsets.data(), static_cast<int>(k)));
+  }
+}
+
+/// Of all that have so many bytes the next ones: MPI counts in 32 bits.
 void ControllerGroup::gatherPiece(const std::string& bytes, vtkIdType begin,
                                   const std::vector<vtkIdType>& lengths,
                                   std::vector<std::string>& parts) const

@@ -22,6 +22,8 @@ public:
   int size() const override;
   std::vector<std::string> gather(const std::string& bytes) const override;
   void gatherInto(const char* bytes, std::size_t count, inr::GatheredBytes& all) const override;
+  void distribute(const char* bytes, const std::vector<std::size_t>& begins,
+                  inr::GatheredBytes& mine) const override;
 
   /// For this process, so that those on the same machine share its cores; 0 (= all) when alone.
   int threads() const;

@@ -13,8 +13,9 @@ namespace inr {
 
 namespace {
 
-/// Pieces of the grid that are sent together: 4 MiB of parameters at most.
-constexpr std::size_t PiecesAtATime = 32;
+/// Pieces of the grid that are summed together, 4 MiB of parameters, unless there are more
+/// processes.
+constexpr std::size_t FewestPieces = 32;
 
 std::int64_t LinesOf(const GridGradient::Piece& piece)
 {
@@ -143,8 +144,9 @@ std::optional<double> GradientExchange::sum(const std::optional<double>& loss, f
     }
   }
   const std::size_t pieces = grid.pieces().size();
-  for (std::size_t begin = 0; begin < pieces; begin += PiecesAtATime) {
-    this->sumPieces(grid, begin, std::min(begin + PiecesAtATime, pieces));
+  const auto atATime = std::max(FewestPieces, static_cast<std::size_t>(this->Group.size()));
+  for (std::size_t begin = 0; begin < pieces; begin += atATime) {
+    this->sumPieces(grid, begin, std::min(begin + atATime, pieces));
   }
   this->Times.exchanging += clock.seconds();
   return total;
@@ -152,40 +154,59 @@ std::optional<double> GradientExchange::sum(const std::optional<double>& loss, f
 
 void GradientExchange::sumPieces(GridGradient& grid, std::size_t begin, std::size_t end)
 {
-  this->pack(grid, begin, end);
-  this->Group.gatherInto(this->Mine.data(), this->Begins.back(), this->All);
-  this->addUp(grid, begin, end);
+  const auto size = static_cast<std::size_t>(this->Group.size());
+  const auto rank = static_cast<std::size_t>(this->Group.rank());
+  std::vector<Pieces> shares(size);
+  for (std::size_t k = begin; k < end; ++k) {
+    shares[k % size].push_back(&grid.pieces()[k]);
+  }
+  std::vector<std::size_t> begins = {0};
+  for (const Pieces& share : shares) {
+    begins.push_back(this->pack(grid, share, begins.back()));
+  }
+  this->Group.distribute(this->Sent.data(), begins, this->Received);
+  std::vector<const char*> messages;
+  for (const std::size_t at : this->Received.begins) {
+    messages.push_back(this->Received.bytes.data() + at);
+  }
+  this->addUp(grid, shares[rank], messages);
+  const std::size_t count = this->pack(grid, shares[rank], 0);
+  this->Group.gatherInto(this->Sent.data(), count, this->Received);
+  for (std::size_t k = 0; k < size; ++k) {
+    if (k != rank) {
+      this->addUp(grid, shares[k], {this->Received.bytes.data() + this->Received.begins[k]});
+    }
+  }
 }
 
-/// Where each part begins, then the parts.
-void GradientExchange::pack(GridGradient& grid, std::size_t begin, std::size_t end)
+/// Writes a message: where each part begins, then the parts. Returns where it ends.
+std::size_t GradientExchange::pack(GridGradient& grid, const Pieces& pieces, std::size_t at)
 {
-  const std::size_t count = end - begin;
-  const auto tasks = static_cast<std::int64_t>(count);
-  this->Begins.assign(count + 1, count * sizeof(std::uint64_t));
+  const auto tasks = static_cast<std::int64_t>(pieces.size());
+  std::vector<std::uint64_t> begins(pieces.size() + 1, pieces.size() * sizeof(std::uint64_t));
   this->Threads.forEachBlock(tasks, 1, [&](std::int64_t k, std::int64_t) {
-    const auto at = static_cast<std::size_t>(k);
-    this->Begins[at + 1] = PartSize(grid.pieces()[begin + at]);
+    begins[static_cast<std::size_t>(k) + 1] = PartSize(*pieces[static_cast<std::size_t>(k)]);
   });
-  std::partial_sum(this->Begins.begin(), this->Begins.end(), this->Begins.begin());
-  this->Mine.resize(std::max(this->Mine.size(), this->Begins.back()));
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  this->Sent.resize(std::max(this->Sent.size(), at + begins.back()));
+  char* const message = this->Sent.data() + at;
+  std::memcpy(message, begins.data(), pieces.size() * sizeof(std::uint64_t));
   this->Threads.forEachBlock(tasks, 1, [&](std::int64_t k, std::int64_t) {
-    const auto at = static_cast<std::size_t>(k);
-    const std::uint64_t first = this->Begins[at];
-    std::memcpy(&this->Mine[at * sizeof(first)], &first, sizeof(first));
-    const GridGradient::Piece& piece = grid.pieces()[begin + at];
-    WritePart(piece, grid.values(piece), &this->Mine[first]);
+    const GridGradient::Piece& piece = *pieces[static_cast<std::size_t>(k)];
+    WritePart(piece, grid.values(piece), message + begins[static_cast<std::size_t>(k)]);
   });
+  return at + begins.back();
 }
 
-void GradientExchange::addUp(GridGradient& grid, std::size_t begin, std::size_t end) const
+/// Enters into the grid what messages about the same pieces come to.
+void GradientExchange::addUp(GridGradient& grid, const Pieces& pieces,
+                             const std::vector<const char*>& messages) const
 {
-  const auto tasks = static_cast<std::int64_t>(end - begin);
+  const auto tasks = static_cast<std::int64_t>(pieces.size());
   this->Threads.forEachBlock(tasks, 1, [&](std::int64_t k, std::int64_t) {
-    const GridGradient::Piece& piece = grid.pieces()[begin + static_cast<std::size_t>(k)];
+    const GridGradient::Piece& piece = *pieces[static_cast<std::size_t>(k)];
     std::vector<PartReader> parts;
-    for (const std::size_t ofProcess : this->All.begins) {
-      const char* const message = this->All.bytes.data() + ofProcess;
+    for (const char* const message : messages) {
       const char* const part =
           message + FromBytes<std::uint64_t>(message + k * sizeof(std::uint64_t));
       parts.push_back({part, part + LinesOf(piece)});

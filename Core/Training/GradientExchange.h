@@ -21,7 +21,8 @@ struct ExchangeTimes
 
 /// Adds up what the processes of a group found for their shares of a mini-batch, in the order of
 /// ranks, so that all have the same sums, bit for bit. Of the grid only lines that were touched are
-/// sent.
+/// sent. Each process adds up an equal part of the grid and tells the others: what a process sends
+/// and receives then hardly grows with their number.
 class GradientExchange
 {
 public:
@@ -39,16 +40,18 @@ public:
   const ExchangeTimes& times() const { return this->Times; }
 
 private:
+  using Pieces = std::vector<const GridGradient::Piece*>;
+
   void sumPieces(GridGradient& grid, std::size_t begin, std::size_t end);
-  void pack(GridGradient& grid, std::size_t begin, std::size_t end);
-  void addUp(GridGradient& grid, std::size_t begin, std::size_t end) const;
+  std::size_t pack(GridGradient& grid, const Pieces& pieces, std::size_t at);
+  void addUp(GridGradient& grid, const Pieces& pieces,
+             const std::vector<const char*>& messages) const;
 
   const TrainingGroup& Group;
   const Arena& Threads;
   ExchangeTimes Times;
-  std::vector<std::size_t> Begins; ///< in Mine, of the pieces' parts; then its end
-  std::vector<char> Mine;
-  GatheredBytes All;
+  std::vector<char> Sent;
+  GatheredBytes Received;
 };
 
 } // namespace inr

@@ -29,6 +29,25 @@ void TrainingGroup::gatherInto(const char* bytes, std::size_t count, GatheredByt
   }
 }
 
+void TrainingGroup::distribute(const char* bytes, const std::vector<std::size_t>& begins,
+                               GatheredBytes& mine) const
+{
+  const std::vector<std::string> parts = this->gather(std::string(bytes, begins.back()));
+  const std::string own(reinterpret_cast<const char*>(begins.data()),
+                        begins.size() * sizeof(begins[0]));
+  const std::vector<std::string> places = this->gather(own);
+  const auto rank = static_cast<std::size_t>(this->rank());
+  mine.bytes.clear();
+  mine.begins.clear();
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const char* const place = places[k].data() + rank * sizeof(begins[0]);
+    const auto first = FromBytes<std::size_t>(place);
+    const auto end = FromBytes<std::size_t>(place + sizeof(begins[0]));
+    mine.begins.push_back(mine.bytes.size());
+    mine.bytes.insert(mine.bytes.end(), parts[k].data() + first, parts[k].data() + end);
+  }
+}
+
 std::string TrainingGroup::fromFirst(const std::string& bytes) const
 {
   return this->gather(this->rank() == 0 ? bytes : std::string()).front();

@@ -32,8 +32,14 @@ public:
   /// a process cannot be reached.
   virtual std::vector<std::string> gather(const std::string& bytes) const { return {bytes}; }
 
-  /// The same for megabytes that are told often.
+  /// The same for megabytes that are told often; less than 2 GiB in all.
   virtual void gatherInto(const char* bytes, std::size_t count, GatheredBytes& all) const;
+
+  /// Of bytes that each process has for each of them, what is for this one: less than 2 GiB. Those
+  /// for rank 0, 1,
+  /// ... begin at `begins`, which also says where the last ones end.
+  virtual void distribute(const char* bytes, const std::vector<std::size_t>& begins,
+                          GatheredBytes& mine) const;
 
   /// What rank 0 gives.
   std::string fromFirst(const std::string& bytes) const;
