@@ -11,7 +11,8 @@ fourth voxel trained from memory. "channel": 10240 x 7680 x 1536 doubles, 0.97 T
 where they are asked for; "half-channel": half as many along every axis. Models are compared with
 the field itself on 10^8 random voxels. "channel-flight", after "channel" in the same FOLDER, opens
 its model in ParaView with a cache of 2 GiB, flies through it, and compares pictures at three
-distances with pictures of the field itself; "half-channel-flight" likewise.
+distances with pictures of the field itself; "half-channel-flight" likewise. "ranks": trainings by
+1, 2 and 4 processes of pvbatch.
 """
 import json
 import os
@@ -20,6 +21,7 @@ import sys
 from pathlib import Path
 
 import channel_flight
+import channel_ranks
 import results_file
 
 # In pvpython; arguments as JSON, the answer as the last line.
@@ -136,7 +138,8 @@ def flight(name, divisor):
 PARTS = {"raw": raw_file, "half-channel": lambda: channel("half channel", 2),
          "half-channel-flight": lambda: flight("half channel", 2),
          "channel": lambda: channel("channel", 1),
-         "channel-flight": lambda: flight("channel", 1)}
+         "channel-flight": lambda: flight("channel", 1),
+         "ranks": lambda: channel_ranks.results(build, folder, MODEL)}
 parts = sys.argv[3:] or list(PARTS)
 folder.mkdir(parents=True, exist_ok=True)
 for part in parts:
