@@ -7,7 +7,6 @@ import statistics
 import subprocess
 import sys
 
-import model_file
 import results_file
 
 # In every process; arguments as JSON, the answer as a line.
@@ -123,6 +122,7 @@ def share(answers, what):
 
 
 def parameters(path):
+    import model_file  # the other parts do without NumPy
     return model_file.read_document(path.read_bytes())["parameters"]["params_binary"]
 
 

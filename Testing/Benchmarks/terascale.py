@@ -12,7 +12,7 @@ where they are asked for; "half-channel": half as many along every axis. Models 
 the field itself on 10^8 random voxels. "channel-flight", after "channel" in the same FOLDER, opens
 its model in ParaView with a cache of 2 GiB, flies through it, and compares pictures at three
 distances with pictures of the field itself; "half-channel-flight" likewise. "ranks": trainings by
-1, 2 and 4 processes of pvbatch.
+1, 2 and 4 processes of pvbatch; wants a python3 with NumPy.
 """
 import json
 import os
