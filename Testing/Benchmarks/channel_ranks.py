@@ -172,7 +172,7 @@ def about_equality(trainings, count, names):
                      sum(a != b for a, b in zip(one, other)) + abs(len(one) - len(other)), "",
                      "lower", f"of {len(one)} of parameters", target=0)
         yield result(f"PSNR of {count} ranks minus that of one, {count} times the batch, {name}",
-                     round(answers[k][0]["psnr"] - whole[k][0]["psnr"], 3), "dB", "higher",
+                     round(answers[k][0]["psnr"] - whole[k][0]["psnr"], 3) + 0.0, "dB", "higher",
                      f"{answers[k][0]['psnr']:.2f} dB after {answers[k][0]['steps']} steps")
 
 

@@ -26,6 +26,8 @@ def values(proxy):
 
 
 load_plugin()
+import inrvolume  # noqa: E402  ParaView's Python then knows the writer
+
 if sys.argv[1] == "write":
     source = wavelet()
     if os.path.exists(output_file(DIRECT)):
@@ -45,6 +47,7 @@ if sys.argv[1] == "write":
         writer.UpdatePipeline()
     check(messages.errors() == 0, "the writer reported", messages.text)
     told = writer.GetClientSideObject()
+    check(isinstance(told, inrvolume.vtkINRWriter), "written by", told)
     took = told.GetTrainingSeconds(), told.GetExchangeSeconds(), told.GetWaitingSeconds()
     check(took[1] > 0 and took[2] > 0 and sum(took[1:]) < took[0], "times", took)
     # What fails in one, fails in all, and nobody waits for ever.
