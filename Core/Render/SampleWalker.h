@@ -185,7 +185,6 @@ private:
       }
       if (settings.cellSampling != nullptr) {
         this->Detail.fix(0); // until the cell is known
-        this->Stretch.power = 0;
       }
       this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
       this->Cells.moveTo(this->firstPlace() * settings.step);
