@@ -18,28 +18,66 @@ constexpr int Ways[13][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {-1
                              {1, 0, 1},  {-1, 0, 1}, {0, 1, 1},  {0, -1, 1}, {1, 1, 1},
                              {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
 
-float Larger(float a, float b) { return a > b ? a : b; } // std::max keeps loops from vectorising
-
 int LastAxis(const int (&way)[3]) { return way[2] != 0 ? 2 : way[1] != 0 ? 1 : 0; }
 
-/// A number for each line that passes a slice, with a margin of zeros around: where lines begin.
+/// A number for each line that passes a slice, with room around: lines come from one row and one
+/// column further. All rows make one array, which is what the compiler makes vectors of.
 class Slice
 {
 public:
   Slice(std::int64_t across, std::int64_t down)
-      : Pitch(across + 2), Numbers(static_cast<std::size_t>(this->Pitch * (down + 2)), 0.0f)
+      : Pitch(across + 2), Count(this->Pitch * down),
+        Numbers(static_cast<std::size_t>(this->Count + 2 * this->Pitch + 2), 0.0f)
   {}
-  /// From -1 to as many as there are, inclusive.
-  float* row(std::int64_t number)
-  {
-    return &this->Numbers[static_cast<std::size_t>((number + 1) * this->Pitch + 1)];
-  }
+  /// The first row, one column before it begins.
+  float* begin() { return &this->Numbers[static_cast<std::size_t>(this->Pitch + 1)]; }
+  float* row(std::int64_t number) { return this->begin() + number * this->Pitch + 1; }
+  std::int64_t pitch() const { return this->Pitch; }
+  std::int64_t count() const { return this->Count; }
   float largest() const { return *std::max_element(this->Numbers.begin(), this->Numbers.end()); }
 
 private:
   std::int64_t Pitch;
+  std::int64_t Count;
   std::vector<float> Numbers;
 };
+
+float Larger(float a, float b) { return a > b ? a : b; } // which std::max of references hides
+
+/// The largest sums of errors that end somewhere on a line.
+void AddErrors(const float* __restrict errors, const float* __restrict inside,
+               const float* __restrict before, float* __restrict now, float* __restrict most,
+               std::int64_t count)
+{
+  for (std::int64_t k = 0; k < count; ++k) {
+    now[k] = inside[k] * Larger(before[k] + errors[k], 0.0f);
+    most[k] = Larger(now[k], most[k]);
+  }
+}
+
+/// The same of their opposites.
+void SubtractErrors(const float* __restrict errors, const float* __restrict inside,
+                    const float* __restrict before, float* __restrict now, float* __restrict most,
+                    std::int64_t count)
+{
+  for (std::int64_t k = 0; k < count; ++k) {
+    now[k] = inside[k] * Larger(before[k] - errors[k], 0.0f);
+    most[k] = Larger(now[k], most[k]);
+  }
+}
+
+/// And of their magnitudes, whose largest is kept, too.
+void AddMagnitudes(const float* __restrict errors, const float* __restrict inside,
+                   const float* __restrict before, float* __restrict now, float* __restrict most,
+                   float* __restrict largest, std::int64_t count)
+{
+  for (std::int64_t k = 0; k < count; ++k) {
+    const float magnitude = std::abs(errors[k]);
+    now[k] = inside[k] * (before[k] + magnitude);
+    most[k] = Larger(now[k], most[k]);
+    largest[k] = Larger(magnitude, largest[k]);
+  }
+}
 
 /// All lines that go the same way, side by side, slice by slice along the last axis that they go
 /// along.
@@ -53,24 +91,28 @@ public:
         Together((std::int64_t{1} << power) / (this->Length > 1 ? 2 : 1)), Main(LastAxis(way)),
         Inner(this->Main == 0 ? 1 : 0), Outer(3 - this->Main - this->Inner),
         Across(part.size[this->Inner]), Down(part.size[this->Outer]),
-        Errors(static_cast<std::size_t>(this->Across)), Sums(this->Across, this->Down),
-        Largest(this->Across, this->Down)
-  {}
+        Errors(this->Across, this->Down), Inside(this->Errors), Sums(this->Errors),
+        Magnitudes(this->Errors), Largest(this->Errors)
+  {
+    for (std::int64_t row = 0; row < this->Down; ++row) {
+      std::fill_n(this->Inside.row(row), this->Across, 1.0f);
+    }
+  }
 
   void addTo(LineErrors& errors)
   {
-    State last(this->Across, this->Down);
+    State last{this->Sums, this->Sums, this->Sums};
     State next = last;
     for (std::int64_t slice = 0; slice < this->Part.size[this->Main]; ++slice) {
       for (std::int64_t row = 0; row < this->Down; ++row) {
         this->findErrors(slice, row);
-        this->addErrors(row, last, next);
       }
+      this->add(last, next);
       std::swap(last, next);
     }
     const auto length = static_cast<float>(this->Length);
     errors.sum = std::max(errors.sum, length * this->Sums.largest());
-    errors.magnitude = std::max(errors.magnitude, length * this->Magnitude);
+    errors.magnitude = std::max(errors.magnitude, length * this->Magnitudes.largest());
     errors.largest = std::max(errors.largest, this->Largest.largest());
   }
 
@@ -79,9 +121,6 @@ private:
   /// the sum of all magnitudes.
   struct State
   {
-    State(std::int64_t across, std::int64_t down)
-        : rise(across, down), fall(across, down), magnitude(across, down)
-    {}
     Slice rise;
     Slice fall;
     Slice magnitude;
@@ -105,9 +144,10 @@ private:
                               this->Way.y * this->Fine.stride(1) +
                               this->Way.z * this->Fine.stride(2);
     const float* first = own + toMiddle * step;
-    this->subtract(own, own, fine, 0, begin);
-    this->subtract(first, first + step, fine, begin, end);
-    this->subtract(own, own, fine, end, this->Across);
+    float* errors = this->Errors.row(row);
+    this->subtract(own, own, fine, 0, begin, errors);
+    this->subtract(first, first + step, fine, begin, end, errors);
+    this->subtract(own, own, fine, end, this->Across, errors);
   }
 
   /// Which of a row have such a middle, in the box wherever that is from `low` to `high`.
@@ -126,36 +166,33 @@ private:
   }
 
   void subtract(const float* first, const float* second, const float* fine, std::int64_t begin,
-                std::int64_t end)
+                std::int64_t end, float* __restrict errors) const
   {
     const std::int64_t stride = this->Fine.stride(this->Inner);
+    if (stride == 1) { // which the compiler has to be told
+      for (std::int64_t k = begin; k < end; ++k) {
+        errors[k] = 0.5f * (first[k] + second[k]) - fine[k];
+      }
+      return;
+    }
     for (std::int64_t k = begin; k < end; ++k) {
-      this->Errors[static_cast<std::size_t>(k)] =
-          0.5f * (first[k * stride] + second[k * stride]) - fine[k * stride];
+      errors[k] = 0.5f * (first[k * stride] + second[k * stride]) - fine[k * stride];
     }
   }
 
-  void addErrors(std::int64_t row, State& last, State& next)
+  void add(State& last, State& next)
   {
-    const std::int64_t from = row - this->Way[this->Outer];
-    const std::int64_t back = this->Way[this->Inner];
-    const float* lastRise = last.rise.row(from) - back;
-    const float* lastFall = last.fall.row(from) - back;
-    const float* lastMagnitude = last.magnitude.row(from) - back;
-    float* rise = next.rise.row(row);
-    float* fall = next.fall.row(row);
-    float* magnitude = next.magnitude.row(row);
-    float* sum = this->Sums.row(row);
-    float* largest = this->Largest.row(row);
-    for (std::int64_t k = 0; k < this->Across; ++k) {
-      const float error = this->Errors[static_cast<std::size_t>(k)];
-      rise[k] = Larger(lastRise[k] + error, 0.0f);
-      fall[k] = Larger(lastFall[k] - error, 0.0f);
-      magnitude[k] = lastMagnitude[k] + std::abs(error);
-      sum[k] = Larger(Larger(rise[k], fall[k]), sum[k]);
-      largest[k] = Larger(std::abs(error), largest[k]);
-    }
-    this->Magnitude = std::max(this->Magnitude, *std::max_element(magnitude, magnitude + Across));
+    const float* errors = this->Errors.begin();
+    const float* inside = this->Inside.begin();
+    const std::int64_t back =
+        this->Way[this->Inner] + this->Way[this->Outer] * this->Errors.pitch();
+    const std::int64_t count = this->Errors.count();
+    AddErrors(errors, inside, last.rise.begin() - back, next.rise.begin(), this->Sums.begin(),
+              count);
+    SubtractErrors(errors, inside, last.fall.begin() - back, next.fall.begin(), this->Sums.begin(),
+                   count);
+    AddMagnitudes(errors, inside, last.magnitude.begin() - back, next.magnitude.begin(),
+                  this->Magnitudes.begin(), this->Largest.begin(), count);
   }
 
   const ValueBox& Fine;
@@ -170,10 +207,11 @@ private:
   int Outer;
   std::int64_t Across;
   std::int64_t Down;
-  std::vector<float> Errors; ///< of a row
-  Slice Sums;                ///< the largest, of lines up to any slice
+  Slice Errors;
+  Slice Inside;     ///< 1 where there are lines, 0 around them
+  Slice Sums;       ///< the largest, of lines up to any slice
+  Slice Magnitudes; ///< the same
   Slice Largest;
-  float Magnitude = 0;
 };
 
 } // namespace
