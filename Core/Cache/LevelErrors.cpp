@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace inr {
 
@@ -70,8 +71,7 @@ struct LevelErrors::Block
 
 LevelErrors::LevelErrors(const glm::i64vec3& dims, const glm::i64vec3& cells,
                          const glm::dvec3& spacing)
-    : Dims(dims), CellDims(cells), Edge(spacing * glm::dvec3(dims)),
-      Cells(static_cast<std::size_t>(cells.x * cells.y * cells.z))
+    : Dims(dims), CellDims(cells), Edge(spacing * glm::dvec3(dims))
 {
   for (int axis = 0; axis < 3; ++axis) {
     const auto fit = static_cast<std::int64_t>(BlockEdge / this->Edge[axis]);
@@ -79,7 +79,7 @@ LevelErrors::LevelErrors(const glm::i64vec3& dims, const glm::i64vec3& cells,
     this->BlockDims[axis] =
         (this->CellDims[axis] + this->CellsPerBlock[axis] - 1) / this->CellsPerBlock[axis];
   }
-  this->Measured.resize(static_cast<std::size_t>(this->blocks()), 0);
+  this->Measured.resize(static_cast<std::size_t>(this->blocks()));
 }
 
 std::int64_t LevelErrors::blockCost() const
@@ -99,6 +99,21 @@ std::int64_t LevelErrors::blockOf(std::int64_t cell) const
   return at.x + this->BlockDims.x * (at.y + this->BlockDims.y * at.z);
 }
 
+std::size_t LevelErrors::numberOf(const glm::i64vec3& within) const
+{
+  return static_cast<std::size_t>(within.x + this->CellsPerBlock.x *
+                                                 (within.y + this->CellsPerBlock.y * within.z));
+}
+
+const LevelErrors::Cell& LevelErrors::of(std::int64_t cell) const
+{
+  const glm::i64vec3 at = PlaceOf(cell, this->CellDims);
+  const glm::i64vec3 block = at / this->CellsPerBlock;
+  const std::int64_t number = block.x + this->BlockDims.x * (block.y + this->BlockDims.y * block.z);
+  return this->Measured[static_cast<std::size_t>(number)]
+                       [this->numberOf(at - block * this->CellsPerBlock)];
+}
+
 LevelErrors::Block LevelErrors::find(std::int64_t number) const
 {
   Block block{};
@@ -111,19 +126,20 @@ LevelErrors::Block LevelErrors::find(std::int64_t number) const
   return block;
 }
 
-template <typename Visit> void LevelErrors::forEachCell(const Block& block, const Visit& visit)
+template <typename Visit>
+void LevelErrors::forEachCell(const Block& block, const Visit& visit) const
 {
   const glm::i64vec3 count = block.end - block.begin;
   for (std::int64_t k = 0; k < count.x * count.y * count.z; ++k) {
-    const glm::i64vec3 at = block.begin + PlaceOf(k, count);
+    const glm::i64vec3 within = PlaceOf(k, count);
+    const glm::i64vec3 at = block.begin + within;
     BoxPart part;
     for (int axis = 0; axis < 3; ++axis) {
       const VoxelSpan span = VoxelsOf(at[axis], at[axis] + 1, this->Edge[axis], this->Dims[axis]);
       part.first[axis] = span.low - block.seen[axis].low;
       part.size[axis] = span.count();
     }
-    const std::int64_t cell = at.x + this->CellDims.x * (at.y + this->CellDims.y * at.z);
-    visit(this->Cells[static_cast<std::size_t>(cell)], part);
+    visit(this->numberOf(within), part);
   }
 }
 
@@ -149,15 +165,17 @@ std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field)
   }
   const ValueBox around = Sampled(needed, this->Dims, field);
   const ValueBox fine = Cut(around, inner);
+  const glm::i64vec3& most = this->CellsPerBlock;
+  std::vector<Cell> cells(static_cast<std::size_t>(most.x * most.y * most.z));
   for (std::size_t level = 0; level < levels.size(); ++level) {
     const ValueBox coarse = levels[level].apply(around, first);
-    this->forEachCell(block, [&](Cell& cell, const BoxPart& part) {
+    this->forEachCell(block, [&](std::size_t cell, const BoxPart& part) {
       const int power = static_cast<int>(level) + 1;
-      cell.levels[level] = FindLineErrors(fine, coarse, part, power);
-      cell.steps[level] = FindLineErrors(fine, fine, part, power);
+      cells[cell].levels[level] = FindLineErrors(fine, coarse, part, power);
+      cells[cell].steps[level] = FindLineErrors(fine, fine, part, power);
     });
   }
-  this->Measured[static_cast<std::size_t>(number)] = 1;
+  this->Measured[static_cast<std::size_t>(number)] = std::move(cells);
   return static_cast<std::int64_t>(around.values.size());
 }
 

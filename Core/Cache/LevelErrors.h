@@ -40,39 +40,35 @@ public:
   std::int64_t measure(std::int64_t block, const Evaluator& field);
   bool isMeasured(std::int64_t block) const
   {
-    return this->Measured[static_cast<std::size_t>(block)] != 0;
+    return !this->Measured[static_cast<std::size_t>(block)].empty();
   }
 
-  /// Of a cell in a measured block, in normalised values: of samples of a level, 2^level voxels
-  /// apart. `level`: 1 to Coarsest.
-  const LineErrors& ofLevel(std::int64_t cell, int level) const
-  {
-    return this->of(cell).levels[static_cast<std::size_t>(level - 1)];
-  }
-  /// The same of samples of level 0, 2^power voxels apart. `power`: 1 to Coarsest.
-  const LineErrors& ofSteps(std::int64_t cell, int power) const
-  {
-    return this->of(cell).steps[static_cast<std::size_t>(power - 1)];
-  }
-
-private:
+  /// In normalised values.
   struct Cell
   {
-    std::array<LineErrors, Coarsest> levels;
-    std::array<LineErrors, Coarsest> steps;
+    std::array<LineErrors, Coarsest>
+        levels;                             ///< of samples of level l = 1, 2, ..., 2^l voxels apart
+    std::array<LineErrors, Coarsest> steps; ///< of level 0, 2, 4, ... voxels apart
   };
-  const Cell& of(std::int64_t cell) const { return this->Cells[static_cast<std::size_t>(cell)]; }
+  /// Of one in a measured block.
+  const Cell& of(std::int64_t cell) const;
+
+private:
+  /// Of a cell in its block.
+  std::size_t numberOf(const glm::i64vec3& within) const;
   struct Block;
   Block find(std::int64_t block) const;
-  template <typename Visit> void forEachCell(const Block& block, const Visit& visit);
+  /// Calls `visit` with the number of a cell in its block and with its voxels.
+  template <typename Visit> void forEachCell(const Block& block, const Visit& visit) const;
 
   glm::i64vec3 Dims; ///< voxels
   glm::i64vec3 CellDims;
   glm::dvec3 Edge;               ///< of a cell, in voxels
   glm::i64vec3 CellsPerBlock{1}; ///< along each axis
   glm::i64vec3 BlockDims{1};
-  std::vector<Cell> Cells; ///< x fastest
-  std::vector<char> Measured;
+  /// Of each block, x fastest, as if it were a whole one; none before it is measured, as a volume
+  /// may have more cells than there is memory for.
+  std::vector<std::vector<Cell>> Measured;
 };
 
 } // namespace inr

@@ -98,6 +98,13 @@ void LevelChooser::setLimits()
     this->Limits[k] = this->Given.tolerance * std::exp2(-0.5 * static_cast<double>(k));
   }
   this->Limits[LimitCount] = 0;
+  const glm::dvec3& edge = this->Errors.cellEdge();
+  this->LongestEdge = std::max(edge.x, std::max(edge.y, edge.z));
+  for (int power = 1; power <= LargestCellPower; ++power) {
+    const double voxels = this->Given.step * static_cast<double>(1 << power);
+    this->Apart[static_cast<std::size_t>(power - 1)] =
+        std::max(1, static_cast<int>(std::ceil(std::log2(voxels))));
+  }
 }
 
 void LevelChooser::findSlopes(const MajorantGrid& cells, const ColorLookup& colors,
@@ -149,12 +156,13 @@ void LevelChooser::follow(const Ray& ray, const Majorants& majorants, RayWalk& w
     const double steps = (exit - std::max(t, cells.enter())) / this->Given.step;
     const CellErrors errors = this->errorsOf(cell, grid.range(cell));
     walk.cells.push_back(cell);
+    int number = 0;
     for (std::size_t k = 0; k < LimitCount; ++k) {
-      const CellSampling sampling = this->samplingFor(errors, this->Limits[k]);
-      if (sampling.power == 0) {
-        break; // nor is it with the limits that follow
+      number = choiceFor(errors, this->Limits[k], number);
+      if (number == Choices) {
+        break; // nor do smaller limits allow anything
       }
-      const CellError& error = errors.of(sampling);
+      const CellError& error = errors[static_cast<std::size_t>(number)];
       walk.sums[k] += light * std::min(stepsPerVoxel * error.all, steps * error.step);
     }
     const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
@@ -225,8 +233,8 @@ void LevelChooser::chooseLevels(const MajorantGrid& cells, const Arena& arena)
       const auto at = static_cast<std::size_t>(cell);
       const std::uint8_t number = this->Allowed[at];
       this->Sampling[at] = number == 0 ? CellSampling{}
-                                       : this->samplingFor(this->errorsOf(cell, cells.range(cell)),
-                                                           this->Limits[number - 1u]);
+                                       : choice(choiceFor(this->errorsOf(cell, cells.range(cell)),
+                                                          this->Limits[number - 1u], 0));
     }
   });
 }
@@ -237,26 +245,28 @@ LevelChooser::CellErrors LevelChooser::errorsOf(std::int64_t cell, const ValueRa
   const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
   const double most = std::isfinite(slopes.half) ? LargestError(slopes, range) : infinite;
   CellErrors errors;
-  errors.level.fill({infinite, most, most});
-  errors.full = errors.level;
+  errors.fill({infinite, most, most});
+  for (int power = this->Coarsest + 1; power <= LargestCellPower; ++power) { // no such level
+    errors[static_cast<std::size_t>(Choices - 2 * power)] = {infinite, infinite, infinite};
+  }
   // What a picture shows must not depend on what others had measured.
   if (most <= this->LeastError || most == infinite || !this->UsesMeasured ||
       !this->Errors.isMeasured(this->Errors.blockOf(cell))) {
     return errors;
   }
+  const LevelErrors::Cell& lines = this->Errors.of(cell);
   CellError level; // fewer samples are not trusted to be better
   CellError full;
   for (int power = 1; power <= LargestCellPower; ++power) {
-    const auto k = static_cast<std::size_t>(power - 1);
-    if (this->Given.step <= 1.0) {
-      level = this->errorOf(slopes, this->Errors.ofLevel(cell, power), most, level);
-      errors.level[k] = level;
+    const auto number = static_cast<std::size_t>(Choices - 2 * power);
+    if (power <= this->Coarsest && this->Given.step <= 1.0) {
+      level = this->errorOf(slopes, lines.levels[static_cast<std::size_t>(power - 1)], most, level);
+      errors[number] = level;
     }
-    const double voxels = this->Given.step * static_cast<double>(1 << power); // between samples
-    const int apart = std::max(1, static_cast<int>(std::ceil(std::log2(voxels))));
+    const int apart = this->Apart[static_cast<std::size_t>(power - 1)];
     if (apart <= LevelErrors::Coarsest) {
-      full = this->errorOf(slopes, this->Errors.ofSteps(cell, apart), most, full);
-      errors.full[k] = full;
+      full = this->errorOf(slopes, lines.steps[static_cast<std::size_t>(apart - 1)], most, full);
+      errors[number + 1] = full;
     }
   }
   return errors;
@@ -266,30 +276,21 @@ LevelChooser::CellError LevelChooser::errorOf(const ColorSensitivity::Slopes& sl
                                               const LineErrors& lines, double most,
                                               const CellError& least) const
 {
-  const glm::dvec3& edge = this->Errors.cellEdge();
-  const double longest = std::max(edge.x, std::max(edge.y, edge.z));
   const double all = slopes.middle * lines.sum + slopes.half * lines.magnitude;
   const double step = (slopes.middle + slopes.half) * lines.largest;
   CellError error;
   error.all = std::max(least.all, all);
   error.step = std::min(most, std::max(least.step, step));
-  error.perStep = std::min(error.step, error.all / longest);
+  error.perStep = std::min(error.step, error.all / this->LongestEdge);
   return error;
 }
 
-CellSampling LevelChooser::samplingFor(const CellErrors& errors, double limit) const
+int LevelChooser::choiceFor(const CellErrors& errors, double limit, int first)
 {
-  for (int power = LargestCellPower; power > 0; --power) {
-    const auto k = static_cast<std::size_t>(power - 1);
-    const auto number = static_cast<std::uint8_t>(power);
-    if (power <= this->Coarsest && errors.level[k].perStep <= limit) {
-      return {number, number};
-    }
-    if (errors.full[k].perStep <= limit) {
-      return {0, number};
-    }
+  while (first < Choices && errors[static_cast<std::size_t>(first)].perStep > limit) {
+    ++first;
   }
-  return {};
+  return first;
 }
 
 } // namespace inr

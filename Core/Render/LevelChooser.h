@@ -88,17 +88,15 @@ private:
     double step = 0;    ///< of any one step
     double perStep = 0; ///< in the mean of those through its longest edge
   };
-  /// With 2, 4, ... steps between samples.
-  struct CellErrors
+  /// What a cell's samples may be, from the fewest on: of a level with as large voxels as they are
+  /// apart, then of the full resolution; and behind these, all.
+  static constexpr int Choices = 2 * LargestCellPower;
+  static CellSampling choice(int number)
   {
-    std::array<CellError, LargestCellPower> level; ///< of a level with such voxels
-    std::array<CellError, LargestCellPower> full;  ///< of the full resolution
-
-    const CellError& of(const CellSampling& sampling) const
-    {
-      return (sampling.level > 0 ? this->level : this->full)[sampling.power - 1u];
-    }
-  };
+    const auto power = static_cast<std::uint8_t>((Choices + 1 - number) / 2);
+    return {number % 2 == 0 ? power : std::uint8_t{0}, power};
+  }
+  using CellErrors = std::array<CellError, Choices>;
   struct RayWalk;
 
   void findSlopes(const MajorantGrid& cells, const ColorLookup& colors, const Arena& arena);
@@ -114,7 +112,8 @@ private:
   CellErrors errorsOf(std::int64_t cell, const ValueRange& range) const;
   CellError errorOf(const ColorSensitivity::Slopes& slopes, const LineErrors& lines, double most,
                     const CellError& least) const;
-  CellSampling samplingFor(const CellErrors& errors, double limit) const;
+  /// The number of the first choice from `first` on whose steps add no more than that.
+  static int choiceFor(const CellErrors& errors, double limit, int first);
   void setLimits();
 
   std::shared_ptr<const Evaluator> Field;
@@ -126,6 +125,10 @@ private:
   std::optional<Wish> Chosen;
   Wish Given{};
   double LeastError = 0; ///< of a step, that matters at all
+  double LongestEdge;    ///< of a cell, in voxels
+  /// log2 of the voxels that samples of the full resolution are apart with 2, 4, ... steps between
+  /// them, rounded up, and at least 1.
+  std::array<int, LargestCellPower> Apart{};
   bool UsesMeasured = true;
   std::array<double, LimitCount + 1> Limits{};  ///< of what a step may add, falling to 0
   std::vector<ColorSensitivity::Slopes> Slopes; ///< of each cell

@@ -111,12 +111,14 @@ TEST(LevelErrors, OfASlopeAreNoneButAtTheVolumesEnds)
     EXPECT_EQ(errors.blockOf(inside), x / 4);
     for (const int level : {1, 2, 3}) {
       const double most = (0.6 / 160 + 0.2 / 48) * ((1 << level) - 1) / 2;
-      EXPECT_LT(errors.ofLevel(inside, level).largest, most + 1e-6) << x; // a step to the middle
-      EXPECT_LT(errors.ofLevel(inside, level).sum, 1e-4 + most * (1 << level)) << x; // and back
+      EXPECT_LT(errors.of(inside).levels[level - 1].largest, most + 1e-6)
+          << x; // a step to the middle
+      EXPECT_LT(errors.of(inside).levels[level - 1].sum, 1e-4 + most * (1 << level))
+          << x; // and back
     }
   }
   // Level 3 ends 3.5 voxels inside, with a mean that the end has pulled by half a voxel.
-  EXPECT_GT(errors.ofLevel(10 * (1 + 3 * 1), 3).largest, 3 * 0.6 / 160);
+  EXPECT_GT(errors.of(10 * (1 + 3 * 1)).levels[2].largest, 3 * 0.6 / 160);
 }
 
 /// Along z through a field that does not change that way, all samples of a line are off by as much.
@@ -140,7 +142,7 @@ TEST(LevelErrors, AddUpAlongLinesThatCancelNothing)
     const double middle = 0.5 - 0.5 / n; // the voxel of level 0 next to the middle of the chord
     const double highest =
         bend * (n * n * (1.0 / 16 + middle * (1 - middle)) + (level > 1 ? 0.25 : 0.0));
-    const inr::LineErrors& lines = errors.ofLevel(inside, level);
+    const inr::LineErrors& lines = errors.of(inside).levels[level - 1];
     EXPECT_GE(lines.sum, 18 * (1 - 2e-3) * highest) << level; // the cell's 16 voxels and one around
     EXPECT_LT(lines.sum, 18 * std::sqrt(3.0) * 1.1 * highest) << level;
     EXPECT_GE(lines.magnitude, lines.sum);
@@ -158,7 +160,7 @@ TEST(LevelErrors, AreThoseOfLayersInAnyDirection)
     const Field field = [&](const glm::vec3& u) {
       return static_cast<float>(0.5 + 0.4 * std::cos(glm::dot(48.0 * glm::dvec3(u), across)));
     };
-    const inr::LineErrors lines = Measured(field, dims, 16).ofLevel(1 + 3 * (1 + 3 * 1), 3);
+    const inr::LineErrors lines = Measured(field, dims, 16).of(1 + 3 * (1 + 3 * 1)).levels[2];
     // Level 3 has next to nothing of waves 6.3 voxels long.
     EXPECT_GT(lines.sum, 0.75 * 0.4 * 18 * glm::length(way)) << number;
     EXPECT_LT(lines.largest, 0.85) << number;
@@ -169,7 +171,7 @@ TEST(LevelErrors, CancelWhereFieldsAreRough)
 {
   const glm::i64vec3 dims(48, 48, 48);
   const Field field = RoughField(dims);
-  const inr::LineErrors lines = Measured(field, dims, 16).ofLevel(1 + 3 * (1 + 3 * 1), 1);
+  const inr::LineErrors lines = Measured(field, dims, 16).of(1 + 3 * (1 + 3 * 1)).levels[0];
   EXPECT_GT(lines.largest, 0.4);
   EXPECT_LT(lines.sum, 0.4 * 18 * std::sqrt(3.0) * lines.largest);
   EXPECT_GT(lines.magnitude, 1.3 * lines.sum);
@@ -187,10 +189,10 @@ TEST(LevelErrors, AreThoseOfAThinFeature)
   // Level 1 has a quarter of the wire in each of two by two voxels around it: (3/4)^2 of a quarter
   // where the wire is.
   const double off = 0.8 * (1 - 9.0 / 64);
-  EXPECT_NEAR(errors.ofLevel(cell(1, 1), 1).largest, 0.8 * (1 - 6.0 / 64), 1e-5);
-  EXPECT_NEAR(errors.ofLevel(cell(1, 1), 1).sum, 18 * off, 0.05 * 18 * off); // along the wire
-  EXPECT_LT(errors.ofLevel(cell(2, 0), 1).largest, 1e-6);                    // out of reach
-  EXPECT_GT(errors.ofLevel(cell(1, 1), 3).largest, 0.75);
+  EXPECT_NEAR(errors.of(cell(1, 1)).levels[0].largest, 0.8 * (1 - 6.0 / 64), 1e-5);
+  EXPECT_NEAR(errors.of(cell(1, 1)).levels[0].sum, 18 * off, 0.05 * 18 * off); // along the wire
+  EXPECT_LT(errors.of(cell(2, 0)).levels[0].largest, 1e-6);                    // out of reach
+  EXPECT_GT(errors.of(cell(1, 1)).levels[2].largest, 0.75);
 }
 
 } // namespace
