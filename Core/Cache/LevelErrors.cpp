@@ -143,7 +143,8 @@ void LevelErrors::forEachCell(const Block& block, const Visit& visit) const
   }
 }
 
-std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field)
+std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field,
+                                  const LineKernel& kernel)
 {
   const Block block = this->find(number);
   std::vector<LevelResampling> levels;
@@ -171,8 +172,8 @@ std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field)
     const ValueBox coarse = levels[level].apply(around, first);
     this->forEachCell(block, [&](std::size_t cell, const BoxPart& part) {
       const int power = static_cast<int>(level) + 1;
-      cells[cell].levels[level] = FindLineErrors(fine, coarse, part, power);
-      cells[cell].steps[level] = FindLineErrors(fine, fine, part, power);
+      cells[cell].levels[level] = FindLineErrors(fine, coarse, part, power, kernel);
+      cells[cell].steps[level] = FindLineErrors(fine, fine, part, power, kernel);
     });
   }
   this->Measured[static_cast<std::size_t>(number)] = std::move(cells);

@@ -37,7 +37,7 @@ public:
 
   /// Blocks may be measured on several threads at once, each of them on one. How many points the
   /// field was asked for.
-  std::int64_t measure(std::int64_t block, const Evaluator& field);
+  std::int64_t measure(std::int64_t block, const Evaluator& field, const LineKernel& kernel);
   bool isMeasured(std::int64_t block) const
   {
     return !this->Measured[static_cast<std::size_t>(block)].empty();

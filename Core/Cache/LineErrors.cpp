@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/LineErrors.h"
 
+#include "Core/Inference/KernelTable.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -42,51 +44,14 @@ private:
   std::vector<float> Numbers;
 };
 
-float Larger(float a, float b) { return a > b ? a : b; } // which std::max of references hides
-
-/// The largest sums of errors that end somewhere on a line.
-void AddErrors(const float* __restrict errors, const float* __restrict inside,
-               const float* __restrict before, float* __restrict now, float* __restrict most,
-               std::int64_t count)
-{
-  for (std::int64_t k = 0; k < count; ++k) {
-    now[k] = inside[k] * Larger(before[k] + errors[k], 0.0f);
-    most[k] = Larger(now[k], most[k]);
-  }
-}
-
-/// The same of their opposites.
-void SubtractErrors(const float* __restrict errors, const float* __restrict inside,
-                    const float* __restrict before, float* __restrict now, float* __restrict most,
-                    std::int64_t count)
-{
-  for (std::int64_t k = 0; k < count; ++k) {
-    now[k] = inside[k] * Larger(before[k] - errors[k], 0.0f);
-    most[k] = Larger(now[k], most[k]);
-  }
-}
-
-/// And of their magnitudes, whose largest is kept, too.
-void AddMagnitudes(const float* __restrict errors, const float* __restrict inside,
-                   const float* __restrict before, float* __restrict now, float* __restrict most,
-                   float* __restrict largest, std::int64_t count)
-{
-  for (std::int64_t k = 0; k < count; ++k) {
-    const float magnitude = std::abs(errors[k]);
-    now[k] = inside[k] * (before[k] + magnitude);
-    most[k] = Larger(now[k], most[k]);
-    largest[k] = Larger(magnitude, largest[k]);
-  }
-}
-
 /// All lines that go the same way, side by side, slice by slice along the last axis that they go
 /// along.
 class LineSweep
 {
 public:
   LineSweep(const ValueBox& fine, const ValueBox& taken, const BoxPart& part, const int (&way)[3],
-            int power)
-      : Fine(fine), Taken(taken), Part(part), Way(way[0], way[1], way[2]),
+            int power, const LineKernel& kernel)
+      : Kernel(kernel), Fine(fine), Taken(taken), Part(part), Way(way[0], way[1], way[2]),
         Length(glm::length(glm::dvec3(this->Way))),
         Together((std::int64_t{1} << power) / (this->Length > 1 ? 2 : 1)), Main(LastAxis(way)),
         Inner(this->Main == 0 ? 1 : 0), Outer(3 - this->Main - this->Inner),
@@ -182,19 +147,16 @@ private:
 
   void add(State& last, State& next)
   {
-    const float* errors = this->Errors.begin();
-    const float* inside = this->Inside.begin();
     const std::int64_t back =
         this->Way[this->Inner] + this->Way[this->Outer] * this->Errors.pitch();
-    const std::int64_t count = this->Errors.count();
-    AddErrors(errors, inside, last.rise.begin() - back, next.rise.begin(), this->Sums.begin(),
-              count);
-    SubtractErrors(errors, inside, last.fall.begin() - back, next.fall.begin(), this->Sums.begin(),
-                   count);
-    AddMagnitudes(errors, inside, last.magnitude.begin() - back, next.magnitude.begin(),
-                  this->Magnitudes.begin(), this->Largest.begin(), count);
+    this->Kernel.add({this->Errors.begin(), this->Inside.begin(), last.rise.begin() - back,
+                      last.fall.begin() - back, last.magnitude.begin() - back, next.rise.begin(),
+                      next.fall.begin(), next.magnitude.begin(), this->Sums.begin(),
+                      this->Magnitudes.begin(), this->Largest.begin()},
+                     this->Errors.count());
   }
 
+  const LineKernel& Kernel;
   const ValueBox& Fine;
   const ValueBox& Taken;
   BoxPart Part;
@@ -216,12 +178,14 @@ private:
 
 } // namespace
 
+const LineKernel& LineKernelFor(InstructionSet set) { return INR_KERNEL_FOR(set, Lines); }
+
 LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const BoxPart& part,
-                          int power)
+                          int power, const LineKernel& kernel)
 {
   LineErrors errors;
   for (const auto& way : Ways) {
-    LineSweep(fine, taken, part, way, power).addTo(errors);
+    LineSweep(fine, taken, part, way, power, kernel).addTo(errors);
   }
   return errors;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/LineKernel.h"
 #include "Core/Cache/ValueBox.h"
 
 namespace inr {
@@ -19,6 +20,6 @@ struct LineErrors
 /// of the volume of a cube. `fine`: values of level 0; `coarse`: what the level has in the same
 /// places.
 LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const BoxPart& part,
-                          int power);
+                          int power, const LineKernel& kernel);
 
 } // namespace inr

@@ -53,8 +53,9 @@ struct LevelChooser::RayWalk
 };
 
 LevelChooser::LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
-                           const MajorantGrid& cells, int levels)
-    : Field(std::move(field)), Dims(dims), Errors(dims, cells.dims(), cells.spacing()),
+                           const MajorantGrid& cells, int levels, const LineKernel& kernel)
+    : Field(std::move(field)), Kernel(kernel), Dims(dims),
+      Errors(dims, cells.dims(), cells.spacing()),
       Coarsest(std::min(levels - 1, LevelErrors::Coarsest)),
       Slopes(static_cast<std::size_t>(cells.count())),
       Allowed(new std::atomic<std::uint8_t>[static_cast<std::size_t>(cells.count())]),
@@ -215,7 +216,8 @@ bool LevelChooser::measure(const std::vector<std::int64_t>& blocks, const Arena&
     const Timer timer;
     std::atomic<std::int64_t> points{0};
     ForEachTile(arena, std::min(round, count - first), keepGoing, [&](std::int64_t k) {
-      points += this->Errors.measure(left[static_cast<std::size_t>(first + k)], *this->Field);
+      points += this->Errors.measure(left[static_cast<std::size_t>(first + k)], *this->Field,
+                                     this->Kernel);
     });
     this->Points += points;
     if (round < count) {

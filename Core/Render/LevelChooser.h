@@ -40,7 +40,7 @@ public:
 
   /// `levels`: of the cache.
   LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
-               const MajorantGrid& cells, int levels);
+               const MajorantGrid& cells, int levels, const LineKernel& kernel);
 
   /// What a choice depends on beyond the field and the colours.
   struct Wish
@@ -117,6 +117,7 @@ private:
   void setLimits();
 
   std::shared_ptr<const Evaluator> Field;
+  const LineKernel& Kernel;
   glm::dvec3 Dims;
   LevelErrors Errors;
   int Coarsest;

@@ -207,7 +207,8 @@ bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometr
 {
   if (!this->Levels) {
     this->Levels.emplace(this->Field, this->Volume.dims, this->Cells.grid(0),
-                         this->Cached->store().cache().hierarchy().levels());
+                         this->Cached->store().cache().hierarchy().levels(),
+                         LineKernelFor(ChooseInstructionSet(this->Options.kernel)));
   }
   const LevelChooser::Wish wish{*frame.errorTolerance / 255.0, settings.step,
                                 settings.step * settings.unitsPerT};

@@ -87,14 +87,15 @@ TEST(LevelResampling, HasWhatBricksHave)
 }
 
 /// Errors of all cells of a field.
-inr::LevelErrors Measured(const Field& field, const glm::i64vec3& dims, int edge)
+inr::LevelErrors Measured(const Field& field, const glm::i64vec3& dims, int edge,
+                          const std::string& kernel = {})
 {
   const inr::MacroCells cells = inr::MakeMacroCells(dims, edge);
   inr::LevelErrors errors(dims, cells.dims, cells.spacing);
   const FieldEvaluator evaluator(field);
   for (std::int64_t block = 0; block < errors.blocks(); ++block) {
     EXPECT_FALSE(errors.isMeasured(block));
-    errors.measure(block, evaluator);
+    errors.measure(block, evaluator, inr::LineKernelFor(inr::ChooseInstructionSet(kernel)));
     EXPECT_TRUE(errors.isMeasured(block));
   }
   return errors;
@@ -175,6 +176,29 @@ TEST(LevelErrors, CancelWhereFieldsAreRough)
   EXPECT_GT(lines.largest, 0.4);
   EXPECT_LT(lines.sum, 0.4 * 18 * std::sqrt(3.0) * lines.largest);
   EXPECT_GT(lines.magnitude, 1.3 * lines.sum);
+}
+
+TEST(LevelErrors, AreTheSameByAnyKernel)
+{
+  const glm::i64vec3 dims(45, 34, 27);
+  const Field field = RoughField(dims);
+  const inr::LevelErrors plain = Measured(field, dims, 11, "baseline");
+  for (const inr::InstructionSet set : {inr::InstructionSet::Avx2, inr::InstructionSet::Avx512}) {
+    if (!inr::IsUsable(set)) {
+      continue;
+    }
+    const inr::LevelErrors errors = Measured(field, dims, 11, inr::InstructionSetName(set));
+    for (std::int64_t cell = 0; cell < 5 * 4 * 3; ++cell) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (const auto& [a, b] : {std::pair(errors.of(cell).levels[k], plain.of(cell).levels[k]),
+                                   std::pair(errors.of(cell).steps[k], plain.of(cell).steps[k])}) {
+          EXPECT_EQ(a.sum, b.sum);
+          EXPECT_EQ(a.magnitude, b.magnitude);
+          EXPECT_EQ(a.largest, b.largest);
+        }
+      }
+    }
+  }
 }
 
 TEST(LevelErrors, AreThoseOfAThinFeature)
