@@ -261,8 +261,8 @@ void StreamedVolume::measureShare(const BlockGrid& boxes, const std::vector<std:
     };
     this->Group.together([&] {
       if (own.voxels() == 0) {
-        done(0); // who has nothing to do may stop the others, too
         size > 1 ? this->readNothing() : void();
+        done(0); // who has nothing to do may stop the others, too
         return;
       }
       const VolumePiece piece = this->read(own);
