@@ -48,12 +48,17 @@ inr::TransferFunction TableOf(const inr::ChannelScene& scene)
 
 } // namespace
 
-// The renderer asks the same field, in float and by other code from the rays on.
-TEST(ChannelPicture, IsWhatTheRendererMakesOfTheField)
+class ChannelSteps : public testing::TestWithParam<double> // voxels
+{};
+
+// Of long steps many a last one is cut. The renderer asks the same field, in float and by other
+// code from the rays on.
+TEST_P(ChannelSteps, AreWhatTheRendererMakesOfTheField)
 {
   const inr::TurbulentChannel field = Field(0.06);
   inr::ChannelScene scene = inr::ParseChannelScene(Oblique);
   scene.frame.adaptiveSampling = false;
+  scene.frame.sampleDistance = GetParam();
   inr::VolumeInfo info = VolumeOf(scene.dims);
   info.low = -0.5;
   info.high = 2;
@@ -77,30 +82,47 @@ TEST(ChannelPicture, IsWhatTheRendererMakesOfTheField)
   EXPECT_LT(most, 0.99) << "the renderer would have stopped earlier";
 }
 
+// Of one node, whose color is that of all values, above it and below.
 TEST(ChannelPicture, IsTheClosedFormOfAUniformMedium)
 {
-  std::int64_t samples = 0;
-  const inr::Image picture = inr::DrawChannel(Field(0.06), Down(0.3), inr::Arena(1), &samples);
   const double way = 2 - 2.0 / 20; // from the first voxel's centre to the last one's
-  const double alpha = 1 - std::pow(1 - 0.3, way / 0.7);
-  EXPECT_NEAR(picture.pixels[3], alpha, 1e-6);
-  EXPECT_NEAR(picture.pixels[0], 0.5 * alpha, 1e-6);
-  EXPECT_EQ(samples, static_cast<std::int64_t>(std::ceil(19 / 0.3)));
+  for (const double node : {0.0, 2.0}) {
+    for (const double opacity : {0.3, 0.97}) { // of which there is something behind what is opaque
+      for (const double sampleDistance : {0.3, 0.012}) {
+        inr::ChannelScene scene = Down(sampleDistance);
+        scene.colors = {{node, glm::dvec4(0.5, 0.25, 1, opacity)}};
+        std::int64_t samples = 0;
+        const inr::Image picture = inr::DrawChannel(Field(0.06), scene, inr::Arena(1), &samples);
+        const double alpha = 1 - std::pow(1 - opacity, way / 0.7);
+        EXPECT_NEAR(picture.pixels[3], alpha, 2e-6);
+        EXPECT_NEAR(picture.pixels[0], 0.5 * alpha, 2e-6);
+        EXPECT_EQ(samples, static_cast<std::int64_t>(std::ceil(19 / sampleDistance)));
+      }
+    }
+  }
 }
 
-// Without waves a value depends on the height alone.
-TEST(ChannelPicture, ComesToTheIntegralOfTheProfile)
+INSTANTIATE_TEST_SUITE_P(ChannelPicture, ChannelSteps, testing::Values(0.4, 7.0));
+
+// At the place in the world where the source has it.
+TEST(ChannelPicture, ComesToTheIntegralOfTheField)
 {
-  inr::ChannelScene scene = Down(0.002);
-  scene.colors = {{0, glm::dvec4(1, 1, 1, 0)}, {1, glm::dvec4(1, 1, 1, 0.8)}};
-  constexpr int steps = 20000;
-  double depth = 0;
-  for (int k = 0; k < steps; ++k) {
-    const double z = (0.5 + 19 * (k + 0.5) / steps) / 20;
-    depth -= std::log1p(-0.8 * inr::TurbulentChannel::mean(z)) * (1.9 / steps) / 0.7;
+  for (const double intensity : {0.0, 0.3}) {
+    const inr::TurbulentChannel field = Field(intensity);
+    inr::ChannelScene scene = Down(0.002);
+    scene.colors = {{0, glm::dvec4(1, 1, 1, 0)}, {1, glm::dvec4(1, 1, 1, 0.8)}};
+    constexpr int steps = 20000;
+    const double x = 10 / inr::TurbulentChannel::Size.x;
+    const double y = 4 / inr::TurbulentChannel::Size.y;
+    double depth = 0;
+    for (int k = 0; k < steps; ++k) {
+      const double z = (0.5 + 19 * (k + 0.5) / steps) / 20;
+      const double value = std::clamp(field.at({x, y, z}), 0.0, 1.0);
+      depth -= std::log1p(-0.8 * value) * (1.9 / steps) / 0.7;
+    }
+    const inr::Image picture = inr::DrawChannel(field, scene, inr::Arena(1));
+    EXPECT_NEAR(picture.pixels[3], 1 - std::exp(-depth), 1e-5);
   }
-  const inr::Image picture = inr::DrawChannel(Field(0), scene, inr::Arena(1));
-  EXPECT_NEAR(picture.pixels[3], 1 - std::exp(-depth), 1e-5);
 }
 
 TEST(ChannelPicture, DoesNotDependOnThreads)

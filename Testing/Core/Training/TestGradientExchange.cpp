@@ -39,7 +39,8 @@ public:
         if (at % inr::GradientLine == 0) {
           touched = random() < 1.0f / static_cast<float>(1 + k % 5) ? 1 : 0;
         }
-        this->Grid.values(piece)[at] = touched != 0 ? random() - 0.5f : 0.0f;
+        // Of many sizes: their sum depends on the order.
+        this->Grid.values(piece)[at] = touched != 0 ? (random() - 0.5f) / (0.01f + random()) : 0.0f;
       }
     }
   }
