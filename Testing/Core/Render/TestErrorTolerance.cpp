@@ -413,7 +413,7 @@ class HardToKeepTo : public testing::TestWithParam<HardScene>
 TEST_P(HardToKeepTo, ATolerance)
 {
   HardPicture picture(this->GetParam());
-  for (const double distance : {0.5, 2.0}) {
+  for (const double distance : {0.5, 4.0}) {
     const Drawn exact = picture.drawWith(0, distance);
     EXPECT_GT(exact.statistics.samples, 1000);
     for (const double tolerance : {0.5, 2.0, 8.0, 32.0, 52.0}) {
