@@ -44,7 +44,7 @@ TEST(ExtremePaths, OfFaintMediaCollideAsOftenAsTheyShould)
     PathTest test({17, 17, 17}, Constant, UniformMedium(opacity));
     OfDepth(test, 1e-4).frame.width = 512;
     test.frame.height = 512;
-    EXPECT_LT(std::abs(test.estimate(3, 8).z(1e-4)), Unlikely) << opacity;
+    EXPECT_LT(std::abs(test.estimate(3, 3).z(1e-4)), Unlikely) << opacity;
   }
   PathTest test({17, 17, 17}, Constant, UniformMedium(0.1f));
   OfDepth(test, 1e-6).frame.width = 1024;

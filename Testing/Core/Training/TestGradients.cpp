@@ -15,9 +15,9 @@ namespace {
 constexpr std::int64_t SampleCount = 1000; // not a multiple of any block
 
 /// To either side of the outputs.
-std::vector<float> MixedTargets()
+std::vector<float> MixedTargets(std::int64_t count)
 {
-  std::vector<float> targets(SampleCount);
+  std::vector<float> targets(static_cast<std::size_t>(count));
   for (std::size_t k = 0; k < targets.size(); ++k) {
     targets[k] = k % 3 == 0 ? 2.0f : -2.0f;
   }
@@ -26,9 +26,10 @@ std::vector<float> MixedTargets()
 
 struct Problem
 {
-  Problem(const inr::Description& description, const std::string& kernel)
+  Problem(const inr::Description& description, const std::string& kernel,
+          std::int64_t count = SampleCount)
       : Threads(2), Descent(description, 1, inr::ChooseInstructionSet(kernel), Threads),
-        Positions(RandomPositions(SampleCount)), Targets(MixedTargets())
+        Positions(RandomPositions(count)), Targets(MixedTargets(count))
   {
     for (std::size_t k = 0; k < this->Descent.parameters().size(); ++k) {
       this->Descent.parameters()[k] = 0.8f * inr::RandomUnit(5, k) - 0.4f;
@@ -71,9 +72,9 @@ std::vector<float> Direction(std::size_t size, std::size_t begin, std::size_t en
 }
 
 void ExpectGradient(const inr::Description& description, const std::string& kernel,
-                    const std::string& what, float size = 1.0f)
+                    const std::string& what, float size = 1.0f, std::int64_t count = SampleCount)
 {
-  Problem problem(description, kernel);
+  Problem problem(description, kernel, count);
   for (float& parameter : problem.Descent.parameters()) {
     parameter *= size;
   }
@@ -151,7 +152,7 @@ TEST(Gradients, MatchForALargeNetwork)
   description.network.neurons = 1024;
   description.network.hiddenLayers = 3;
   description.network.activation = inr::Activation::Tanh;
-  ExpectGradient(description, "", "1024 neurons", 0.1f);
+  ExpectGradient(description, "", "1024 neurons", 0.1f, 300);
 }
 
 TEST(Gradients, UnknownTargetsCarryNone)

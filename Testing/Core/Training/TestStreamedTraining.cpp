@@ -59,7 +59,7 @@ inr::DecodedReport Measured(const inr::ModelPointer& model)
 TEST(StreamedTraining, SaysTheQualityOfTheModelThatItGives)
 {
   FieldReader<float> reader(LargeField());
-  const inr::ModelPointer model = inr::TrainModel(reader, {}, Options(60));
+  const inr::ModelPointer model = inr::TrainModel(reader, {}, Options(30));
   const inr::DecodedReport report = Measured(model);
   EXPECT_NEAR(model->quality->psnr, report.quality.psnr, 1e-6);
   EXPECT_NEAR(model->quality->maxError, report.quality.maxError, 1e-6);
@@ -99,7 +99,7 @@ TEST(StreamedTraining, MeasuresBarsWhereVoxelsAreTooMany)
 TEST(StreamedTraining, DependsNeitherOnThreadsNorOnTheSpeedOfReading)
 {
   FieldReader<float> fast(LargeField());
-  inr::TrainingOptions options = Options(40);
+  inr::TrainingOptions options = Options(20);
   options.threads = 1;
   const inr::ModelPointer one = inr::TrainModel(fast, {}, options);
   FieldReader<float> slow(LargeField());
@@ -118,7 +118,7 @@ TEST(StreamedTraining, KeepsToTheCallersThread)
   reader.before = [&](int) { EXPECT_EQ(std::this_thread::get_id(), here); };
   double last = 0;
   std::array<int, 3> phases{};
-  inr::TrainModel(reader, {}, Options(100), [&](const inr::TrainingProgress& progress) {
+  inr::TrainModel(reader, {}, Options(40), [&](const inr::TrainingProgress& progress) {
     EXPECT_EQ(std::this_thread::get_id(), here);
     EXPECT_GE(progress.fraction, last);
     last = progress.fraction;
@@ -145,7 +145,7 @@ TEST(StreamedTraining, StopsWhenItIsToldToInEveryPhase)
   for (const inr::TrainingPhase phase :
        {inr::TrainingPhase::Reading, inr::TrainingPhase::Training, inr::TrainingPhase::Measuring}) {
     FieldReader<float> reader(LargeField());
-    ExpectError(reader, Options(200), "stopped",
+    ExpectError(reader, Options(40), "stopped",
                 [&](const inr::TrainingProgress& progress) { return progress.phase != phase; });
   }
 }
@@ -159,7 +159,7 @@ TEST(StreamedTraining, HandsOnWhatTheReaderSaysWheneverItFails)
         throw inr::Error(inr::ErrorCode::CannotRead, "the disk is on fire");
       }
     };
-    ExpectError(reader, Options(200), "on fire");
+    ExpectError(reader, Options(40), "on fire");
   }
 }
 
@@ -216,8 +216,8 @@ TEST(StreamedTraining, LeavesOutWhatIsNotFinite)
     field.values[k] = NAN;
   }
   FieldReader<float> reader(field);
-  const inr::ModelPointer model = inr::TrainModel(reader, {}, Options(100));
-  const inr::ModelPointer whole = inr::TrainModel(field.data(), {}, Options(100));
+  const inr::ModelPointer model = inr::TrainModel(reader, {}, Options(60));
+  const inr::ModelPointer whole = inr::TrainModel(field.data(), {}, Options(60));
   EXPECT_EQ(model->training->nonFinite, whole->training->nonFinite);
   EXPECT_GT(model->quality->psnr, whole->quality->psnr - 0.3);
 }
