@@ -37,8 +37,8 @@ inline BrickId IdOf(BrickKey key)
   return {static_cast<int>(key >> (3 * BrickAxisBits)), {axis(0), axis(1), axis(2)}};
 }
 
-/// Voxels along an axis of a level, where level 0 has `voxels`: half as many for each level, rounded
-/// up.
+/// Voxels along an axis of a level, where level 0 has `voxels`: half as many for each level,
+/// rounded up.
 inline std::int64_t VoxelsAtLevel(std::int64_t voxels, int level)
 {
   const std::int64_t together = std::int64_t{1} << level;

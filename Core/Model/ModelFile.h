@@ -33,9 +33,9 @@ ModelPointer ReadModel(const std::string& path, const ModelOverrides& overrides 
 /// Writes `path` through a temporary file beside it and a rename: the file is there whole or not at
 /// all. The parameters are stored as `model.storedAs` says; quantised ones make a compact file,
 /// which no upstream reads. Returns the file's size in bytes. Throws Error(CannotWrite),
-/// Error(TooLarge) for 2 GiB or more or where memory runs out, or Error(InvalidModel) for what could
-/// not be read back: wrong counts, values that are not finite or that half precision or their step
-/// cannot express.
+/// Error(TooLarge) for 2 GiB or more or where memory runs out, or Error(InvalidModel) for what
+/// could not be read back: wrong counts, values that are not finite or that half precision or their
+/// step cannot express.
 std::int64_t WriteModel(const Model& model, const std::string& path);
 
 /// Throws what WriteModel would say of the model's description, volume and macro-cells, whatever
