@@ -173,6 +173,29 @@ TEST(ErrorTolerance, AsksForNextToNothingWhereColoursAreTheSame)
   EXPECT_EQ(drawn.statistics.levels.finest, inr::LevelErrors::Coarsest);
 }
 
+/// Macro-cells of 300 voxels would have to be known at once.
+TEST(ErrorTolerance, TakesEverySampleOfWhatIsTooMuchToMeasure)
+{
+  const glm::i64vec3 dims(600, 600, 600);
+  inr::MacroCells cells = inr::MakeMacroCells(dims, 300);
+  std::fill(cells.ranges.begin(), cells.ranges.end(), inr::ValueRange{0, 1});
+  inr::RendererOptions options;
+  options.cache = Options(inr::CachePrecision::Float32, 16);
+  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(dims), cells,
+                         options);
+  renderer.setTransferFunction(Glow());
+  inr::Frame frame = Oblique(glm::dvec3(dims), 4);
+  frame.width = frame.height = 4;
+  frame.unitDistance = 20;
+  frame.errorTolerance = 0;
+  const Drawn exact = Draw(renderer, frame);
+  frame.errorTolerance = 20;
+  const Drawn drawn = Draw(renderer, frame);
+  EXPECT_EQ(drawn.picture.pixels, exact.picture.pixels);
+  EXPECT_EQ(drawn.statistics.samples, exact.statistics.samples);
+  EXPECT_EQ(drawn.statistics.work.networkSamples, 0); // for nothing but bricks
+}
+
 /// And shows nothing beyond it, where values reach but do not pass the end.
 TEST(ErrorTolerance, AsksForNoMoreWhereATableEndsWithTheData)
 {
@@ -342,6 +365,16 @@ std::vector<HardScene> HardScenes()
   const inr::TransferFunction faint = Ramp({1, 0.5f, 0, 0}, {1, 0.5f, 0, 0.05f});
   const inr::TransferFunction opaque = Ramp({1, 0.2f, 0, 1}, {0, 0.5f, 1, 0});
   const inr::TransferFunction bright = Ramp({20, 0, 1, 0.01f}, {0, 0, 1, 0.1f});
+  inr::TransferFunction middle = Ramp({1, 0.7f, 0, 0.05f}, {1, 0.7f, 0, 0.05f});
+  middle.low = 0.4;
+  middle.high = 0.6;
+  inr::TransferFunction upper = middle;
+  upper.high = 1;
+  inr::TransferFunction lamp = Ramp({0, 0, 0, 0}, {0, 0, 0, 0.1f});
+  std::fill(lamp.table.begin() + 200, lamp.table.end(), glm::vec4(20, 20, 20, 0.5f));
+  const auto smokeBeforeLamp = [](const glm::vec3& u) {
+    return u.z > 0.5f ? 0.9f : 0.4f + 0.3f * std::cos(40 * u.x);
+  };
   const glm::dvec3 z(0, 0, 1);
   return {{"LayersAlongRays", Waves({1.0f / 24, 0, 0}), faint, z},
           {"ShortLayersAlongRays", Waves({1.0f / 16, 0, 0}), faint, z},
@@ -354,6 +387,9 @@ std::vector<HardScene> HardScenes()
           {"Noise", Noise, faint, {1, 2, 5}},
           {"OpacityOfOne", Waves({1.0f / 30, 0, 1.0f / 50}), opaque, z, 1, 1},
           {"FarApartSlices", Waves({1.0f / 60, 0, 1.0f / 40}), faint, {1, 0.1, 0}, 30, 8},
+          {"EdgeBelow", Waves({1.0f / 40, 0, 1.0f / 50}), upper, {0.3, 0.2, 1}},
+          {"EdgesOfTheMiddle", Waves({1.0f / 40, 0, 1.0f / 50}), middle, {0.3, 0.2, 1}},
+          {"SmokeBeforeALamp", smokeBeforeLamp, lamp, z},
           {"BrightColours", Waves({1.0f / 40, 1.0f / 50, 0}), bright, {0.3, 0.2, 1}},
           {"PeaksInAGradient", [](const glm::vec3& u) { return u.z; }, Peaks(), z},
           {"OneOpacity",
