@@ -14,6 +14,11 @@ namespace inr {
 namespace {
 
 constexpr double BlockEdge = 64; ///< voxels: a picture in a limited time waits for one block
+/// Voxels on either side of a block that samples in it may be taken for.
+constexpr std::int64_t Around = (1 << LevelErrors::Coarsest) / 2;
+/// Voxels: along longer parts of cells, lines between the directions that are looked at are too far
+/// from any of these.
+constexpr std::int64_t LongestPart = 18;
 
 glm::i64vec3 PlaceOf(std::int64_t number, const glm::i64vec3& dims)
 {
@@ -46,6 +51,26 @@ ValueBox Sampled(const VoxelSpan (&spans)[3], const glm::i64vec3& dims, const Ev
     value = NormalisedOutput(value);
   }
   return box;
+}
+
+/// The largest of all parts of a part, which a line may pass one after the other.
+LineErrors FindInParts(const ValueBox& fine, const ValueBox& taken, const BoxPart& whole, int power,
+                       const LineKernel& kernel)
+{
+  const glm::i64vec3 count = (whole.size + LongestPart - std::int64_t{1}) / LongestPart;
+  LineErrors errors;
+  for (std::int64_t k = 0; k < count.x * count.y * count.z; ++k) {
+    const glm::i64vec3 at = PlaceOf(k, count);
+    const glm::i64vec3 begin = at * whole.size / count;
+    const glm::i64vec3 end = (at + std::int64_t{1}) * whole.size / count;
+    const LineErrors found =
+        FindLineErrors(fine, taken, {whole.first + begin, end - begin}, power, kernel);
+    errors.sum = std::max(errors.sum, found.sum);
+    errors.magnitude = std::max(errors.magnitude, found.magnitude);
+    errors.largest = std::max(errors.largest, found.largest);
+  }
+  const auto most = static_cast<float>(std::max(count.x, std::max(count.y, count.z)));
+  return {most * errors.sum, most * errors.magnitude, errors.largest};
 }
 
 ValueBox Cut(const ValueBox& box, const BoxPart& part)
@@ -84,7 +109,8 @@ LevelErrors::LevelErrors(const glm::i64vec3& dims, const glm::i64vec3& cells,
 
 std::int64_t LevelErrors::blockCost() const
 {
-  constexpr double around = 2 * (1.25 * (1 << Coarsest) + 2); // voxels that the coarsest is made of
+  // Voxels that the coarsest level is made of, too.
+  constexpr double around = 2 * (1.25 * (1 << Coarsest) + 2 + Around);
   double cost = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const double voxels = static_cast<double>(this->CellsPerBlock[axis]) * this->Edge[axis];
@@ -122,6 +148,8 @@ LevelErrors::Block LevelErrors::find(std::int64_t number) const
   for (int axis = 0; axis < 3; ++axis) {
     block.seen[axis] =
         VoxelsOf(block.begin[axis], block.end[axis], this->Edge[axis], this->Dims[axis]);
+    block.seen[axis].low = std::max<std::int64_t>(block.seen[axis].low - Around, 0);
+    block.seen[axis].high = std::min(block.seen[axis].high + Around, this->Dims[axis] - 1);
   }
   return block;
 }
@@ -172,8 +200,8 @@ std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field,
     const ValueBox coarse = levels[level].apply(around, first);
     this->forEachCell(block, [&](std::size_t cell, const BoxPart& part) {
       const int power = static_cast<int>(level) + 1;
-      cells[cell].levels[level] = FindLineErrors(fine, coarse, part, power, kernel);
-      cells[cell].steps[level] = FindLineErrors(fine, fine, part, power, kernel);
+      cells[cell].levels[level] = FindInParts(fine, coarse, part, power, kernel);
+      cells[cell].steps[level] = FindInParts(fine, fine, part, power, kernel);
     });
   }
   this->Measured[static_cast<std::size_t>(number)] = std::move(cells);

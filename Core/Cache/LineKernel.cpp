@@ -10,51 +10,66 @@ namespace {
 
 float Larger(float a, float b) { return a > b ? a : b; }
 
-/// The largest sums of errors that end somewhere on a line.
-void AddUp(const float* __restrict errors, const float* __restrict inside,
-           const float* __restrict before, float* __restrict now, float* __restrict most,
-           std::int64_t count)
+/// One stride is what nearly all rows have, which the compiler has to be told.
+template <bool Contiguous>
+void CompareRow(const float* __restrict first, const float* __restrict second,
+                const float* __restrict fine, std::int64_t stride, float weight,
+                float* __restrict errors, float* __restrict amounts, float* __restrict largest,
+                std::int64_t count)
 {
   for (std::int64_t k = 0; k < count; ++k) {
-    now[k] = inside[k] * Larger(before[k] + errors[k], 0.0f);
-    most[k] = Larger(now[k], most[k]);
+    const std::int64_t at = Contiguous ? k : k * stride;
+    const float error = 0.5f * (first[at] + second[at]) - fine[at];
+    const float magnitude = error < 0.0f ? -error : error;
+    errors[k] += weight * error;
+    amounts[k] += weight * magnitude;
+    largest[k] = Larger(magnitude, largest[k]);
   }
 }
 
-/// The same of their opposites.
-void AddDown(const float* __restrict errors, const float* __restrict inside,
+void Compare(const LineSamples& samples, std::int64_t offset, float weight, std::int64_t begin,
+             std::int64_t end)
+{
+  const std::int64_t from = begin * samples.stride;
+  const auto compare = samples.stride == 1 ? CompareRow<true> : CompareRow<false>;
+  compare(samples.first + from, samples.second + from, samples.fine + from + offset, samples.stride,
+          weight, samples.errors + begin, samples.amounts + begin, samples.largest + begin,
+          end - begin);
+}
+
+/// The largest sums of errors, or of their opposites, that end somewhere on a line.
+template <int Sign>
+void AddSums(const float* __restrict errors, const float* __restrict inside,
              const float* __restrict before, float* __restrict now, float* __restrict most,
              std::int64_t count)
 {
   for (std::int64_t k = 0; k < count; ++k) {
-    now[k] = inside[k] * Larger(before[k] - errors[k], 0.0f);
+    now[k] = inside[k] * Larger(before[k] + Sign * errors[k], 0.0f);
     most[k] = Larger(now[k], most[k]);
   }
 }
 
-void AddMagnitudes(const float* __restrict errors, const float* __restrict inside,
-                   const float* __restrict before, float* __restrict now, float* __restrict most,
-                   float* __restrict largest, std::int64_t count)
+void AddAmounts(const float* __restrict amounts, const float* __restrict inside,
+                const float* __restrict before, float* __restrict now, float* __restrict most,
+                std::int64_t count)
 {
   for (std::int64_t k = 0; k < count; ++k) {
-    const float magnitude = errors[k] < 0.0f ? -errors[k] : errors[k];
-    now[k] = inside[k] * (before[k] + magnitude);
+    now[k] = inside[k] * (before[k] + amounts[k]);
     most[k] = Larger(now[k], most[k]);
-    largest[k] = Larger(magnitude, largest[k]);
   }
 }
 
 void Add(const LineSlice& slice, std::int64_t count)
 {
-  AddUp(slice.errors, slice.inside, slice.rises, slice.nextRises, slice.sums, count);
-  AddDown(slice.errors, slice.inside, slice.falls, slice.nextFalls, slice.sums, count);
-  AddMagnitudes(slice.errors, slice.inside, slice.magnitudes, slice.nextMagnitudes, slice.amounts,
-                slice.largest, count);
+  AddSums<1>(slice.errors, slice.inside, slice.rises, slice.nextRises, slice.sums, count);
+  AddSums<-1>(slice.errors, slice.inside, slice.falls, slice.nextFalls, slice.sums, count);
+  AddAmounts(slice.amounts, slice.inside, slice.magnitudes, slice.nextMagnitudes, slice.totals,
+             count);
 }
 
 } // namespace
 
-const LineKernel Lines = {Add};
+const LineKernel Lines = {Compare, Add};
 
 } // namespace INR_ISA
 } // namespace inr

@@ -23,11 +23,38 @@ constexpr int RaysAcross = 48;  ///< a picture, at most
 constexpr double Hidden = 1e-3; ///< light from behind that no longer counts: where rays end
 static_assert(LevelErrors::Coarsest >= LargestCellPower, "what cells ask for is measured");
 
+double LargestOf(const glm::dvec3& edges) { return std::max(edges.x, std::max(edges.y, edges.z)); }
+
 /// Of a step whose value may be anything in a range.
 double LargestError(const ColorSensitivity::Slopes& slopes, const ValueRange& range)
 {
   return range.empty() ? 0.0 : (slopes.middle + slopes.half) * (range.high - range.low);
 }
+
+/// Pixels of a rectangle, as far apart as that they are RaysAcross or fewer across and down.
+class PixelGrid
+{
+public:
+  PixelGrid(const glm::ivec2& first, const glm::ivec2& size)
+      : First(first), Size(size), Apart((std::max(size.x, size.y) + RaysAcross - 1) / RaysAcross),
+        Across((size.x + this->Apart - 1) / this->Apart),
+        Down((size.y + this->Apart - 1) / this->Apart)
+  {}
+  int apart() const { return this->Apart; }
+  std::int64_t count() const { return this->Across * this->Down; }
+  glm::ivec2 pixel(std::int64_t number) const
+  {
+    const glm::ivec2 place(number % this->Across, number / this->Across);
+    return this->First + glm::min(place * this->Apart + this->Apart / 2, this->Size - 1);
+  }
+
+private:
+  glm::ivec2 First;
+  glm::ivec2 Size;
+  int Apart;
+  std::int64_t Across;
+  std::int64_t Down;
+};
 
 void Raise(std::atomic<std::uint8_t>& number, int to)
 {
@@ -57,6 +84,7 @@ LevelChooser::LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i6
     : Field(std::move(field)), Kernel(kernel), Dims(dims),
       Errors(dims, cells.dims(), cells.spacing()),
       Coarsest(std::min(levels - 1, LevelErrors::Coarsest)),
+      LongestEdge(LargestOf(this->Errors.cellEdge())),
       Slopes(static_cast<std::size_t>(cells.count())),
       Allowed(new std::atomic<std::uint8_t>[static_cast<std::size_t>(cells.count())]),
       Wanted(new std::atomic<std::uint8_t>[static_cast<std::size_t>(this->Errors.blocks())]),
@@ -99,8 +127,6 @@ void LevelChooser::setLimits()
     this->Limits[k] = this->Given.tolerance * std::exp2(-0.5 * static_cast<double>(k));
   }
   this->Limits[LimitCount] = 0;
-  const glm::dvec3& edge = this->Errors.cellEdge();
-  this->LongestEdge = std::max(edge.x, std::max(edge.y, edge.z));
   for (int power = 1; power <= LargestCellPower; ++power) {
     const double voxels = this->Given.step * static_cast<double>(1 << power);
     this->Apart[static_cast<std::size_t>(power - 1)] =
@@ -124,17 +150,26 @@ void LevelChooser::sendRays(const View& view, const Majorants& majorants, const 
 {
   Clear(this->Allowed, static_cast<std::int64_t>(this->Sampling.size()));
   Clear(this->Wanted, this->Errors.blocks());
-  const int apart = (std::max(view.width, view.height) + RaysAcross - 1) / RaysAcross;
-  const std::int64_t across = (view.width + apart - 1) / apart;
-  const std::int64_t down = (view.height + apart - 1) / apart;
-  const auto place = [&](std::int64_t number, int pixels) {
-    return std::min(static_cast<int>(number) * apart + apart / 2, pixels - 1);
-  };
-  arena.forEachBlock(across * down, RaysPerTask, [&](std::int64_t begin, std::int64_t end) {
+  const PixelGrid all({0, 0}, {view.width, view.height});
+  glm::ivec2 low(view.width, view.height);
+  glm::ivec2 high(-1);
+  for (std::int64_t k = 0; k < all.count(); ++k) {
+    const glm::ivec2 pixel = all.pixel(k);
+    if (view.geometry.ray(pixel.x, pixel.y).length > 0) {
+      low = glm::min(low, pixel - all.apart());
+      high = glm::max(high, pixel + all.apart());
+    }
+  }
+  // Where the volume is small in the picture, or missed so far, rays are closer.
+  low = high.x < 0 ? glm::ivec2(0) : glm::max(low, glm::ivec2(0));
+  high = high.x < 0 ? glm::ivec2(view.width, view.height)
+                    : glm::min(high + 1, glm::ivec2(view.width, view.height));
+  const PixelGrid seen(low, high - low);
+  arena.forEachBlock(seen.count(), RaysPerTask, [&](std::int64_t begin, std::int64_t end) {
     RayWalk walk;
     for (std::int64_t k = begin; k < end; ++k) {
-      const Ray ray =
-          view.geometry.ray(place(k % across, view.width), place(k / across, view.height));
+      const glm::ivec2 pixel = seen.pixel(k);
+      const Ray ray = view.geometry.ray(pixel.x, pixel.y);
       if (ray.length > 0) {
         this->follow(ray, majorants, walk);
       }
@@ -155,6 +190,8 @@ void LevelChooser::follow(const Ray& ray, const Majorants& majorants, RayWalk& w
     const std::int64_t cell = cells.index();
     const double exit = std::min(cells.exit(), ray.length);
     const double steps = (exit - std::max(t, cells.enter())) / this->Given.step;
+    // Rays beside this one may go all through a cell of which it meets a corner.
+    const double crossing = std::max(steps, stepsPerVoxel * this->LongestEdge);
     const CellErrors errors = this->errorsOf(cell, grid.range(cell));
     walk.cells.push_back(cell);
     int number = 0;
@@ -164,7 +201,7 @@ void LevelChooser::follow(const Ray& ray, const Majorants& majorants, RayWalk& w
         break; // nor do smaller limits allow anything
       }
       const CellError& error = errors[static_cast<std::size_t>(number)];
-      walk.sums[k] += light * std::min(stepsPerVoxel * error.all, steps * error.step);
+      walk.sums[k] += light * std::min(stepsPerVoxel * error.all, crossing * error.step);
     }
     const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
     if (LargestError(slopes, grid.range(cell)) > this->LeastError && std::isfinite(slopes.half)) {
@@ -261,15 +298,13 @@ LevelChooser::CellErrors LevelChooser::errorsOf(std::int64_t cell, const ValueRa
   CellError full;
   for (int power = 1; power <= LargestCellPower; ++power) {
     const auto number = static_cast<std::size_t>(Choices - 2 * power);
-    if (power <= this->Coarsest && this->Given.step <= 1.0) {
+    if (power <= this->Coarsest) {
       level = this->errorOf(slopes, lines.levels[static_cast<std::size_t>(power - 1)], most, level);
       errors[number] = level;
     }
-    const int apart = this->Apart[static_cast<std::size_t>(power - 1)];
-    if (apart <= LevelErrors::Coarsest) {
-      full = this->errorOf(slopes, lines.steps[static_cast<std::size_t>(apart - 1)], most, full);
-      errors[number + 1] = full;
-    }
+    const auto apart = static_cast<std::size_t>(this->Apart[static_cast<std::size_t>(power - 1)]);
+    full = this->errorOf(slopes, lines.steps[apart - 1], most, full);
+    errors[number + 1] = full;
   }
   return errors;
 }
@@ -289,7 +324,7 @@ LevelChooser::CellError LevelChooser::errorOf(const ColorSensitivity::Slopes& sl
 
 int LevelChooser::choiceFor(const CellErrors& errors, double limit, int first)
 {
-  while (first < Choices && errors[static_cast<std::size_t>(first)].perStep > limit) {
+  while (first < Choices && !(errors[static_cast<std::size_t>(first)].perStep <= limit)) {
     ++first;
   }
   return first;

@@ -38,6 +38,9 @@ public:
   /// And so many at once.
   static constexpr std::int64_t LargestBlock = std::int64_t{1} << 24;
 
+  /// Voxels: where samples are further apart than that, what they leave out is not known.
+  static constexpr double LongestStep = 1.0;
+
   /// `levels`: of the cache.
   LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
                const MajorantGrid& cells, int levels, const LineKernel& kernel);
@@ -121,12 +124,12 @@ private:
   glm::dvec3 Dims;
   LevelErrors Errors;
   int Coarsest;
+  double LongestEdge; ///< of a cell, in voxels
   std::int64_t Points = 0;
   double SecondsPerRound = 0.1; ///< of measuring a block on each thread: a guess at first
   std::optional<Wish> Chosen;
   Wish Given{};
   double LeastError = 0; ///< of a step, that matters at all
-  double LongestEdge;    ///< of a cell, in voxels
   /// log2 of the voxels that samples of the full resolution are apart with 2, 4, ... steps between
   /// them, rounded up, and at least 1.
   std::array<int, LargestCellPower> Apart{};

@@ -107,7 +107,8 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture
   }
   Require(frame.sampleDistance >= SmallestStep && frame.sampleDistance <= LargestStep,
           "the sample distance must be between 1/1000 and 1,000,000 voxels");
-  Require(!frame.errorTolerance || *frame.errorTolerance >= 0,
+  Require(!frame.errorTolerance ||
+              (*frame.errorTolerance >= 0 && std::isfinite(*frame.errorTolerance)),
           "the error tolerance must be a number, and not negative");
   Require(frame.levelOfDetailScale >= 0 && std::isfinite(frame.levelOfDetailScale),
           "the level-of-detail scale must be finite and not negative");

@@ -197,7 +197,7 @@ bool Renderer::Implementation::choosesLevels(const Frame& frame,
                                              const MarchSettings& settings) const
 {
   return frame.errorTolerance.value_or(0) > 0 && frame.blending.mode == BlendMode::Composite &&
-         !frame.shading && !settings.crops;
+         !frame.shading && !settings.crops && settings.step <= LevelChooser::LongestStep;
 }
 
 bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometry& geometry,

@@ -111,7 +111,7 @@ TEST(LevelErrors, OfASlopeAreNoneButAtTheVolumesEnds)
     const std::int64_t inside = x + 10 * (1 + 3 * 1);
     EXPECT_EQ(errors.blockOf(inside), x / 4);
     for (const int level : {1, 2, 3}) {
-      const double most = (0.6 / 160 + 0.2 / 48) * ((1 << level) - 1) / 2;
+      const double most = 0.2 / 48 * (1 << level) / 2;
       EXPECT_LT(errors.of(inside).levels[level - 1].largest, most + 1e-6)
           << x; // a step to the middle
       EXPECT_LT(errors.of(inside).levels[level - 1].sum, 1e-4 + most * (1 << level))
@@ -213,7 +213,7 @@ TEST(LevelErrors, AreThoseOfAThinFeature)
   // Level 1 has a quarter of the wire in each of two by two voxels around it: (3/4)^2 of a quarter
   // where the wire is.
   const double off = 0.8 * (1 - 9.0 / 64);
-  EXPECT_NEAR(errors.of(cell(1, 1)).levels[0].largest, 0.8 * (1 - 6.0 / 64), 1e-5);
+  EXPECT_NEAR(errors.of(cell(1, 1)).levels[0].largest, 0.8 * (1 - 3.0 / 64), 1e-5);
   EXPECT_NEAR(errors.of(cell(1, 1)).levels[0].sum, 18 * off, 0.05 * 18 * off); // along the wire
   EXPECT_LT(errors.of(cell(2, 0)).levels[0].largest, 1e-6);                    // out of reach
   EXPECT_GT(errors.of(cell(1, 1)).levels[2].largest, 0.75);
