@@ -210,8 +210,8 @@ bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometr
                          this->Cached->store().cache().hierarchy().levels(),
                          LineKernelFor(ChooseInstructionSet(this->Options.kernel)));
   }
-  const LevelChooser::Wish wish{*frame.errorTolerance / 255.0, settings.step,
-                                settings.step * settings.unitsPerT};
+  const LevelChooser::Wish wish{LevelChooser::Certain * *frame.errorTolerance / 255.0,
+                                settings.step, settings.step * settings.unitsPerT};
   if (!this->Levels->choose(wish, {geometry, frame.width, frame.height}, this->Cells,
                             this->Colors->lookup(), this->Threads, limit, keepGoing)) {
     return false;
