@@ -17,8 +17,9 @@ namespace inr {
 /// blocks of cells.
 ///
 /// All of it is the largest of what is found along lines of voxels of level 0 through a cell, in 13
-/// directions, so that it is that of rays of nearly any. LevelResampling says what a level is; the
-/// field is asked for nothing but voxels of level 0, and taken to be linear in between.
+/// directions, wherever samples may begin; through a cell of more than 16 voxels, part by part.
+/// LevelResampling says what a level is; the field is asked for nothing but voxels of level 0, and
+/// taken to be linear in between.
 class LevelErrors
 {
 public:

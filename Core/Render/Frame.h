@@ -96,11 +96,12 @@ struct Frame
 
   /// Takes the place of levelOfDetailScale and adaptiveSampling where it is given: by how many
   /// 255ths a channel of the picture may differ from the one with all samples, each from the full
-  /// resolution, for 99.9 % of the pixels. 0: not at all; not negative. Where nothing is lit,
-  /// cropped (but to a box) or projected, samples come from coarser levels and are further apart
-  /// wherever that stays within it; see LevelChooser. Everything else, and paths, is drawn as with
-  /// 0. What the precision of the cache rounds comes on top, and up to 0.26 in opaque media, as rays
-  /// end at 0.999 of opacity. Ignored without a cache.
+  /// resolution, for 99.9 % of the pixels that show something. 0: not at all; finite, not negative.
+  /// Where nothing is lit, cropped (but to a box) or projected, and samples are a voxel apart or
+  /// less, they come from coarser levels and are further apart wherever that stays within it; see
+  /// LevelChooser. Everything else, and paths, is drawn as with 0. What the precision of the cache
+  /// rounds comes on top, and up to 0.26 in opaque media, as rays end at 0.999 of opacity; and
+  /// between voxels of the full resolution the field is taken to be linear. Ignored without a cache.
   std::optional<double> errorTolerance;
 
   /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones

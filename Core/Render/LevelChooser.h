@@ -19,17 +19,18 @@
 namespace inr {
 
 /// Chooses for every macro-cell that can be seen the fewest samples, from the coarsest level of the
-/// cache or the full resolution, that change no pixel by more than a tolerance; see
+/// cache or the full resolution, that change next to no pixel by more than a tolerance; see
 /// Frame::errorTolerance.
 ///
 /// A sample that stands for n steps is in their middle. LevelErrors says by how much the sum of
 /// samples along any part of a line through a cell may be off, ColorSensitivity by how much that
 /// changes a pixel. What lies in front of a sample hides a part of it, and never less than of those
 /// before, so that errors which cancel each other still do (Abel's inequality). What cells add is
-/// added up along a ray, whatever its signs. That is done for a grid of pixels, at most 48 across:
-/// each ray finds the largest error to a step that all of its cells together may have, and a cell
-/// is allowed the least that any ray through it found. Cells that none of these rays meets have
-/// every sample, from the full resolution, as have those that would take too long to measure.
+/// added up along a ray, whatever its signs. That is done for a grid of pixels, at most 48 across
+/// what the volume covers, as if rays went all through the cells that they meet: each finds the
+/// largest error to a step that all of its cells together may have, and a cell is allowed the least
+/// that any ray through it found. Cells that none of these rays meets have every sample, from the
+/// full resolution, as have those that would take too long to measure.
 class LevelChooser
 {
 public:
