@@ -365,6 +365,28 @@ float Noise(const glm::vec3& u)
       inr::RandomUnit(21, static_cast<std::uint64_t>(voxel.x + 100 * (voxel.y + 100 * voxel.z))));
 }
 
+/// What a function of the voxel gives, and linear in between.
+FieldEvaluator::Function Linear(const std::function<float(const glm::i64vec3&)>& valueOf)
+{
+  const auto voxels = std::make_shared<const Voxels>(
+      glm::i64vec3(96), [&](const glm::vec3& u) { return valueOf(glm::i64vec3(96.0f * u)); });
+  return [voxels](const glm::vec3& u) { return voxels->at(u); };
+}
+
+float Layer(const glm::i64vec3& at) { return at.z % 24 == 8 ? 0.9f : 0.1f; }
+
+float Checkerboard(const glm::i64vec3& at)
+{
+  return (at.x / 16 + at.y / 16 + at.z / 16) % 2 == 0 ? 0.9f : 0.1f;
+}
+
+float Gyroid(const glm::i64vec3& at)
+{
+  const glm::vec3 a = 1.5707963f * (glm::vec3(at) + 0.5f); // four voxels to a turn
+  return 0.5f + 0.25f * (std::sin(a.x) * std::cos(a.y) + std::sin(a.y) * std::cos(a.z) +
+                         std::sin(a.z) * std::cos(a.x));
+}
+
 std::ostream& operator<<(std::ostream& out, const HardScene& scene) { return out << scene.name; }
 
 std::vector<HardScene> HardScenes()
@@ -392,6 +414,9 @@ std::vector<HardScene> HardScenes()
           {"SheetsAcross", Sheets({2, 1, 5}), faint, {2, 1, 5}},
           {"SlopingSlices", Waves({1.0f / 60, 0, 1.0f / 24}), faint, {0.05, 0, 1}, 8},
           {"Noise", Noise, faint, {1, 2, 5}},
+          {"LayersOfAVoxel", Linear(Layer), faint, z},
+          {"Checkerboard", Linear(Checkerboard), faint, {1, 0.3, 0.2}},
+          {"Gyroid", Linear(Gyroid), faint, z},
           {"OpacityOfOne", Waves({1.0f / 30, 0, 1.0f / 50}), opaque, z, 1, 1},
           {"FarApartSlices", Waves({1.0f / 60, 0, 1.0f / 40}), faint, {1, 0.1, 0}, 30, 8},
           {"EdgeBelow", Waves({1.0f / 40, 0, 1.0f / 50}), upper, {0.3, 0.2, 1}},
