@@ -196,43 +196,38 @@ TEST(ErrorTolerance, TakesEverySampleOfWhatIsTooMuchToMeasure)
   EXPECT_EQ(drawn.statistics.work.networkSamples, 0); // for nothing but bricks
 }
 
+/// With next to no tolerance, in a medium of one colour: a part of the exact samples, at most.
+Drawn ExpectFewSamples(const FieldEvaluator::Function& field, const glm::i64vec3& dims,
+                       float opacity, std::int64_t part)
+{
+  inr::RendererOptions options;
+  options.cache = Options(inr::CachePrecision::Float32, 16);
+  inr::Renderer renderer(std::make_shared<FieldEvaluator>(field), VolumeOf(dims),
+                         CellsOf(field, dims), options);
+  renderer.setTransferFunction(UniformMedium(opacity));
+  inr::Frame frame = Oblique(glm::dvec3(dims), 40);
+  frame.errorTolerance = 0;
+  const Drawn exact = Draw(renderer, frame);
+  frame.errorTolerance = 0.01;
+  Drawn drawn = Draw(renderer, frame);
+  EXPECT_LT(255 * inr::ImageMaximumError(drawn.picture, exact.picture), 0.01);
+  EXPECT_LT(drawn.statistics.samples, exact.statistics.samples / part);
+  return drawn;
+}
+
 /// And shows nothing beyond it, where values reach but do not pass the end.
 TEST(ErrorTolerance, AsksForNoMoreWhereATableEndsWithTheData)
 {
   const auto field = [](const glm::vec3& u) {
     return glm::clamp(0.5f + 2 * std::cos(40 * u.x), 0.0f, 1.0f);
   };
-  const glm::i64vec3 dims(96, 96, 96);
-  inr::RendererOptions options;
-  options.cache = Options(inr::CachePrecision::Float32, 16);
-  inr::Renderer renderer(std::make_shared<FieldEvaluator>(field), VolumeOf(dims),
-                         CellsOf(field, dims), options);
-  renderer.setTransferFunction(UniformMedium(0.01f));
-  inr::Frame frame = Oblique(glm::dvec3(dims), 40);
-  frame.errorTolerance = 0;
-  const Drawn exact = Draw(renderer, frame);
-  frame.errorTolerance = 0.01;
-  const Drawn drawn = Draw(renderer, frame);
-  EXPECT_LT(255 * inr::ImageMaximumError(drawn.picture, exact.picture), 0.01);
-  EXPECT_LT(drawn.statistics.samples, exact.statistics.samples / 6);
+  ExpectFewSamples(field, glm::i64vec3(96), 0.01f, 6);
 }
 
 /// Which has no coarser level, but samples further apart.
 TEST(ErrorTolerance, IsKeptInASingleBrick)
 {
-  const glm::i64vec3 dims(15, 14, 15);
-  inr::RendererOptions options;
-  options.cache = Options(inr::CachePrecision::Float32, 16);
-  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(dims),
-                         CellsOf(FogAndWires, dims), options);
-  renderer.setTransferFunction(UniformMedium(0.3f));
-  inr::Frame frame = Oblique(glm::dvec3(dims), 40);
-  frame.errorTolerance = 0;
-  const Drawn exact = Draw(renderer, frame);
-  frame.errorTolerance = 0.01;
-  const Drawn drawn = Draw(renderer, frame);
-  EXPECT_LT(255 * inr::ImageMaximumError(drawn.picture, exact.picture), 0.01);
-  EXPECT_LT(drawn.statistics.samples, exact.statistics.samples / 3);
+  const Drawn drawn = ExpectFewSamples(FogAndWires, {15, 14, 15}, 0.3f, 3);
   EXPECT_EQ(drawn.statistics.levels.coarsest, 0);
 }
 
