@@ -38,7 +38,6 @@ public:
   std::int64_t pitch() const { return this->Pitch; }
   std::int64_t count() const { return this->Count; }
   float largest() const { return *std::max_element(this->Numbers.begin(), this->Numbers.end()); }
-  void clear() { std::fill(this->Numbers.begin(), this->Numbers.end(), 0.0f); }
 
 private:
   std::int64_t Pitch;

@@ -42,8 +42,8 @@ public:
   /// Voxels: where samples are further apart than that, what they leave out is not known.
   static constexpr double LongestStep = 1.0;
 
-  /// Of a tolerance, what is made use of: along lines between the directions that LevelErrors looks
-  /// at, fibres seen end on are off by up to 1.22 times as much as found.
+  /// Of a tolerance, what is made use of: lines between the directions that LevelErrors looks at may
+  /// be further off. Enough for fibres seen end on through cells of 16 voxels, but not of 128.
   static constexpr double Certain = 0.8;
 
   /// `levels`: of the cache.

@@ -472,7 +472,6 @@ private:
 class HardToKeepTo : public testing::TestWithParam<HardScene>
 {};
 
-/// Of some, errors are four fifths of what they may be.
 TEST_P(HardToKeepTo, ATolerance)
 {
   HardPicture picture(this->GetParam());
