@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What tests of Frame::errorTolerance share.
+#pragma once
+
+#include "Core/Render/Renderer.h"
+#include "Testing/Core/Render/VoxelScene.h"
+
+#include <gtest/gtest.h>
+
+/// Of 16 voxels, with the ranges of a field that is linear between voxels.
+inline inr::MacroCells CellsOf(const FieldEvaluator::Function& field, const glm::i64vec3& dims)
+{
+  inr::MacroCells cells = inr::MakeMacroCells(dims, 16);
+  for (std::int64_t k = 0; k < static_cast<std::int64_t>(cells.ranges.size()); ++k) {
+    const glm::i64vec3 cell(k % cells.dims.x, k / cells.dims.x % cells.dims.y,
+                            k / (cells.dims.x * cells.dims.y));
+    for (int voxel = 0; voxel < 18 * 18 * 18; ++voxel) {
+      const glm::i64vec3 within(voxel % 18 - 1, voxel / 18 % 18 - 1, voxel / 324 - 1);
+      const glm::i64vec3 at =
+          glm::clamp(cell * std::int64_t{16} + within, glm::i64vec3(0), dims - std::int64_t{1});
+      cells.ranges[static_cast<std::size_t>(k)].extend(
+          field(glm::vec3((glm::dvec3(at) + 0.5) / glm::dvec3(dims))));
+    }
+  }
+  cells.apron = 1.0 / glm::dvec3(dims);
+  return cells;
+}
+
+struct Drawn
+{
+  inr::Image picture;
+  inr::FrameStatistics statistics;
+};
+
+/// To the end.
+inline Drawn Draw(inr::Renderer& renderer, const inr::Frame& frame)
+{
+  Drawn drawn;
+  drawn.statistics = renderer.render(frame, drawn.picture);
+  EXPECT_TRUE(drawn.statistics.complete);
+  return drawn;
+}
