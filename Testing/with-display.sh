@@ -8,10 +8,11 @@ if ! command -v Xvfb > /dev/null; then
   exit 1
 fi
 
+source "$(dirname "$0")/stop.sh"
 scratch=$(mktemp -d)
 server=
 finish() {
-  [ -n "$server" ] && kill "$server" 2> /dev/null && wait "$server" 2> /dev/null
+  [ -n "$server" ] && stop "$server"
   rm -rf "$scratch"
 }
 trap finish EXIT

@@ -2,13 +2,19 @@
 # server-test.sh SCRIPT PVPYTHON PVSERVER PROCESSES [LAUNCHER...]: runs SCRIPT PORT PROCESSES in
 # PVPYTHON while so many of PVSERVER, started by LAUNCHER, listen to PORT.
 set -u
+source "$(dirname "$0")/../stop.sh"
 script=$1 pvpython=$2 pvserver=$3 processes=$4
 shift 4
 log=$(mktemp)
 port=$((11000 + $$ % 20000))
 "$@" "$pvserver" --server-port="$port" > "$log" 2>&1 &
 server=$!
-trap 'kill "$server" 2> /dev/null; wait "$server" 2> /dev/null; rm -f "$log"' EXIT
+finish() {
+  stop "$server"
+  [ $? -ne 137 ] || { echo "pvserver did not end when it was asked to:" && cat "$log"; }
+  rm -f "$log"
+}
+trap finish EXIT
 for _ in $(seq 600); do
   grep -q "Accepting connection" "$log" && break
   kill -0 "$server" 2> /dev/null || break
