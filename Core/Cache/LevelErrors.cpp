@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/LevelErrors.h"
 
+#include "Core/Cache/FieldWindow.h"
 #include "Core/Cache/LevelResampling.h"
+#include "Core/Cache/LongLines.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace inr {
@@ -14,11 +17,6 @@ namespace inr {
 namespace {
 
 constexpr double BlockEdge = 64; ///< voxels: a picture in a limited time waits for one block
-/// Voxels on either side of a block that samples in it may be taken for.
-constexpr std::int64_t Around = (1 << LevelErrors::Coarsest) / 2;
-/// Voxels: along longer parts of cells, lines between the directions that are looked at are too far
-/// from any of these.
-constexpr std::int64_t LongestPart = 18;
 
 glm::i64vec3 PlaceOf(std::int64_t number, const glm::i64vec3& dims)
 {
@@ -36,62 +34,48 @@ VoxelSpan VoxelsOf(std::int64_t begin, std::int64_t end, double edge, std::int64
           static_cast<std::int64_t>(std::clamp(high, 0.0, last))};
 }
 
-ValueBox Sampled(const VoxelSpan (&spans)[3], const glm::i64vec3& dims, const Evaluator& field)
+bool IsKnown(const LevelErrors::Powers& powers, int wanted, std::int64_t cell,
+             const LevelErrors::Question& question)
 {
-  std::vector<float> axes[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::int64_t voxel = spans[axis].low; voxel <= spans[axis].high; ++voxel) {
-      axes[axis].push_back(
-          static_cast<float>((static_cast<double>(voxel) + 0.5) / static_cast<double>(dims[axis])));
-    }
-  }
-  ValueBox box({spans[0].count(), spans[1].count(), spans[2].count()});
-  field.evaluateGrid(axes, box.values.data());
-  for (float& value : box.values) {
-    value = NormalisedOutput(value);
-  }
-  return box;
-}
-
-/// The largest of all parts of a part, which a line may pass one after the other.
-LineErrors FindInParts(const ValueBox& fine, const ValueBox& taken, const BoxPart& whole, int power,
-                       const LineKernel& kernel)
-{
-  const glm::i64vec3 count = (whole.size + LongestPart - std::int64_t{1}) / LongestPart;
-  LineErrors errors;
-  for (std::int64_t k = 0; k < count.x * count.y * count.z; ++k) {
-    const glm::i64vec3 at = PlaceOf(k, count);
-    const glm::i64vec3 begin = at * whole.size / count;
-    const glm::i64vec3 end = (at + std::int64_t{1}) * whole.size / count;
-    const LineErrors found =
-        FindLineErrors(fine, taken, {whole.first + begin, end - begin}, power, kernel);
-    errors.sum = std::max(errors.sum, found.sum);
-    errors.magnitude = std::max(errors.magnitude, found.magnitude);
-    errors.largest = std::max(errors.largest, found.largest);
-  }
-  const auto most = static_cast<float>(std::max(count.x, std::max(count.y, count.z)));
-  return {most * errors.sum, most * errors.magnitude, errors.largest};
-}
-
-ValueBox Cut(const ValueBox& box, const BoxPart& part)
-{
-  ValueBox cut(part.size);
-  for (std::int64_t z = 0; z < part.size.z; ++z) {
-    for (std::int64_t y = 0; y < part.size.y; ++y) {
-      const float* from = &box.values[box.index(part.first.x, part.first.y + y, part.first.z + z)];
-      std::copy_n(from, part.size.x, &cut.values[cut.index(0, y, z)]);
-    }
-  }
-  return cut;
+  return powers.known >= wanted ||
+         question.isTooLarge(cell, powers.errors[static_cast<std::size_t>(powers.known)]);
 }
 
 } // namespace
 
-struct LevelErrors::Block
+/// A cell of a block.
+struct LevelErrors::Part
 {
-  glm::i64vec3 begin; ///< cells
-  glm::i64vec3 end;
+  std::int64_t cell;
+  std::size_t number; ///< in the block
   VoxelSpan seen[3];
+};
+
+struct LevelErrors::Work
+{
+  FieldWindow field;
+  const LineKernel& kernel;
+  const std::function<void()>& beforeCell;
+  std::vector<Cell> cells;
+
+  /// Errors of samples of `taken`, which has the voxels `seen`.
+  void find(const std::vector<Part>& parts, Powers Cell::*which, int power, const ValueBox& taken,
+            const VoxelSpan (&seen)[3], const Question& question)
+  {
+    const ValueBox fine = this->field.cut(seen);
+    for (const Part& part : parts) {
+      this->beforeCell();
+      const auto isTooLarge = [&](const LineErrors& errors) {
+        return question.isTooLarge(part.cell, errors);
+      };
+      const LineErrors errors =
+          FindLongLineErrors(fine, taken, {LowOf(part.seen) - LowOf(seen), SizeOf(part.seen)},
+                             power, this->kernel, isTooLarge);
+      Powers& powers = this->cells[part.number].*which;
+      powers.errors[static_cast<std::size_t>(power) - 1] = errors;
+      powers.known = isTooLarge(errors) ? power - 1 : power;
+    }
+  }
 };
 
 LevelErrors::LevelErrors(const glm::i64vec3& dims, const glm::i64vec3& cells,
@@ -107,16 +91,24 @@ LevelErrors::LevelErrors(const glm::i64vec3& dims, const glm::i64vec3& cells,
   this->Measured.resize(static_cast<std::size_t>(this->blocks()));
 }
 
+std::int64_t LevelErrors::cellsPerBlock() const
+{
+  return this->CellsPerBlock.x * this->CellsPerBlock.y * this->CellsPerBlock.z;
+}
+
 std::int64_t LevelErrors::blockCost() const
 {
   // Voxels that the coarsest level is made of, too.
-  constexpr double around = 2 * (1.25 * (1 << Coarsest) + 2 + Around);
-  double cost = 1;
+  constexpr double around = 2 * (1.25 * (1 << Coarsest) + 2 + (1 << Coarsest) / 2);
+  double asked = 1;
+  double seen = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const double voxels = static_cast<double>(this->CellsPerBlock[axis]) * this->Edge[axis];
-    cost *= std::min(voxels + around, static_cast<double>(this->Dims[axis]));
+    const auto cells = static_cast<double>(this->CellsPerBlock[axis]);
+    const auto size = static_cast<double>(this->Dims[axis]);
+    asked *= std::min(cells * this->Edge[axis] + around, size);
+    seen *= cells * std::min(this->Edge[axis] + 2, size);
   }
-  return static_cast<std::int64_t>(cost);
+  return static_cast<std::int64_t>(asked + seen);
 }
 
 std::int64_t LevelErrors::blockOf(std::int64_t cell) const
@@ -133,79 +125,105 @@ std::size_t LevelErrors::numberOf(const glm::i64vec3& within) const
 
 const LevelErrors::Cell& LevelErrors::of(std::int64_t cell) const
 {
+  static const Cell unknown;
   const glm::i64vec3 at = PlaceOf(cell, this->CellDims);
   const glm::i64vec3 block = at / this->CellsPerBlock;
   const std::int64_t number = block.x + this->BlockDims.x * (block.y + this->BlockDims.y * block.z);
-  return this->Measured[static_cast<std::size_t>(number)]
-                       [this->numberOf(at - block * this->CellsPerBlock)];
+  const std::vector<Cell>& cells = this->Measured[static_cast<std::size_t>(number)];
+  return cells.empty() ? unknown : cells[this->numberOf(at - block * this->CellsPerBlock)];
 }
 
-LevelErrors::Block LevelErrors::find(std::int64_t number) const
+bool LevelErrors::knows(std::int64_t cell, const Question& question) const
 {
-  Block block{};
-  block.begin = PlaceOf(number, this->BlockDims) * this->CellsPerBlock;
-  block.end = glm::min(block.begin + this->CellsPerBlock, this->CellDims);
-  for (int axis = 0; axis < 3; ++axis) {
-    block.seen[axis] =
-        VoxelsOf(block.begin[axis], block.end[axis], this->Edge[axis], this->Dims[axis]);
-    block.seen[axis].low = std::max<std::int64_t>(block.seen[axis].low - Around, 0);
-    block.seen[axis].high = std::min(block.seen[axis].high + Around, this->Dims[axis] - 1);
-  }
-  return block;
+  const Cell& known = this->of(cell);
+  return IsKnown(known.levels, question.levels, cell, question) &&
+         IsKnown(known.steps, question.steps, cell, question);
 }
 
-template <typename Visit>
-void LevelErrors::forEachCell(const Block& block, const Visit& visit) const
+std::int64_t LevelErrors::measuredBlocks() const
 {
-  const glm::i64vec3 count = block.end - block.begin;
+  return std::count_if(this->Measured.begin(), this->Measured.end(),
+                       [](const std::vector<Cell>& cells) { return !cells.empty(); });
+}
+
+std::vector<LevelErrors::Part> LevelErrors::partsOf(std::int64_t block) const
+{
+  const glm::i64vec3 begin = PlaceOf(block, this->BlockDims) * this->CellsPerBlock;
+  const glm::i64vec3 count = glm::min(this->CellsPerBlock, this->CellDims - begin);
+  std::vector<Part> parts;
   for (std::int64_t k = 0; k < count.x * count.y * count.z; ++k) {
     const glm::i64vec3 within = PlaceOf(k, count);
-    const glm::i64vec3 at = block.begin + within;
-    BoxPart part;
+    const glm::i64vec3 at = begin + within;
+    Part part{};
+    part.cell = at.x + this->CellDims.x * (at.y + this->CellDims.y * at.z);
+    part.number = this->numberOf(within);
     for (int axis = 0; axis < 3; ++axis) {
-      const VoxelSpan span = VoxelsOf(at[axis], at[axis] + 1, this->Edge[axis], this->Dims[axis]);
-      part.first[axis] = span.low - block.seen[axis].low;
-      part.size[axis] = span.count();
+      part.seen[axis] = VoxelsOf(at[axis], at[axis] + 1, this->Edge[axis], this->Dims[axis]);
     }
-    visit(this->numberOf(within), part);
+    parts.push_back(part);
   }
+  return parts;
 }
 
-std::int64_t LevelErrors::measure(std::int64_t number, const Evaluator& field,
-                                  const LineKernel& kernel)
+std::int64_t LevelErrors::measure(std::int64_t block, const Evaluator& field,
+                                  const LineKernel& kernel, const Question& question,
+                                  const std::function<void()>& beforeCell)
 {
-  const Block block = this->find(number);
-  std::vector<LevelResampling> levels;
-  for (int level = 1; level <= Coarsest; ++level) {
-    levels.emplace_back(block.seen, this->Dims, level);
+  std::vector<Cell>& measured = this->Measured[static_cast<std::size_t>(block)];
+  Work work{{field, this->Dims}, kernel, beforeCell, measured};
+  work.cells.resize(static_cast<std::size_t>(this->cellsPerBlock()));
+  const std::vector<Part> parts = this->partsOf(block);
+  for (int power = 1; power <= std::max(question.levels, question.steps); ++power) {
+    this->measurePower(power, parts, question, work);
   }
-  VoxelSpan needed[3];
-  glm::i64vec3 first;
-  BoxPart inner;
-  for (int axis = 0; axis < 3; ++axis) {
-    needed[axis] = block.seen[axis];
-    for (const LevelResampling& level : levels) {
-      needed[axis].low = std::min(needed[axis].low, level.needed(axis).low);
-      needed[axis].high = std::max(needed[axis].high, level.needed(axis).high);
-    }
-    first[axis] = needed[axis].low;
-    inner.first[axis] = block.seen[axis].low - first[axis];
-    inner.size[axis] = block.seen[axis].count();
-  }
-  const ValueBox around = Sampled(needed, this->Dims, field);
-  const ValueBox fine = Cut(around, inner);
-  const glm::i64vec3& most = this->CellsPerBlock;
-  std::vector<Cell> cells(static_cast<std::size_t>(most.x * most.y * most.z));
-  for (std::size_t level = 0; level < levels.size(); ++level) {
-    const ValueBox coarse = levels[level].apply(around, first);
-    this->forEachCell(block, [&](std::size_t cell, const BoxPart& part) {
-      const int power = static_cast<int>(level) + 1;
-      cells[cell].levels[level] = FindInParts(fine, coarse, part, power, kernel);
-      cells[cell].steps[level] = FindInParts(fine, fine, part, power, kernel);
+  measured = std::move(work.cells);
+  return work.field.points();
+}
+
+void LevelErrors::measurePower(int power, const std::vector<Part>& parts, const Question& question,
+                               Work& work) const
+{
+  const auto open = [&](Powers Cell::*which, int wanted) {
+    std::vector<Part> cells;
+    std::copy_if(parts.begin(), parts.end(), std::back_inserter(cells), [&](const Part& part) {
+      const Powers& powers = work.cells[part.number].*which;
+      return powers.known == power - 1 && !IsKnown(powers, wanted, part.cell, question);
     });
+    return cells;
+  };
+  const std::vector<Part> levels = open(&Cell::levels, question.levels);
+  const std::vector<Part> steps = open(&Cell::steps, question.steps);
+  if (levels.empty() && steps.empty()) {
+    return;
   }
-  this->Measured[static_cast<std::size_t>(number)] = std::move(cells);
-  return static_cast<std::int64_t>(around.values.size());
+  VoxelSpan seen[3];
+  this->findSeen({&levels, &steps}, power, seen);
+  work.field.extendTo(seen);
+  if (!levels.empty()) {
+    const LevelResampling level(seen, this->Dims, power);
+    const VoxelSpan needed[3] = {level.needed(0), level.needed(1), level.needed(2)};
+    work.field.extendTo(needed);
+    const ValueBox coarse = level.apply(work.field.cut(needed), LowOf(needed));
+    work.find(levels, &Cell::levels, power, coarse, seen, question);
+  }
+  work.find(steps, &Cell::steps, power, work.field.cut(seen), seen, question);
+}
+
+void LevelErrors::findSeen(std::initializer_list<const std::vector<Part>*> lists, int power,
+                           VoxelSpan (&seen)[3]) const
+{
+  const std::int64_t reach = (std::int64_t{1} << power) / 2; // of a sample
+  for (int axis = 0; axis < 3; ++axis) {
+    seen[axis] = {this->Dims[axis] - 1, 0};
+    for (const std::vector<Part>* parts : lists) {
+      for (const Part& part : *parts) {
+        seen[axis].low = std::min(seen[axis].low, part.seen[axis].low);
+        seen[axis].high = std::max(seen[axis].high, part.seen[axis].high);
+      }
+    }
+    seen[axis].low = std::max<std::int64_t>(seen[axis].low - reach, 0);
+    seen[axis].high = std::min(seen[axis].high + reach, this->Dims[axis] - 1);
+  }
 }
 
 } // namespace inr

@@ -8,18 +8,20 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <initializer_list>
 #include <vector>
 
 namespace inr {
 
 /// What coarser levels of a field, and samples further apart, get wrong in each of its macro-cells:
 /// a property of the field alone, of normalised values. It is measured where somebody asks, in
-/// blocks of cells.
+/// blocks of cells, and no further than they want to know.
 ///
 /// All of it is the largest of what is found along lines of voxels of level 0 through a cell, in 13
-/// directions, wherever samples may begin; through a cell of more than 16 voxels, part by part.
-/// LevelResampling says what a level is; the field is asked for nothing but voxels of level 0, and
-/// taken to be linear in between.
+/// directions, wherever samples may begin; see FindLongLineErrors. LevelResampling says what a
+/// level is; the field is asked for nothing but voxels of level 0, and taken to be linear in
+/// between.
 class LevelErrors
 {
 public:
@@ -32,35 +34,56 @@ public:
   const glm::dvec3& cellEdge() const { return this->Edge; } ///< in voxels
 
   std::int64_t blocks() const { return this->BlockDims.x * this->BlockDims.y * this->BlockDims.z; }
-  /// Voxels that measuring a block asks the field for, at most.
+  std::int64_t cellsPerBlock() const;
+  /// Voxels that measuring a block asks the field for, and those that it then looks at, at most.
   std::int64_t blockCost() const;
   std::int64_t blockOf(std::int64_t cell) const;
 
-  /// Blocks may be measured on several threads at once, each of them on one. How many points the
-  /// field was asked for.
-  std::int64_t measure(std::int64_t block, const Evaluator& field, const LineKernel& kernel);
-  bool isMeasured(std::int64_t block) const
+  /// Errors of 2, 4, ... times fewer samples, in normalised values.
+  struct Powers
   {
-    return !this->Measured[static_cast<std::size_t>(block)].empty();
-  }
-
-  /// In normalised values.
+    std::array<LineErrors, Coarsest> errors; ///< of those not known: at least so much
+    int known = 0;
+  };
   struct Cell
   {
-    std::array<LineErrors, Coarsest>
-        levels;                             ///< of samples of level l = 1, 2, ..., 2^l voxels apart
-    std::array<LineErrors, Coarsest> steps; ///< of level 0, 2, 4, ... voxels apart
+    Powers levels; ///< of samples of level l = 1, 2, ..., 2^l voxels apart
+    Powers steps;  ///< of level 0, 2, 4, ... voxels apart
   };
-  /// Of one in a measured block.
   const Cell& of(std::int64_t cell) const;
 
+  /// What somebody wants to know: of each cell up to so many powers of levels and of steps, but
+  /// none after the first that is too large.
+  struct Question
+  {
+    int levels;
+    int steps;
+    /// Says yes of errors that are larger, too. Called on any thread.
+    std::function<bool(std::int64_t cell, const LineErrors&)> isTooLarge;
+  };
+  /// Whether no more has to be measured.
+  bool knows(std::int64_t cell, const Question& question) const;
+
+  /// Measures what is not known of a block's cells. Blocks may be measured on several threads at
+  /// once, each of them on one. `beforeCell` may throw, to end that with nothing changed. How many
+  /// points the field was asked for.
+  std::int64_t measure(std::int64_t block, const Evaluator& field, const LineKernel& kernel,
+                       const Question& question, const std::function<void()>& beforeCell);
+  void forget(std::int64_t block) { this->Measured[static_cast<std::size_t>(block)] = {}; }
+  std::int64_t measuredBlocks() const;
+
 private:
+  struct Part;
+  struct Work;
+
   /// Of a cell in its block.
   std::size_t numberOf(const glm::i64vec3& within) const;
-  struct Block;
-  Block find(std::int64_t block) const;
-  /// Calls `visit` with the number of a cell in its block and with its voxels.
-  template <typename Visit> void forEachCell(const Block& block, const Visit& visit) const;
+  std::vector<Part> partsOf(std::int64_t block) const;
+  void measurePower(int power, const std::vector<Part>& parts, const Question& question,
+                    Work& work) const;
+  /// Voxels that samples in any of these cells may be taken for.
+  void findSeen(std::initializer_list<const std::vector<Part>*> lists, int power,
+                VoxelSpan (&seen)[3]) const;
 
   glm::i64vec3 Dims; ///< voxels
   glm::i64vec3 CellDims;

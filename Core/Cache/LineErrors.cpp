@@ -193,13 +193,18 @@ private:
 const LineKernel& LineKernelFor(InstructionSet set) { return INR_KERNEL_FOR(set, Lines); }
 
 LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const BoxPart& part,
-                          int power, const LineKernel& kernel)
+                          int power, const LineKernel& kernel, const IsTooLarge& isTooLarge)
 {
   LineErrors errors;
   for (const auto& way : Ways) {
-    LineSweep(fine, taken, part, way, power, Phase::OnVoxels, kernel).addTo(errors);
-    if (LineSweep::VoxelsTogether(way, power) > 1) { // or else they are means of those
-      LineSweep(fine, taken, part, way, power, Phase::BetweenVoxels, kernel).addTo(errors);
+    for (const Phase phase : {Phase::OnVoxels, Phase::BetweenVoxels}) {
+      if (phase == Phase::BetweenVoxels && LineSweep::VoxelsTogether(way, power) == 1) {
+        continue; // they are means of those
+      }
+      LineSweep(fine, taken, part, way, power, phase, kernel).addTo(errors);
+      if (isTooLarge(errors)) {
+        return errors;
+      }
     }
   }
   return errors;

@@ -17,6 +17,15 @@ struct VoxelSpan
   std::int64_t count() const { return this->high - this->low + 1; }
 };
 
+inline glm::i64vec3 LowOf(const VoxelSpan (&spans)[3])
+{
+  return {spans[0].low, spans[1].low, spans[2].low};
+}
+inline glm::i64vec3 SizeOf(const VoxelSpan (&spans)[3])
+{
+  return {spans[0].count(), spans[1].count(), spans[2].count()};
+}
+
 /// A box of values, x fastest.
 struct ValueBox
 {
@@ -32,6 +41,8 @@ struct ValueBox
   {
     return axis == 0 ? 1 : axis == 1 ? this->size.x : this->size.x * this->size.y;
   }
+
+  std::int64_t count() const { return this->size.x * this->size.y * this->size.z; }
 
   glm::i64vec3 size;
   std::vector<float> values;

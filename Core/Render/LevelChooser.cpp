@@ -87,7 +87,7 @@ LevelChooser::LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i6
       LongestEdge(LargestOf(this->Errors.cellEdge())),
       Slopes(static_cast<std::size_t>(cells.count())),
       Allowed(new std::atomic<std::uint8_t>[static_cast<std::size_t>(cells.count())]),
-      Wanted(new std::atomic<std::uint8_t>[static_cast<std::size_t>(this->Errors.blocks())]),
+      Needs(new std::atomic<std::uint8_t>[static_cast<std::size_t>(this->Errors.blocks())]),
       Sampling(static_cast<std::size_t>(cells.count()))
 {}
 
@@ -105,15 +105,16 @@ bool LevelChooser::choose(const Wish& wish, const View& view, const Majorants& m
     this->findSlopes(majorants.grid(0), colors, arena);
   }
   this->sendRays(view, majorants, arena);
-  const std::vector<std::int64_t> wanted = this->wantedBlocks();
-  const bool measures = std::any_of(wanted.begin(), wanted.end(), [this](std::int64_t block) {
-    return !this->Errors.isMeasured(block);
-  });
-  this->UsesMeasured = !this->areTooMany(wanted);
-  if (this->UsesMeasured && measures && !this->measure(wanted, arena, limit, keepGoing)) {
-    return false;
+  const std::vector<std::int64_t> seen = this->blocksWith(Seen);
+  const std::vector<std::int64_t> left = this->blocksWith(NotKnown);
+  this->UsesMeasured = !this->areTooMany(static_cast<std::int64_t>(seen.size()));
+  if (this->UsesMeasured && !left.empty()) {
+    this->forgetOthersThan(seen);
+    if (!this->measure(left, majorants.grid(0), arena, limit, keepGoing)) {
+      return false;
+    }
   }
-  if (measures || !this->UsesMeasured) {
+  if (!left.empty() || !this->UsesMeasured) {
     this->sendRays(view, majorants, arena);
   }
   this->chooseLevels(majorants.grid(0), arena);
@@ -149,7 +150,7 @@ void LevelChooser::findSlopes(const MajorantGrid& cells, const ColorLookup& colo
 void LevelChooser::sendRays(const View& view, const Majorants& majorants, const Arena& arena)
 {
   Clear(this->Allowed, static_cast<std::int64_t>(this->Sampling.size()));
-  Clear(this->Wanted, this->Errors.blocks());
+  Clear(this->Needs, this->Errors.blocks());
   const PixelGrid all({0, 0}, {view.width, view.height});
   glm::ivec2 low(view.width, view.height);
   glm::ivec2 high(-1);
@@ -182,6 +183,7 @@ void LevelChooser::follow(const Ray& ray, const Majorants& majorants, RayWalk& w
   walk.sums.fill(0.0);
   walk.cells.clear();
   const MajorantGrid& grid = majorants.grid(0);
+  const LevelErrors::Question question = this->question(grid);
   CellWalker cells(majorants, this->Dims, ray, 0.0, 1);
   cells.moveTo(0);
   const double stepsPerVoxel = 1.0 / (this->Given.step * glm::length(ray.direction));
@@ -203,11 +205,11 @@ void LevelChooser::follow(const Ray& ray, const Majorants& majorants, RayWalk& w
       const CellError& error = errors[static_cast<std::size_t>(number)];
       walk.sums[k] += light * std::min(stepsPerVoxel * error.all, crossing * error.step);
     }
-    const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
-    if (LargestError(slopes, grid.range(cell)) > this->LeastError && std::isfinite(slopes.half)) {
-      this->Wanted[static_cast<std::size_t>(this->Errors.blockOf(cell))] = 1;
+    if (this->canMatter(cell, grid.range(cell))) {
+      Raise(this->Needs[static_cast<std::size_t>(this->Errors.blockOf(cell))],
+            this->Errors.knows(cell, question) ? Seen : NotKnown);
     }
-    light *= std::exp(-steps * slopes.depth);
+    light *= std::exp(-steps * this->Slopes[static_cast<std::size_t>(cell)].depth);
     t = exit;
     if (t < ray.length) {
       cells.moveTo(t);
@@ -221,29 +223,60 @@ void LevelChooser::follow(const Ray& ray, const Majorants& majorants, RayWalk& w
   }
 }
 
-std::vector<std::int64_t> LevelChooser::wantedBlocks() const
+bool LevelChooser::canMatter(std::int64_t cell, const ValueRange& range) const
+{
+  const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
+  return LargestError(slopes, range) > this->LeastError && std::isfinite(slopes.half);
+}
+
+LevelErrors::Question LevelChooser::question(const MajorantGrid& cells) const
+{
+  return {this->Coarsest, this->Apart.back(),
+          [this, &cells](std::int64_t cell, const LineErrors& lines) {
+            const ValueRange range = cells.range(cell);
+            const double most = LargestError(this->Slopes[static_cast<std::size_t>(cell)], range);
+            return !this->canMatter(cell, range) ||
+                   !(this->errorOf(cell, lines, most).perStep <= this->Limits[0]);
+          }};
+}
+
+std::vector<std::int64_t> LevelChooser::blocksWith(Need need) const
 {
   std::vector<std::int64_t> blocks;
   for (std::int64_t block = 0; block < this->Errors.blocks(); ++block) {
-    if (this->Wanted[static_cast<std::size_t>(block)] != 0) {
+    if (this->Needs[static_cast<std::size_t>(block)] >= need) {
       blocks.push_back(block);
     }
   }
   return blocks;
 }
 
-bool LevelChooser::areTooMany(const std::vector<std::int64_t>& blocks) const
+bool LevelChooser::areTooMany(std::int64_t blocks) const
 {
   const std::int64_t cost = this->Errors.blockCost();
-  return cost > LargestBlock || static_cast<std::int64_t>(blocks.size()) > MostVoxels / cost;
+  return cost > LargestBlock || blocks > MostVoxels / cost ||
+         blocks > MostCells / this->Errors.cellsPerBlock();
 }
 
-bool LevelChooser::measure(const std::vector<std::int64_t>& blocks, const Arena& arena,
-                           const WorkLimit& limit, const std::function<bool()>& keepGoing)
+void LevelChooser::forgetOthersThan(const std::vector<std::int64_t>& seen)
 {
-  std::vector<std::int64_t> left;
-  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(left),
-               [this](std::int64_t block) { return !this->Errors.isMeasured(block); });
+  const std::int64_t blocks =
+      this->Errors.measuredBlocks() + static_cast<std::int64_t>(seen.size());
+  if (blocks <= MostCells / this->Errors.cellsPerBlock()) {
+    return;
+  }
+  for (std::int64_t block = 0; block < this->Errors.blocks(); ++block) {
+    if (!std::binary_search(seen.begin(), seen.end(), block)) {
+      this->Errors.forget(block);
+    }
+  }
+}
+
+bool LevelChooser::measure(const std::vector<std::int64_t>& left, const MajorantGrid& cells,
+                           const Arena& arena, const WorkLimit& limit,
+                           const std::function<bool()>& keepGoing)
+{
+  const LevelErrors::Question question = this->question(cells);
   const auto count = static_cast<std::int64_t>(left.size());
   const std::int64_t round = limit.isTimed() ? arena.threads() : count;
   for (std::int64_t first = 0; first < count; first += round) {
@@ -254,7 +287,7 @@ bool LevelChooser::measure(const std::vector<std::int64_t>& blocks, const Arena&
     std::atomic<std::int64_t> points{0};
     ForEachTile(arena, std::min(round, count - first), keepGoing, [&](std::int64_t k) {
       points += this->Errors.measure(left[static_cast<std::size_t>(first + k)], *this->Field,
-                                     this->Kernel);
+                                     this->Kernel, question, [&] { RequireGoing(keepGoing); });
     });
     this->Points += points;
     if (round < count) {
@@ -281,43 +314,50 @@ void LevelChooser::chooseLevels(const MajorantGrid& cells, const Arena& arena)
 LevelChooser::CellErrors LevelChooser::errorsOf(std::int64_t cell, const ValueRange& range) const
 {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
-  const double most = std::isfinite(slopes.half) ? LargestError(slopes, range) : infinite;
+  const bool isBounded = std::isfinite(this->Slopes[static_cast<std::size_t>(cell)].half);
+  const double most =
+      isBounded ? LargestError(this->Slopes[static_cast<std::size_t>(cell)], range) : infinite;
   CellErrors errors;
   errors.fill({infinite, most, most});
   for (int power = this->Coarsest + 1; power <= LargestCellPower; ++power) { // no such level
     errors[static_cast<std::size_t>(Choices - 2 * power)] = {infinite, infinite, infinite};
   }
   // What a picture shows must not depend on what others had measured.
-  if (most <= this->LeastError || most == infinite || !this->UsesMeasured ||
-      !this->Errors.isMeasured(this->Errors.blockOf(cell))) {
+  if (!this->UsesMeasured || !this->canMatter(cell, range)) {
     return errors;
   }
   const LevelErrors::Cell& lines = this->Errors.of(cell);
-  CellError level; // fewer samples are not trusted to be better
+  const auto errorOf = [&](const LevelErrors::Powers& powers, int power, const CellError& less) {
+    if (power > powers.known) {
+      return CellError{infinite, infinite, infinite};
+    }
+    const CellError error =
+        this->errorOf(cell, powers.errors[static_cast<std::size_t>(power - 1)], most);
+    // Fewer samples are not trusted to be better.
+    return CellError{std::max(less.all, error.all), std::max(less.step, error.step),
+                     std::max(less.perStep, error.perStep)};
+  };
+  CellError level;
   CellError full;
   for (int power = 1; power <= LargestCellPower; ++power) {
     const auto number = static_cast<std::size_t>(Choices - 2 * power);
     if (power <= this->Coarsest) {
-      level = this->errorOf(slopes, lines.levels[static_cast<std::size_t>(power - 1)], most, level);
+      level = errorOf(lines.levels, power, level);
       errors[number] = level;
     }
-    const auto apart = static_cast<std::size_t>(this->Apart[static_cast<std::size_t>(power - 1)]);
-    full = this->errorOf(slopes, lines.steps[apart - 1], most, full);
+    full = errorOf(lines.steps, this->Apart[static_cast<std::size_t>(power - 1)], full);
     errors[number + 1] = full;
   }
   return errors;
 }
 
-LevelChooser::CellError LevelChooser::errorOf(const ColorSensitivity::Slopes& slopes,
-                                              const LineErrors& lines, double most,
-                                              const CellError& least) const
+LevelChooser::CellError LevelChooser::errorOf(std::int64_t cell, const LineErrors& lines,
+                                              double most) const
 {
-  const double all = slopes.middle * lines.sum + slopes.half * lines.magnitude;
-  const double step = (slopes.middle + slopes.half) * lines.largest;
+  const ColorSensitivity::Slopes& slopes = this->Slopes[static_cast<std::size_t>(cell)];
   CellError error;
-  error.all = std::max(least.all, all);
-  error.step = std::min(most, std::max(least.step, step));
+  error.all = slopes.middle * lines.sum + slopes.half * lines.magnitude;
+  error.step = std::min(most, double{(slopes.middle + slopes.half) * lines.largest});
   error.perStep = std::min(error.step, error.all / this->LongestEdge);
   return error;
 }

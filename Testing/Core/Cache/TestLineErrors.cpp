@@ -12,6 +12,8 @@
 
 namespace {
 
+bool Never(const inr::LineErrors&) { return false; }
+
 inr::ValueBox RandomBox(const glm::i64vec3& size, std::uint64_t seed)
 {
   inr::ValueBox box(size);
@@ -119,7 +121,7 @@ TEST(LineErrors, AreTheLargestOfAllLines)
     for (const int power : {1, 2, 3}) {
       const Lines lines{fine, taken, part, power};
       const inr::LineErrors expected = LineByLine(lines);
-      const inr::LineErrors found = inr::FindLineErrors(fine, taken, part, power, kernel);
+      const inr::LineErrors found = inr::FindLineErrors(fine, taken, part, power, kernel, Never);
       EXPECT_NEAR(found.sum, expected.sum, 2e-5) << power << " " << part.size.z;
       EXPECT_NEAR(found.magnitude, expected.magnitude, 5e-5) << power << " " << part.size.z;
       EXPECT_NEAR(found.largest, expected.largest, 1e-6) << power << " " << part.size.z;
@@ -135,7 +137,7 @@ TEST(LineErrors, EndWhereThePartDoes)
   inr::ValueBox taken(size);
   std::fill(taken.values.begin(), taken.values.end(), 1.0f);
   const inr::LineErrors errors = inr::FindLineErrors(
-      fine, taken, {{0, 0, 0}, size}, 1, inr::LineKernelFor(inr::InstructionSet::Baseline));
+      fine, taken, {{0, 0, 0}, size}, 1, inr::LineKernelFor(inr::InstructionSet::Baseline), Never);
   EXPECT_FLOAT_EQ(errors.sum, 20.0f); // along z; a diagonal of four is 7 long
 }
 
