@@ -16,11 +16,41 @@ namespace inr {
 
 namespace {
 
-constexpr int Ways[13][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {-1, 1, 0},
-                             {1, 0, 1},  {-1, 0, 1}, {0, 1, 1},  {0, -1, 1}, {1, 1, 1},
-                             {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
+/// Ways that go up along z, and those in its slices along y; but for these there is the one along
+/// x.
+const std::vector<glm::i64vec3> WaysUp[2] = {{{0, 0, 1},
+                                              {0, 1, 1},
+                                              {0, -1, 1},
+                                              {1, 0, 1},
+                                              {-1, 0, 1},
+                                              {1, 1, 1},
+                                              {-1, 1, 1},
+                                              {1, -1, 1},
+                                              {-1, -1, 1}},
+                                             {{0, 1, 0}, {1, 1, 0}, {-1, 1, 0}}};
 
-int LastAxis(const int (&way)[3]) { return way[2] != 0 ? 2 : way[1] != 0 ? 1 : 0; }
+/// Where samples are.
+enum class Phase { OnVoxels, BetweenVoxels };
+
+/// Samples of one kind along lines of one way, which go up along the axis of the slices.
+struct Sampling
+{
+  Sampling(const glm::i64vec3& way, int power, Phase phase)
+      : way(way), phase(phase), together(std::int64_t{1} << power)
+  {
+    if (std::abs(way.x) + std::abs(way.y) + std::abs(way.z) > 1) {
+      this->together /= 2; // where voxels are further apart
+    }
+  }
+  bool isBetween() const { return this->phase == Phase::BetweenVoxels; }
+  /// Voxels behind a sample that it is taken for.
+  std::int64_t behind() const { return this->together / 2; }
+  std::int64_t before() const { return this->behind() - (this->isBetween() ? 1 : 0); }
+
+  glm::i64vec3 way;
+  Phase phase;
+  std::int64_t together; ///< voxels that one is taken for
+};
 
 /// A number for each line that passes a slice, with room around: lines come from up to Margin rows
 /// and columns further. All rows make one array, which is what the kernels make vectors of.
@@ -37,6 +67,7 @@ public:
   float* row(std::int64_t number) { return this->begin() + number * this->Pitch; }
   std::int64_t pitch() const { return this->Pitch; }
   std::int64_t count() const { return this->Count; }
+  void clear() { std::fill(this->Numbers.begin(), this->Numbers.end(), 0.0f); }
   float largest() const { return *std::max_element(this->Numbers.begin(), this->Numbers.end()); }
 
 private:
@@ -45,49 +76,41 @@ private:
   std::vector<float> Numbers;
 };
 
-/// Where samples are.
-enum class Phase { OnVoxels, BetweenVoxels };
-
-/// All lines that go the same way, side by side, slice by slice along the last axis that they go
-/// along. What a sample is taken for may begin at any slice: samples at slice k go on at k + n, so
-/// that of each n slices' sums one belongs to every place where the first may be.
+/// All lines that go the same way, side by side, slice by slice along y or z. What a sample is
+/// taken for may begin at any slice: samples at slice k go on at k + n, so that of each n slices'
+/// sums one belongs to every place where the first may be.
 class LineSweep
 {
 public:
-  LineSweep(const ValueBox& fine, const ValueBox& taken, const BoxPart& part, const int (&way)[3],
-            int power, Phase phase, const LineKernel& kernel)
-      : Kernel(kernel), Fine(fine), Taken(taken), Part(part), Way(way[0], way[1], way[2]),
-        Length(glm::length(glm::dvec3(this->Way))), Together(VoxelsTogether(way, power)),
-        Place(phase), Main(LastAxis(way)), Inner(this->Main == 0 ? 1 : 0),
-        Outer(3 - this->Main - this->Inner), Across(part.size[this->Inner]),
-        Down(part.size[this->Outer]), Errors(this->Across, this->Down), Amounts(this->Errors),
-        Inside(this->Errors), Sums(this->Errors), Magnitudes(this->Errors), Largest(this->Errors)
+  LineSweep(const ValueBox& fine, const ValueBox& taken, const BoxPart& part, int axis,
+            const LineKernel& kernel)
+      : Kernel(kernel), Fine(fine), Taken(taken), Part(part), Main(axis), Outer(3 - axis),
+        Across(part.size.x), Down(part.size[this->Outer]), Errors(this->Across, this->Down),
+        Amounts(this->Errors), Inside(this->Errors), Sums(this->Errors), Magnitudes(this->Errors),
+        Largest(this->Errors), Before{this->Errors, this->Errors, this->Errors}
   {
     for (std::int64_t row = 0; row < this->Down; ++row) {
       std::fill_n(this->Inside.row(row), this->Across, 1.0f);
     }
   }
 
-  /// Along diagonals, where voxels are further apart, half as many.
-  static std::int64_t VoxelsTogether(const int (&way)[3], int power)
+  void addTo(LineErrors& errors, const Sampling& sampling)
   {
-    const int axes = std::abs(way[0]) + std::abs(way[1]) + std::abs(way[2]);
-    return (std::int64_t{1} << power) / (axes > 1 ? 2 : 1);
-  }
-
-  void addTo(LineErrors& errors)
-  {
-    const State none{this->Sums, this->Sums, this->Sums};
-    std::vector<State> states(static_cast<std::size_t>(this->Together) + 1, none);
-    for (std::int64_t slice = 0; slice < this->Part.size[this->Main]; ++slice) {
-      for (std::int64_t row = 0; row < this->Down; ++row) {
-        this->findErrors(slice, row);
-      }
-      const auto count = static_cast<std::int64_t>(states.size());
-      this->add(states[static_cast<std::size_t>((slice + 1) % count)], // of slice - Together
-                states[static_cast<std::size_t>(slice % count)]);
+    for (Slice* slice : {&this->Sums, &this->Magnitudes, &this->Largest}) {
+      slice->clear();
     }
-    const auto length = static_cast<float>(this->Length);
+    const auto count = static_cast<std::size_t>(sampling.together) + 1;
+    while (this->States.size() < count) { // what is around the lines stays 0
+      this->States.push_back(this->Before);
+    }
+    for (std::int64_t slice = 0; slice < this->Part.size[this->Main]; ++slice) {
+      this->findErrors(sampling, slice);
+      const auto now = static_cast<std::size_t>(slice) % count;
+      const std::size_t last = (now + 1) % count; // of that many slices before
+      this->add(sampling, slice < sampling.together ? this->Before : this->States[last],
+                this->States[now]);
+    }
+    const auto length = static_cast<float>(glm::length(glm::dvec3(sampling.way)));
     errors.sum = std::max(errors.sum, length * this->Sums.largest());
     errors.magnitude = std::max(errors.magnitude, length * this->Magnitudes.largest());
     errors.largest = std::max(errors.largest, this->Largest.largest());
@@ -103,63 +126,56 @@ private:
     Slice magnitude;
   };
 
-  /// Of samples at a row of voxels in a slice, or half-way from there to the next: of all that each
-  /// is taken for. None where that is not in the box: at the volume's ends rays have no such
-  /// sample.
-  void findErrors(std::int64_t slice, std::int64_t row)
+  /// Of samples at the voxels of a slice, or half-way from there to the next: of all that each is
+  /// taken for. None where that is not in the box: at the volume's ends rays have no such sample.
+  void findErrors(const Sampling& sampling, std::int64_t slice)
   {
-    const bool between = this->Place == Phase::BetweenVoxels;
     glm::i64vec3 at = this->Part.first;
     at[this->Main] += slice;
-    at[this->Outer] += row;
-    const std::int64_t before = between ? this->Together / 2 - 1 : this->Together / 2;
-    const std::int64_t behind = this->Together / 2;
-    const auto [begin, end] = this->inside(at - before * this->Way, at + behind * this->Way);
-    float* errors = this->Errors.row(row);
-    float* amounts = this->Amounts.row(row);
-    std::fill_n(errors, this->Across, 0.0f);
-    std::fill_n(amounts, this->Across, 0.0f);
-    if (begin == end) {
+    const glm::i64vec3 before = -sampling.before() * sampling.way;
+    const glm::i64vec3 behind = sampling.behind() * sampling.way;
+    const auto [left, right] = this->inside(0, at.x, this->Across, before.x, behind.x);
+    const auto [top, bottom] = this->inside(this->Outer, at[this->Outer], this->Down,
+                                            before[this->Outer], behind[this->Outer]);
+    const auto [here, there] =
+        this->inside(this->Main, at[this->Main], 1, before[this->Main], behind[this->Main]);
+    if ((right - left) * (bottom - top) * (there - here) < this->Across * this->Down) {
+      this->Errors.clear();
+      this->Amounts.clear();
+    }
+    if (left == right || top == bottom || here == there) {
       return;
     }
-    const std::size_t here = this->Fine.index(at.x, at.y, at.z);
-    const std::int64_t step = this->Way.x * this->Fine.stride(0) +
-                              this->Way.y * this->Fine.stride(1) +
-                              this->Way.z * this->Fine.stride(2);
-    const LineSamples samples{&this->Taken.values[here],
-                              &this->Taken.values[here] + (between ? step : 0),
-                              &this->Fine.values[here],
-                              this->Fine.stride(this->Inner),
-                              errors,
-                              amounts,
-                              this->Largest.row(row)};
-    for (std::int64_t k = -before; k <= behind; ++k) {
-      const bool isEnd = !between && this->Together > 1 && std::abs(k) == behind;
-      this->Kernel.compare(samples, k * step, isEnd ? 0.5f : 1.0f, begin, end);
-    }
+    at.x += left;
+    at[this->Outer] += top;
+    const std::int64_t step = sampling.way.x * this->Fine.stride(0) +
+                              sampling.way.y * this->Fine.stride(1) +
+                              sampling.way.z * this->Fine.stride(2);
+    const float* sample = &this->Taken.values[this->Taken.index(at.x, at.y, at.z)];
+    const glm::i64vec3 first = at + before;
+    this->Kernel.compare(
+        {sample, sample + (sampling.isBetween() ? step : 0),
+         &this->Fine.values[this->Fine.index(first.x, first.y, first.z)], step,
+         this->Fine.stride(this->Outer), this->Errors.row(top) + left,
+         this->Amounts.row(top) + left, this->Largest.row(top) + left, this->Errors.pitch()},
+        static_cast<int>(sampling.before() + sampling.behind() + 1), bottom - top, right - left);
   }
 
-  /// Which of a row have all that in the box: places from `first` to `last`.
-  std::pair<std::int64_t, std::int64_t> inside(const glm::i64vec3& first,
-                                               const glm::i64vec3& last) const
+  /// Which of `count` places from `first` on along an axis have those between `low` and `high` of
+  /// them, or the other way round, in the box.
+  std::pair<std::int64_t, std::int64_t> inside(int axis, std::int64_t first, std::int64_t count,
+                                               std::int64_t low, std::int64_t high) const
   {
-    const glm::i64vec3 low = glm::min(first, last);
-    const glm::i64vec3 high = glm::max(first, last);
-    const glm::i64vec3& size = this->Fine.size;
-    if (low[this->Main] < 0 || high[this->Main] >= size[this->Main] || low[this->Outer] < 0 ||
-        high[this->Outer] >= size[this->Outer]) {
-      return {0, 0};
-    }
-    const std::int64_t begin = std::clamp<std::int64_t>(-low[this->Inner], 0, this->Across);
+    const std::int64_t begin = std::clamp<std::int64_t>(-std::min(low, high) - first, 0, count);
     const std::int64_t end =
-        std::clamp<std::int64_t>(size[this->Inner] - high[this->Inner], begin, this->Across);
+        std::clamp<std::int64_t>(this->Fine.size[axis] - std::max(low, high) - first, begin, count);
     return {begin, end};
   }
 
-  void add(State& last, State& next)
+  void add(const Sampling& sampling, State& last, State& next)
   {
     const std::int64_t back =
-        this->Together * (this->Way[this->Inner] + this->Way[this->Outer] * this->Errors.pitch());
+        sampling.together * (sampling.way.x + sampling.way[this->Outer] * this->Errors.pitch());
     this->Kernel.add({this->Errors.begin(), this->Amounts.begin(), this->Inside.begin(),
                       last.rise.begin() - back, last.fall.begin() - back,
                       last.magnitude.begin() - back, next.rise.begin(), next.fall.begin(),
@@ -171,13 +187,8 @@ private:
   const ValueBox& Fine;
   const ValueBox& Taken;
   BoxPart Part;
-  glm::i64vec3 Way;
-  double Length;         ///< of it, in voxels
-  std::int64_t Together; ///< voxels that one sample is taken for
-  Phase Place;
-  int Main;  ///< axis of the slices
-  int Inner; ///< of the rows in them
-  int Outer;
+  int Main;  ///< axis of the slices; rows in them go along x
+  int Outer; ///< of the rows
   std::int64_t Across;
   std::int64_t Down;
   Slice Errors;     ///< of samples of a slice
@@ -186,7 +197,54 @@ private:
   Slice Sums;       ///< the largest, of lines up to any slice
   Slice Magnitudes; ///< the same
   Slice Largest;
+  State Before; ///< all samples: 0
+  std::vector<State> States;
 };
+
+/// What samples of a part along x are taken for, with x and y changed about: memory is read in
+/// rows.
+struct Turned
+{
+  Turned(const ValueBox& fine, const ValueBox& taken, const BoxPart& part, int power)
+      : fine(glm::i64vec3(0)), taken(this->fine)
+  {
+    const std::int64_t reach = (std::int64_t{1} << power) / 2;
+    BoxPart around = part;
+    around.first.x = std::max<std::int64_t>(part.first.x - reach, 0);
+    around.size.x = std::min(part.first.x + part.size.x + reach, fine.size.x) - around.first.x;
+    this->part = {{0, part.first.x - around.first.x, 0}, {part.size.y, part.size.x, part.size.z}};
+    this->fine = turn(fine, around);
+    this->taken = turn(taken, around);
+  }
+
+  static ValueBox turn(const ValueBox& box, const BoxPart& part)
+  {
+    ValueBox turned({part.size.y, part.size.x, part.size.z});
+    for (std::int64_t z = 0; z < part.size.z; ++z) {
+      for (std::int64_t y = 0; y < part.size.y; ++y) {
+        const float* row = &box.values[box.index(part.first.x, part.first.y + y, part.first.z + z)];
+        for (std::int64_t x = 0; x < part.size.x; ++x) {
+          turned.values[turned.index(y, x, z)] = row[x];
+        }
+      }
+    }
+    return turned;
+  }
+
+  ValueBox fine;
+  ValueBox taken;
+  BoxPart part;
+};
+
+/// On voxels and between them.
+void SweepBoth(LineSweep& sweep, const glm::i64vec3& way, int power, LineErrors& errors)
+{
+  sweep.addTo(errors, Sampling(way, power, Phase::OnVoxels));
+  const Sampling between(way, power, Phase::BetweenVoxels);
+  if (between.together > 1) { // or else they are means of those
+    sweep.addTo(errors, between);
+  }
+}
 
 } // namespace
 
@@ -196,17 +254,18 @@ LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const Box
                           int power, const LineKernel& kernel, const IsTooLarge& isTooLarge)
 {
   LineErrors errors;
-  for (const auto& way : Ways) {
-    for (const Phase phase : {Phase::OnVoxels, Phase::BetweenVoxels}) {
-      if (phase == Phase::BetweenVoxels && LineSweep::VoxelsTogether(way, power) == 1) {
-        continue; // they are means of those
-      }
-      LineSweep(fine, taken, part, way, power, phase, kernel).addTo(errors);
+  for (const int axis : {2, 1}) { // the last that ways go along
+    LineSweep sweep(fine, taken, part, axis, kernel);
+    for (const glm::i64vec3& way : WaysUp[2 - axis]) {
+      SweepBoth(sweep, way, power, errors);
       if (isTooLarge(errors)) {
         return errors;
       }
     }
   }
+  const Turned turned(fine, taken, part, power);
+  LineSweep sweep(turned.fine, turned.taken, turned.part, 1, kernel);
+  SweepBoth(sweep, {0, 1, 0}, power, errors);
   return errors;
 }
 

@@ -10,31 +10,81 @@ namespace {
 
 float Larger(float a, float b) { return a > b ? a : b; }
 
-/// One stride is what nearly all rows have, which the compiler has to be told.
-template <bool Contiguous>
-void CompareRow(const float* __restrict first, const float* __restrict second,
-                const float* __restrict fine, std::int64_t stride, float weight,
-                float* __restrict errors, float* __restrict amounts, float* __restrict largest,
-                std::int64_t count)
+/// Rows are short: their last vectors overlap the ones before, as nothing is slower than the rest
+/// of a loop.
+constexpr std::int64_t Together = 16;
+
+template <int Values, std::int64_t Count>
+void CompareSome(const float* __restrict first, const float* __restrict second,
+                 const float* __restrict fine, std::int64_t step, float* __restrict errors,
+                 float* __restrict amounts, float* __restrict largest)
 {
-  for (std::int64_t k = 0; k < count; ++k) {
-    const std::int64_t at = Contiguous ? k : k * stride;
-    const float error = 0.5f * (first[at] + second[at]) - fine[at];
-    const float magnitude = error < 0.0f ? -error : error;
-    errors[k] += weight * error;
-    amounts[k] += weight * magnitude;
-    largest[k] = Larger(magnitude, largest[k]);
+  for (std::int64_t k = 0; k < Count; ++k) {
+    const float sample = 0.5f * (first[k] + second[k]);
+    float sum = 0.0f;
+    float amount = 0.0f;
+    float most = largest[k];
+#pragma GCC unroll 9
+    for (int value = 0; value < Values; ++value) {
+      const bool isEnd = Values > 1 && Values % 2 == 1 && (value == 0 || value == Values - 1);
+      const float weight = isEnd ? 0.5f : 1.0f;
+      const float error = sample - fine[k + value * step];
+      const float magnitude = error < 0.0f ? -error : error;
+      sum += weight * error;
+      amount += weight * magnitude;
+      most = Larger(magnitude, most);
+    }
+    errors[k] = sum;
+    amounts[k] = amount;
+    largest[k] = most;
   }
 }
 
-void Compare(const LineSamples& samples, std::int64_t offset, float weight, std::int64_t begin,
-             std::int64_t end)
+template <int Values, std::int64_t Count>
+void CompareFrom(const LineSamples& samples, std::int64_t row, std::int64_t begin)
 {
-  const std::int64_t from = begin * samples.stride;
-  const auto compare = samples.stride == 1 ? CompareRow<true> : CompareRow<false>;
-  compare(samples.first + from, samples.second + from, samples.fine + from + offset, samples.stride,
-          weight, samples.errors + begin, samples.amounts + begin, samples.largest + begin,
-          end - begin);
+  const std::int64_t from = row * samples.pitch + begin;
+  const std::int64_t to = row * samples.nextRow + begin;
+  CompareSome<Values, Count>(samples.first + from, samples.second + from, samples.fine + from,
+                             samples.step, samples.errors + to, samples.amounts + to,
+                             samples.largest + to);
+}
+
+template <int Values>
+void CompareRows(const LineSamples& samples, std::int64_t rows, std::int64_t count)
+{
+  for (std::int64_t row = 0; row < rows; ++row) {
+    if (count < Together) {
+      for (std::int64_t k = 0; k < count; ++k) {
+        CompareFrom<Values, 1>(samples, row, k);
+      }
+      continue;
+    }
+    for (std::int64_t k = 0; k + Together < count; k += Together) {
+      CompareFrom<Values, Together>(samples, row, k);
+    }
+    CompareFrom<Values, Together>(samples, row, count - Together);
+  }
+}
+
+void Compare(const LineSamples& samples, int values, std::int64_t rows, std::int64_t count)
+{
+  switch (values) {
+  case 1:
+    return CompareRows<1>(samples, rows, count);
+  case 2:
+    return CompareRows<2>(samples, rows, count);
+  case 3:
+    return CompareRows<3>(samples, rows, count);
+  case 4:
+    return CompareRows<4>(samples, rows, count);
+  case 5:
+    return CompareRows<5>(samples, rows, count);
+  case 8:
+    return CompareRows<8>(samples, rows, count);
+  case 9:
+    return CompareRows<9>(samples, rows, count);
+  }
 }
 
 /// The largest sums of errors, or of their opposites, that end somewhere on a line.

@@ -7,16 +7,18 @@
 
 namespace inr {
 
-/// A row of samples, each the mean of two values; places are apart by `stride`.
+/// Rows of samples, each the mean of two values, side by side in every array.
 struct LineSamples
 {
   const float* first;
   const float* second;
-  const float* fine; ///< what they are taken for, at the samples' own places
-  std::int64_t stride;
-  float* errors;  ///< sums of sample minus value,
-  float* amounts; ///< of magnitudes
-  float* largest; ///< and the largest magnitude
+  const float* fine;    ///< the first value that they are taken for; none overlaps what is written
+  std::int64_t step;    ///< from there to the next
+  std::int64_t pitch;   ///< from row to row of all these
+  float* errors;        ///< sums of sample minus value,
+  float* amounts;       ///< of magnitudes
+  float* largest;       ///< and the largest magnitude so far
+  std::int64_t nextRow; ///< of these
 };
 
 /// A slice that lines pass, each with a number in every array; none of these overlap.
@@ -38,10 +40,9 @@ struct LineSlice
 /// The inner loops of FindLineErrors, for one instruction set. All of them round alike.
 struct LineKernel
 {
-  /// Adds what samples `begin` to `end` - 1 get wrong about the values `offset` away, `weight`
-  /// times.
-  void (*compare)(const LineSamples& samples, std::int64_t offset, float weight, std::int64_t begin,
-                  std::int64_t end);
+  /// What samples get wrong about 1, 2, 3, 4, 5, 8 or 9 values each: of an odd number the first
+  /// and the last count half, unless there is but one.
+  void (*compare)(const LineSamples& samples, int values, std::int64_t rows, std::int64_t count);
   /// Adds that up along lines.
   void (*add)(const LineSlice& slice, std::int64_t count);
 };
