@@ -218,10 +218,12 @@ TEST(LevelErrors, AreMeasuredAsFarAsAskedFor)
   const std::int64_t count = cells.dims.x * cells.dims.y * cells.dims.z;
   const FieldEvaluator evaluator(field);
   const inr::LineKernel& kernel = inr::LineKernelFor(inr::InstructionSet::Baseline);
+  int looks = 0; // at a cell's levels or steps of one power
   const auto measure = [&](const inr::LevelErrors::Question& question) {
+    looks = 0;
     std::int64_t points = 0;
     for (std::int64_t block = 0; block < errors.blocks(); ++block) {
-      points += errors.measure(block, evaluator, kernel, question, [] {});
+      points += errors.measure(block, evaluator, kernel, question, [&] { ++looks; });
     }
     for (std::int64_t cell = 0; cell < count; ++cell) {
       EXPECT_TRUE(errors.knows(cell, question)) << cell;
@@ -256,7 +258,13 @@ TEST(LevelErrors, AreMeasuredAsFarAsAskedFor)
     asIf(&inr::LevelErrors::Cell::levels, 3, limit);
     asIf(&inr::LevelErrors::Cell::steps, 2, limit);
   }
+  int left = 0;
+  for (std::int64_t cell = 0; cell < count; ++cell) {
+    left += 6 - errors.of(cell).levels.known - errors.of(cell).steps.known;
+  }
+  EXPECT_GT(left, 0);
   measure(Everything);
+  EXPECT_EQ(looks, left); // at nothing twice
   asIf(&inr::LevelErrors::Cell::steps, 3, 1.0f);
   errors.forget(0);
   EXPECT_FALSE(errors.knows(0, Everything));

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -90,6 +91,45 @@ TEST(LongLines, AreCutAndPutTogether)
   EXPECT_LE(parts.sum, 1.1f * whole.sum);
   EXPECT_GE(parts.magnitude, whole.magnitude * (1 - 1e-6));
   EXPECT_EQ(parts.largest, whole.largest);
+}
+
+/// A fibre far from all directions of voxels is met in each part, not along all of the box.
+TEST(LongLines, AreSeenBetweenTheDirectionsThatAreLookedAt)
+{
+  const glm::i64vec3 size(90, 60, 30);
+  const inr::ValueBox fine(size);
+  inr::ValueBox taken(size);
+  const glm::dvec3 way = glm::normalize(glm::dvec3(3, 2, 1));
+  for (std::int64_t k = 0; k < taken.count(); ++k) {
+    const glm::i64vec3 at(k % size.x, k / size.x % size.y, k / (size.x * size.y));
+    const double distance = glm::length(glm::cross(way, glm::dvec3(at)));
+    taken.values[static_cast<std::size_t>(k)] =
+        static_cast<float>(std::exp(-distance * distance / 1.44));
+  }
+  const double along = glm::length(glm::dvec3(size)); // the sum on the fibre's axis
+  const inr::LineKernel& kernel = inr::LineKernelFor(inr::ChooseInstructionSet({}));
+  const inr::BoxPart all{{0, 0, 0}, size};
+  EXPECT_LT(inr::FindLineErrors(fine, taken, all, 1, kernel, Never).sum, 0.3 * along);
+  EXPECT_GE(inr::FindLongLineErrors(fine, taken, all, 1, kernel, Never).sum, 0.8 * along);
+}
+
+TEST(LongLines, EndWithTheFirstPartThatIsTooLarge)
+{
+  const glm::i64vec3 size(90, 4, 4);
+  const inr::ValueBox fine(size);
+  inr::ValueBox taken(size);
+  std::fill(taken.values.begin(), taken.values.end(), 1.0f);
+  const inr::LineKernel& kernel = inr::LineKernelFor(inr::InstructionSet::Baseline);
+  int asked = 0;
+  const auto tooLarge = [&](const inr::LineErrors& errors) {
+    ++asked;
+    return errors.sum > 2;
+  };
+  const inr::LineErrors errors =
+      inr::FindLongLineErrors(fine, taken, {{0, 0, 0}, size}, 1, kernel, tooLarge);
+  EXPECT_GT(errors.sum, 2);
+  EXPECT_LT(errors.sum, 19); // of five parts
+  EXPECT_LE(asked, 2);       // where it is found, and where parts are put together
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 namespace {
@@ -191,6 +192,28 @@ TEST(ErrorTolerance, AsksForNoMoreWhereATableEndsWithTheData)
   ExpectFewSamples(field, glm::i64vec3(96), 0.01f, 6);
 }
 
+/// Where every cell has to be measured for it.
+TEST(ErrorTolerance, AsksForFewSamplesOfTheCoarsestLevelWhereThatIsAsGood)
+{
+  const glm::i64vec3 dims(96);
+  const auto slope = [](const glm::vec3& u) { return 0.4f + 0.2f * u.x; };
+  inr::RendererOptions options;
+  options.cache = Options(inr::CachePrecision::Float32, 16);
+  inr::Renderer renderer(std::make_shared<FieldEvaluator>(slope), VolumeOf(dims),
+                         CellsOf(slope, dims), options);
+  renderer.setTransferFunction(Glow());
+  inr::Frame frame = Oblique(glm::dvec3(dims), 40);
+  frame.unitDistance = 20;
+  frame.errorTolerance = 0;
+  const Drawn exact = Draw(renderer, frame);
+  frame.errorTolerance = 8;
+  const Drawn drawn = Draw(renderer, frame);
+  EXPECT_LT(255 * inr::ImageMaximumError(drawn.picture, exact.picture), 8);
+  EXPECT_LT(drawn.statistics.samples, exact.statistics.samples / 3);
+  EXPECT_EQ(drawn.statistics.levels.coarsest, inr::LevelErrors::Coarsest);
+  EXPECT_GT(drawn.statistics.work.networkSamples, 0);
+}
+
 /// Which has no coarser level, but samples further apart.
 TEST(ErrorTolerance, IsKeptInASingleBrick)
 {
@@ -258,7 +281,8 @@ TEST(ErrorTolerance, ComesAboutInLimitedTime)
   EXPECT_LE(inr::ImageMaximumError(picture, Draw(unhurried, frame).picture), 2e-3f);
 }
 
-TEST(ErrorTolerance, MeasuresTheFieldOnceForAllTolerancesAndColours)
+/// What is known of one tolerance is enough for smaller ones and, here, for other colours.
+TEST(ErrorTolerance, MeasuresNothingTwice)
 {
   inr::Renderer renderer = MakeRenderer();
   EXPECT_EQ(Draw(renderer, FrameWith(0.0)).statistics.work.networkSamples, 0);
@@ -271,11 +295,38 @@ TEST(ErrorTolerance, MeasuresTheFieldOnceForAllTolerancesAndColours)
   EXPECT_EQ(Draw(renderer, FrameWith(2.0)).statistics.work.networkSamples, 0);
 }
 
-TEST(ErrorTolerance, MustNotBeNegative)
+/// Whether to go on is asked for each cell, as a block of small ones takes seconds.
+TEST(ErrorTolerance, CanBeStoppedWhileABlockIsMeasured)
+{
+  const glm::i64vec3 dims(32, 32, 32);
+  inr::RendererOptions options;
+  options.cache = Options(inr::CachePrecision::Float32, 16);
+  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(dims),
+                         CellsOf(FogAndWires, dims, 2), options);
+  renderer.setTransferFunction(Glow());
+  inr::Frame frame = Oblique(glm::dvec3(dims), 24);
+  frame.errorTolerance = 0;
+  std::atomic<int> asked{0};
+  const auto count = [&] {
+    ++asked;
+    return true;
+  };
+  inr::Image picture;
+  renderer.render(frame, picture, nullptr, count);
+  const int before = asked.exchange(0);
+  frame.errorTolerance = 4;
+  EXPECT_THROW(renderer.render(frame, picture, nullptr, [&] { return ++asked < 20; }), inr::Error);
+  EXPECT_LT(asked, 30);
+  asked = 0;
+  renderer.render(frame, picture, nullptr, count);
+  EXPECT_GT(asked, before + 500);
+}
+
+TEST(ErrorTolerance, MustBeAFiniteNumberFromZeroOn)
 {
   inr::Renderer renderer = MakeRenderer();
   inr::Image picture;
-  for (const double tolerance : {-1.0, std::nan("")}) {
+  for (const double tolerance : {-1.0, std::nan(""), HUGE_VAL}) {
     EXPECT_THROW(renderer.render(FrameWith(tolerance), picture), inr::Error);
   }
 }
