@@ -351,6 +351,10 @@ private:
     const auto begin = static_cast<double>(this->Next);
     const double enough =
         glm::min((std::floor(begin / BlockLength) + 1.0) * BlockLength, this->End);
+    if (settings.cellSampling[this->Cells.index()].power == 0) { // so has the block
+      this->beginFinestStretch(enough, settings);
+      return;
+    }
     double end = (std::floor(begin / block) + 1.0) * block;
     CellWalker ahead = this->Cells;
     CellBlock first = MeetCells(ahead, settings.cellSampling, end * settings.step);
@@ -360,6 +364,13 @@ private:
     }
     this->Cells = ahead;
     while (end < enough) {
+      if (ahead.exit() >= (end + block) * settings.step) { // in a cell that has been met
+        if (ahead.extinction() <= 0.0f) {
+          break;
+        }
+        end += block;
+        continue;
+      }
       ahead.moveTo(end * settings.step);
       const CellBlock next = MeetCells(ahead, settings.cellSampling, (end + block) * settings.step);
       if (next.level < first.level || next.power < first.power || !next.matters) {
