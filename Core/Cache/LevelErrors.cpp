@@ -99,7 +99,7 @@ std::int64_t LevelErrors::cellsPerBlock() const
 std::int64_t LevelErrors::blockCost() const
 {
   // Voxels that the coarsest level is made of, too.
-  constexpr double around = 2 * (1.25 * (1 << Coarsest) + 2 + (1 << Coarsest) / 2);
+  constexpr double around = 2 * (1.75 * (1 << Coarsest) + 2);
   double asked = 1;
   double seen = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -126,11 +126,9 @@ std::size_t LevelErrors::numberOf(const glm::i64vec3& within) const
 const LevelErrors::Cell& LevelErrors::of(std::int64_t cell) const
 {
   static const Cell unknown;
-  const glm::i64vec3 at = PlaceOf(cell, this->CellDims);
-  const glm::i64vec3 block = at / this->CellsPerBlock;
-  const std::int64_t number = block.x + this->BlockDims.x * (block.y + this->BlockDims.y * block.z);
-  const std::vector<Cell>& cells = this->Measured[static_cast<std::size_t>(number)];
-  return cells.empty() ? unknown : cells[this->numberOf(at - block * this->CellsPerBlock)];
+  const std::vector<Cell>& cells = this->Measured[static_cast<std::size_t>(this->blockOf(cell))];
+  return cells.empty() ? unknown
+                       : cells[this->numberOf(PlaceOf(cell, this->CellDims) % this->CellsPerBlock)];
 }
 
 bool LevelErrors::knows(std::int64_t cell, const Question& question) const

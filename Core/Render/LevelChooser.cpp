@@ -95,8 +95,8 @@ bool LevelChooser::choose(const Wish& wish, const View& view, const Majorants& m
                           const ColorLookup& colors, const Arena& arena, const WorkLimit& limit,
                           const std::function<bool()>& keepGoing)
 {
-  const bool known = this->Chosen && *this->Chosen == wish;
-  this->Chosen.reset(); // should measuring be stopped
+  const bool known = this->IsCurrent && this->Given == wish;
+  this->IsCurrent = false; // should measuring be stopped
   this->Given = wish;
   this->LeastError = wish.tolerance * wish.step / std::max(wish.step, view.geometry.longest());
   this->UsesMeasured = true;
@@ -118,7 +118,7 @@ bool LevelChooser::choose(const Wish& wish, const View& view, const Majorants& m
     this->sendRays(view, majorants, arena);
   }
   this->chooseLevels(majorants.grid(0), arena);
-  this->Chosen = wish;
+  this->IsCurrent = true;
   return true;
 }
 
@@ -319,8 +319,13 @@ LevelChooser::CellErrors LevelChooser::errorsOf(std::int64_t cell, const ValueRa
       isBounded ? LargestError(this->Slopes[static_cast<std::size_t>(cell)], range) : infinite;
   CellErrors errors;
   errors.fill({infinite, most, most});
-  for (int power = this->Coarsest + 1; power <= LargestCellPower; ++power) { // no such level
-    errors[static_cast<std::size_t>(Choices - 2 * power)] = {infinite, infinite, infinite};
+  const auto errorsWith = [&errors](int level, int power) -> CellError& {
+    const int number =
+        numberOf({static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(power)});
+    return errors[static_cast<std::size_t>(number)];
+  };
+  for (int level = this->Coarsest + 1; level <= LargestCellPower; ++level) { // there is none
+    errorsWith(level, level) = {infinite, infinite, infinite};
   }
   // What a picture shows must not depend on what others had measured.
   if (!this->UsesMeasured || !this->canMatter(cell, range)) {
@@ -340,13 +345,12 @@ LevelChooser::CellErrors LevelChooser::errorsOf(std::int64_t cell, const ValueRa
   CellError level;
   CellError full;
   for (int power = 1; power <= LargestCellPower; ++power) {
-    const auto number = static_cast<std::size_t>(Choices - 2 * power);
     if (power <= this->Coarsest) {
       level = errorOf(lines.levels, power, level);
-      errors[number] = level;
+      errorsWith(power, power) = level;
     }
     full = errorOf(lines.steps, this->Apart[static_cast<std::size_t>(power - 1)], full);
-    errors[number + 1] = full;
+    errorsWith(0, power) = full;
   }
   return errors;
 }

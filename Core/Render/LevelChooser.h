@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace inr {
@@ -82,7 +81,7 @@ public:
               const ColorLookup& colors, const Arena& arena, const WorkLimit& limit,
               const std::function<bool()>& keepGoing);
   /// For when these or their extinctions change.
-  void forgetColors() { this->Chosen.reset(); }
+  void forgetColors() { this->IsCurrent = false; }
 
   /// Points that the field has been asked for so far.
   std::int64_t measuredPoints() const { return this->Points; }
@@ -107,6 +106,10 @@ private:
   {
     const auto power = static_cast<std::uint8_t>((Choices + 1 - number) / 2);
     return {number % 2 == 0 ? power : std::uint8_t{0}, power};
+  }
+  static int numberOf(const CellSampling& choice)
+  {
+    return Choices - 2 * choice.power + (choice.level == 0 ? 1 : 0);
   }
   using CellErrors = std::array<CellError, Choices>;
   struct RayWalk;
@@ -142,9 +145,9 @@ private:
   double LongestEdge; ///< of a cell, in voxels
   std::int64_t Points = 0;
   double SecondsPerRound = 0.1; ///< of measuring a block on each thread: a guess at first
-  std::optional<Wish> Chosen;
   Wish Given{};
-  double LeastError = 0; ///< of a step, that matters at all
+  bool IsCurrent = false; ///< whether all below is for that and for the colours
+  double LeastError = 0;  ///< of a step, that matters at all
   /// log2 of the voxels that samples of the full resolution are apart with 2, 4, ... steps between
   /// them, rounded up, and at least 1.
   std::array<int, LargestCellPower> Apart{};

@@ -3,9 +3,9 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Render/CellBlock.h"
-#include "Core/Render/Cropping.h"
 #include "Core/Render/LevelOfDetail.h"
-#include "Core/Render/Projection.h"
+#include "Core/Render/MarchSettings.h"
+#include "Core/Render/SampleStretch.h"
 
 #include <glm/common.hpp>
 
@@ -14,31 +14,6 @@
 #include <cstring>
 
 namespace inr {
-
-/// What the stages of ray marching share within a frame.
-struct MarchSettings
-{
-  glm::dvec3 dims{1.0};   ///< voxels per axis
-  double step = 0.5;      ///< t between samples of level 0
-  double unitsPerT = 1.0; ///< opacity unit distances per unit of t
-  bool adaptive = true;   ///< Frame::adaptiveSampling
-  Projector projector;    ///< of values, where these are not composited
-  bool crops = false;     ///< samples that `cropping` does not show are left out
-  Cropping cropping;
-  /// Of each of the finest macro-cells, where its samples come from; null: LevelOfDetail chooses.
-  const CellSampling* cellSampling = nullptr;
-};
-
-/// Optical depth that needs no finer sampling.
-constexpr double FaintDepth = 0.05;
-
-/// log2 of how many samples of optical depth `depth` each may be taken at once: at most 4.
-INR_HOST_DEVICE inline int FaintSamples(const MarchSettings& settings, double depth)
-{
-  const bool two = settings.adaptive && 2.0 * depth <= FaintDepth;
-  const bool four = settings.adaptive && 4.0 * depth <= FaintDepth;
-  return static_cast<int>(two) + static_cast<int>(four);
-}
 
 /// 2^power, for the exponents of ordinary numbers.
 INR_HOST_DEVICE inline double PowerOfTwo(int power)
@@ -56,32 +31,6 @@ INR_HOST_DEVICE inline int CountBelow(double end, double most)
   const int whole = static_cast<int>(enough);
   return glm::max(1, whole + (static_cast<double>(whole) < enough ? 1 : 0));
 }
-
-/// Samples of a ray that differ in nothing but their place: sample k stands for `steps()` steps,
-/// from interval k * steps() after the first one's on.
-struct AlikeSamples
-{
-  int count;
-  int joined; ///< 1 to 4: samples of the level, 2^power steps apart, that each is taken for
-  int power;
-  bool last; ///< a single one, which the ray's end cuts short
-
-  INR_HOST_DEVICE std::int64_t steps() const { return std::int64_t{this->joined} << this->power; }
-};
-
-/// A stretch of a ray whose samples are as far apart and as much joined as each other's: through
-/// macro-cells that can be seen.
-struct SampleStretch
-{
-  double exit = -1;     ///< samples at this place or behind it do not belong to it
-  double levelEnd = -1; ///< nor do those whose steps begin here or later
-  int power = 0;        ///< there are 2^power steps between samples
-  int faint = 0;        ///< 2^faint of them may be taken at once
-  ValueRange range;     ///< of the cells
-  double reach = -1;    ///< where cells end that matter; see Projector::findsSurfaces
-  bool closed = false;  ///< samples belong to it only with all of their steps, or are of one step
-  int level = 0;        ///< of a closed one, that samples come from
-};
 
 /// Where the samples of a ray are: every 2^l steps where it deserves level l of the cache and the
 /// one before; up to four such at once where little can be seen; nowhere in cells that are
@@ -339,7 +288,13 @@ private:
     const double stepsPerT = 1.0 / settings.step;
     const double reach = matters ? exit * stepsPerT : this->Stretch.reach;
     const double last = matters ? reach : std::nextafter(this->firstPlace(), this->End + 1);
-    this->Stretch = {last, end * stepsPerT, level, faint, range, reach};
+    this->Stretch = SampleStretch();
+    this->Stretch.exit = last;
+    this->Stretch.levelEnd = end * stepsPerT;
+    this->Stretch.power = level;
+    this->Stretch.faint = faint;
+    this->Stretch.range = range;
+    this->Stretch.reach = reach;
   }
 
   /// The same where cells say where their samples come from. A block of the lattice has the finest
@@ -380,8 +335,7 @@ private:
       first.extend(next.range);
       end += block;
     }
-    this->Detail.fix(first.level);
-    this->Stretch = {end, this->Detail.exit(), first.power, 0, first.range, end, true, first.level};
+    this->closeStretch(first, end);
   }
 
   /// One of single steps, which begins in a cell that matters: as far as all do, to the end of the
@@ -404,9 +358,20 @@ private:
       cells.extend(this->Cells.range());
       exit = this->Cells.exit() / settings.step;
     }
-    exit = glm::min(exit, enough);
-    this->Detail.fix(0);
-    this->Stretch = {exit, this->Detail.exit(), 0, 0, cells.range, exit, true, 0};
+    cells.level = cells.power = 0;
+    this->closeStretch(cells, glm::min(exit, enough));
+  }
+
+  INR_HOST_DEVICE void closeStretch(const CellBlock& cells, double end)
+  {
+    this->Detail.fix(cells.level);
+    this->Stretch = SampleStretch();
+    this->Stretch.exit = this->Stretch.reach = end;
+    this->Stretch.levelEnd = this->Detail.exit();
+    this->Stretch.power = cells.power;
+    this->Stretch.range = cells.range;
+    this->Stretch.closed = true;
+    this->Stretch.level = cells.level;
   }
 
   LevelOfDetail Detail;
