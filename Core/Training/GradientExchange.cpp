@@ -15,7 +15,29 @@ namespace {
 
 /// Pieces of the grid that are summed together, 4 MiB of parameters, unless there are more
 /// processes.
-constexpr std::size_t FewestPieces = 32;
+std::size_t PiecesAtATime(std::size_t pieces, int processes)
+{
+  constexpr std::size_t fewest = 32;
+  return std::min(pieces, std::max(fewest, static_cast<std::size_t>(processes)));
+}
+
+/// Where each part begins, and a byte for each line, come with the values.
+constexpr std::size_t MostOfPiece =
+    sizeof(std::uint64_t) + static_cast<std::size_t>(GridGradient::PieceSize) * sizeof(float) +
+    static_cast<std::size_t>(GridGradient::PieceSize / GradientLine);
+
+std::size_t MostSent(std::size_t pieces, int processes)
+{
+  return PiecesAtATime(pieces, processes) * MostOfPiece;
+}
+
+/// Either one's share from all, or all shares: the first is more where shares are not equal.
+std::size_t MostReceived(std::size_t pieces, int processes)
+{
+  const auto size = static_cast<std::size_t>(processes);
+  const std::size_t share = (PiecesAtATime(pieces, processes) + size - 1) / size;
+  return size * share * MostOfPiece;
+}
 
 std::int64_t LinesOf(const GridGradient::Piece& piece)
 {
@@ -115,6 +137,21 @@ std::string WeightsMessage(const std::optional<double>& loss, const float* weigh
 
 } // namespace
 
+std::int64_t ExchangeBytes(const Layout& shape, int processes)
+{
+  std::size_t pieces = 0;
+  const int features = shape.encodedWidth / std::max(1, static_cast<int>(shape.levels.size()));
+  for (const GridLevel& level : shape.levels) {
+    const std::int64_t count = std::int64_t{level.entries} * features;
+    pieces +=
+        static_cast<std::size_t>((count + GridGradient::PieceSize - 1) / GridGradient::PieceSize);
+  }
+  const std::size_t weights = sizeof(double) + shape.gridOffset * sizeof(float);
+  const std::size_t gathered = (2 * static_cast<std::size_t>(processes) + 1) * weights;
+  return static_cast<std::int64_t>(MostSent(pieces, processes) + MostReceived(pieces, processes) +
+                                   gathered);
+}
+
 void GradientExchange::together(const std::function<void()>& work)
 {
   TrainingClock clock;
@@ -144,12 +181,20 @@ std::optional<double> GradientExchange::sum(const std::optional<double>& loss, f
     }
   }
   const std::size_t pieces = grid.pieces().size();
-  const auto atATime = std::max(FewestPieces, static_cast<std::size_t>(this->Group.size()));
+  const std::size_t atATime = PiecesAtATime(pieces, this->Group.size());
+  this->makeRoom(pieces);
   for (std::size_t begin = 0; begin < pieces; begin += atATime) {
     this->sumPieces(grid, begin, std::min(begin + atATime, pieces));
   }
   this->Times.exchanging += clock.seconds();
   return total;
+}
+
+/// At once: what grows by and by is copied, and takes up to twice the memory.
+void GradientExchange::makeRoom(std::size_t pieces)
+{
+  this->Sent.reserve(MostSent(pieces, this->Group.size()));
+  this->Received.bytes.reserve(MostReceived(pieces, this->Group.size()));
 }
 
 void GradientExchange::sumPieces(GridGradient& grid, std::size_t begin, std::size_t end)

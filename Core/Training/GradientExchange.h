@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Model/Description.h"
 #include "Core/Parallel.h"
 #include "Core/Training/GridGradient.h"
 #include "Core/Training/TrainingGroup.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -18,6 +20,11 @@ struct ExchangeTimes
   double waiting = 0;    ///< until the others had their gradients, too
   double exchanging = 0; ///< in which gradients were told and added up
 };
+
+/// Bytes that a process takes to add up gradients of a model with those of so many processes: its
+/// share of the grid's and of theirs on the way, and the network's of all, which a group may hold
+/// twice.
+std::int64_t ExchangeBytes(const Layout& shape, int processes);
 
 /// Adds up what the processes of a group found for their shares of a mini-batch, in the order of
 /// ranks, so that all have the same sums, bit for bit. Of the grid only lines that were touched are
@@ -38,12 +45,19 @@ public:
   std::optional<double> sum(const std::optional<double>& loss, float* weights, std::size_t count,
                             GridGradient& grid);
 
+  /// That were taken for the grid's gradients; the same from the first sum on.
+  std::int64_t bytesHeld() const
+  {
+    return static_cast<std::int64_t>(this->Sent.capacity() + this->Received.bytes.capacity());
+  }
+
   /// How long all that took so far.
   const ExchangeTimes& times() const { return this->Times; }
 
 private:
   using Pieces = std::vector<const GridGradient::Piece*>;
 
+  void makeRoom(std::size_t pieces);
   void sumPieces(GridGradient& grid, std::size_t begin, std::size_t end);
   std::size_t pack(GridGradient& grid, const Pieces& pieces, std::size_t at);
   void addUp(GridGradient& grid, const Pieces& pieces,

@@ -7,9 +7,6 @@ namespace inr {
 
 namespace {
 
-/// A multiple of GradientLine.
-constexpr std::int64_t PieceSize = 1 << 15;
-
 std::int64_t LinesOf(std::int64_t parameters)
 {
   return (parameters + GradientLine - 1) / GradientLine;

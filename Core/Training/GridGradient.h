@@ -14,11 +14,14 @@ namespace inr {
 class GridGradient
 {
 public:
+  /// Parameters of a piece, a multiple of GradientLine.
+  static constexpr std::int64_t PieceSize = 1 << 15;
+
   /// Parameters of one level that are updated in one task.
   struct Piece
   {
     std::size_t first;  ///< from the grid's start
-    std::int64_t count; ///< parameters
+    std::int64_t count; ///< parameters, at most PieceSize
     std::uint8_t* touched;
   };
 

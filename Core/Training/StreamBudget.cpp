@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 #include "Core/Training/BatchSource.h"
 #include "Core/Training/BlockGrid.h"
+#include "Core/Training/GradientExchange.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +19,8 @@ constexpr std::int64_t MiB = std::int64_t{1} << 20;
 /// Threads, code, and the slices that quality is measured on.
 constexpr std::int64_t Overhead = 96 * MiB;
 
-/// Gradients that processes tell each other, for each of them.
-constexpr std::int64_t ExchangeBytes = 10 * MiB;
+/// Ranges of macro-cells that processes tell each other at a time.
+constexpr std::int64_t GatheredRanges = MiB;
 
 /// Pieces smaller than this are slow to read, and a small pool repeats itself.
 constexpr std::int64_t SmallestShare = 4 * MiB;
@@ -41,7 +42,10 @@ std::int64_t CellBytes(const VolumeInfo& info, int macroCellSize)
 std::int64_t FreeBytes(const VolumeInfo& info, const TrainingOptions& options,
                        const Description& description, int processes)
 {
-  const std::int64_t exchanged = processes > 1 ? (processes + 1) * ExchangeBytes : 0;
+  const std::int64_t exchanged =
+      processes > 1 ? std::max(ExchangeBytes(Layout(description), processes),
+                               (2 * processes + 1) * GatheredRanges) // not at the same time
+                    : 0;
   return options.memoryLimit - Overhead - exchanged - CellBytes(info, options.macroCellSize) -
          TrainingBytes(description);
 }

@@ -45,6 +45,13 @@ public:
     }
   }
 
+  void touchAll()
+  {
+    for (const inr::GridGradient::Piece& piece : this->Grid.pieces()) {
+      std::fill_n(piece.touched, (piece.count + inr::GradientLine - 1) / inr::GradientLine, 1);
+    }
+  }
+
   std::vector<std::uint8_t> touched() const
   {
     std::vector<std::uint8_t> all;
@@ -64,6 +71,48 @@ public:
   std::vector<float> Network;
   std::vector<float> GridValues;
   inr::GridGradient Grid;
+};
+
+/// Keeps account of what a process has to hold at most: of megabytes what is sent and what comes in
+/// return, and of the rest what all give, twice where it is put together first.
+class CountingGroup : public inr::TrainingGroup
+{
+public:
+  explicit CountingGroup(const inr::TrainingGroup& group) : Group(group) {}
+
+  std::int64_t bytes() const { return this->Sent + this->Received + this->Gathered; }
+
+  int rank() const override { return this->Group.rank(); }
+  int size() const override { return this->Group.size(); }
+  std::vector<std::string> gather(const std::string& bytes) const override
+  {
+    const auto own = static_cast<std::int64_t>(bytes.size());
+    this->Gathered = std::max(this->Gathered, own + 2 * this->size() * own);
+    return this->Group.gather(bytes);
+  }
+  void gatherInto(const char* bytes, std::size_t count, inr::GatheredBytes& all) const override
+  {
+    this->Group.gatherInto(bytes, count, all);
+    this->count(count, all.bytes.size());
+  }
+  void distribute(const char* bytes, const std::vector<std::size_t>& begins,
+                  inr::GatheredBytes& mine) const override
+  {
+    this->Group.distribute(bytes, begins, mine);
+    this->count(begins.back(), mine.bytes.size());
+  }
+
+private:
+  void count(std::size_t sent, std::size_t received) const
+  {
+    this->Sent = std::max(this->Sent, static_cast<std::int64_t>(sent));
+    this->Received = std::max(this->Received, static_cast<std::int64_t>(received));
+  }
+
+  const inr::TrainingGroup& Group;
+  mutable std::int64_t Sent = 0;
+  mutable std::int64_t Received = 0;
+  mutable std::int64_t Gathered = 0;
 };
 
 /// One rank's after the other.
@@ -116,6 +165,40 @@ TEST(GradientExchange, GivesAllTheSumInTheOrderOfRanks)
       EXPECT_EQ(share.GridValues, grid);
       EXPECT_EQ(share.touched(), touched);
     });
+  }
+}
+
+// What is set aside for it is what it takes, where all lines are touched and where few are.
+TEST(GradientExchange, TakesTheMemoryThatIsSetAsideForIt)
+{
+  inr::Description large = SmallDescription();
+  large.grid.levels = 12;
+  large.grid.log2HashmapSize = 17;
+  large.grid.baseResolution = 30;
+  for (const inr::Description& description : {large, SmallDescription()}) {
+    for (const int size : {2, 3, 5}) {
+      const inr::Layout shape(description);
+      const std::int64_t aside = inr::ExchangeBytes(shape, size);
+      InGroup(size, [&](const ThreadGroup& threads) {
+        const CountingGroup group(threads);
+        const inr::Arena arena(1);
+        inr::GradientExchange exchange(group, arena);
+        std::vector<float> network(shape.gridOffset);
+        std::int64_t first = 0;
+        for (const bool all : {false, true}) {
+          Share share(description, group.rank());
+          all ? share.touchAll() : void();
+          exchange.sum(1.0, network.data(), network.size(), share.Grid);
+          first = all ? first : exchange.bytesHeld();
+        }
+        EXPECT_EQ(exchange.bytesHeld(), first) << "has grown";
+        EXPECT_LE(exchange.bytesHeld(), aside);
+        EXPECT_LE(group.bytes(), aside);
+        if (description == large) { // the other's pieces are far from full
+          EXPECT_GT(group.bytes(), 0.8 * static_cast<double>(aside)) << size;
+        }
+      });
+    }
   }
 }
 
