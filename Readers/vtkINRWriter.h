@@ -88,7 +88,8 @@ public:
   ///@}
 
   ///@{
-  /// Seconds of training between two checkpoints, which take 14 bytes per parameter; the distance
+  /// Seconds of training between two checkpoints, which take 14 bytes per parameter and, of an input
+  /// that is read in pieces, its samples: 512 MiB at most, and 16 bytes per macro-cell. The distance
   /// grows where writing takes more than a twentieth of the time. 0 = none. Default 60.
   vtkSetClampMacro(CheckpointInterval, double, 0, VTK_DOUBLE_MAX);
   vtkGetMacro(CheckpointInterval, double);

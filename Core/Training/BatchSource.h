@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Training/SampleSource.h"
+#include "Core/Training/StateArray.h"
 #include "Core/Training/StopCheck.h"
 #include "Core/Training/StratifiedPositions.h"
 
@@ -37,6 +38,13 @@ public:
   /// long as `check` lets it. In a group all processes call it together: it may call the group, and
   /// what it throws in one, it has to throw in all.
   virtual void prepare(const TrainingStep&, const StopCheck&) {}
+
+  /// What it has learnt of the data and would have to read again; for checkpoints. Between
+  /// prepare() of one step and of the next it stays as it is. Empty = nothing worth keeping.
+  virtual StateArrays survey() { return {}; }
+
+  /// Whether that came out of a checkpoint: then it fits nothing but the rest of that training.
+  virtual bool isFromCheckpoint() const { return false; }
 
   /// Samples of the prepared mini-batch: that are drawn here, and with those of other processes.
   virtual std::int64_t count() const { return BatchSize; }

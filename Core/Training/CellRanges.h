@@ -3,6 +3,7 @@
 
 #include "Core/Model/MacroCells.h"
 #include "Core/Parallel.h"
+#include "Core/Training/StateArray.h"
 #include "Core/Training/TrainingGroup.h"
 #include "Core/Training/Volume.h"
 
@@ -44,6 +45,13 @@ public:
   /// Takes in the voxels of a box within a piece. A value that is not finite says that anything may
   /// be there.
   void add(const VolumePiece& piece, const VoxelBox& box, const Arena& arena);
+
+  /// Where the ranges lie in memory.
+  StateArray state()
+  {
+    return {"cells", this->Ranges.data(),
+            static_cast<std::int64_t>(this->Ranges.size() * sizeof(Range))};
+  }
 
   /// Takes in what others have.
   void gather(const TrainingGroup& group);

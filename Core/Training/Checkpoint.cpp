@@ -3,26 +3,23 @@
 
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
-#include "Core/Model/JsonSection.h"
 #include "Core/Model/LittleEndian.h"
 #include "Core/Model/ModelBlobs.h"
-
-#include <nlohmann/json.hpp>
+#include "Core/Training/CheckpointHeader.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
+#include <functional>
 #include <vector>
 
 namespace inr {
 
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t NameSize = 8;
 constexpr char Magic[NameSize + 1] = "INRtrain";
-constexpr std::uint32_t Version = 1;
+constexpr std::uint32_t PlainVersion = 1;
+constexpr std::uint32_t SurveyVersion = 2;
 constexpr std::size_t StartSize = NameSize + 2 * sizeof(std::uint32_t);
 constexpr std::size_t FrontSize = NameSize + sizeof(std::uint64_t); // of an array
 constexpr std::int64_t ChecksumSize = sizeof(std::uint32_t);
@@ -39,21 +36,20 @@ std::uint32_t ChecksumOf(const std::string& bytes)
   return ContinueChecksum(0, bytes.data(), bytes.size());
 }
 
-std::string HeaderText(const TrainingIdentity& identity, const TrainingState& state)
+/// In a file.
+std::int64_t BytesOf(const StateArrays& arrays)
 {
-  const json header = {{"training", identity},
-                       {"steps", state.steps},
-                       {"planned_steps", state.plannedSteps},
-                       {"seconds", state.seconds},
-                       {"psnr", std::isfinite(state.psnr) ? state.psnr : 0.0},
-                       {"finished", state.finished}};
-  return header.dump(-1, ' ', /*ensure_ascii=*/true, json::error_handler_t::replace);
+  std::int64_t bytes = 0;
+  for (const StateArray& array : arrays) {
+    bytes += static_cast<std::int64_t>(FrontSize) + array.bytes + ChecksumSize;
+  }
+  return bytes;
 }
 
-std::string HeaderBytes(const std::string& text)
+std::string HeaderBytes(const std::string& text, std::uint32_t version)
 {
   std::string bytes(Magic, NameSize);
-  Append(bytes, Version);
+  Append(bytes, version);
   Append(bytes, static_cast<std::uint32_t>(text.size()));
   bytes += text;
   Append(bytes, ChecksumOf(bytes));
@@ -69,46 +65,17 @@ std::string FrontOf(const StateArray& array)
   return bytes;
 }
 
-std::uint64_t Count(const JsonSection& section, const char* key)
+/// Returns its size.
+std::int64_t WriteArray(AtomicFile& file, const StateArray& array)
 {
-  const std::int64_t value = section.integer(key);
-  if (value < 0) {
-    section.refuse(key, "is negative");
-  }
-  return static_cast<std::uint64_t>(value);
-}
-
-double FiniteNumber(const JsonSection& section, const char* key)
-{
-  const double value = section.number(key);
-  if (!std::isfinite(value)) {
-    section.refuse(key, "is not finite");
-  }
-  return value;
-}
-
-TrainingIdentity ParseIdentity(const JsonSection& section)
-{
-  TrainingIdentity identity;
-  for (const auto& [name, value] : section.find("training")->items()) {
-    if (!value.is_string()) {
-      section.refuse("training", "holds something that is no text");
-    }
-    identity.emplace(name, value.get<std::string>());
-  }
-  return identity;
-}
-
-/// Without what is nested more deeply than a header is.
-json ParseText(const std::string& text)
-{
-  constexpr int deepest = 4;
-  const auto keep = [](int depth, json::parse_event_t, json&) { return depth <= deepest; };
-  json header = json::parse(text, keep, /*allow_exceptions=*/false);
-  if (!header.is_object()) {
-    throw Error(ErrorCode::Malformed, "its header is not a JSON object");
-  }
-  return header;
+  const std::string front = FrontOf(array);
+  const auto bytes = static_cast<std::size_t>(array.bytes);
+  const std::uint32_t checksum =
+      ContinueChecksum(ContinueChecksum(0, array.data, bytes), front.data(), front.size());
+  file.write(front.data(), front.size());
+  file.write(array.data, bytes);
+  file.write(&checksum, sizeof(checksum));
+  return static_cast<std::int64_t>(FrontSize) + array.bytes + ChecksumSize;
 }
 
 InputFile Open(const std::string& path)
@@ -128,21 +95,19 @@ InputFile Open(const std::string& path)
 } // namespace
 
 std::int64_t WriteCheckpoint(const std::string& path, const TrainingIdentity& identity,
-                             const TrainingState& state, const StateArrays& arrays)
+                             const TrainingState& state, const StateArrays& arrays,
+                             const StateArrays& survey)
 {
   AtomicFile file(path);
-  const std::string header = HeaderBytes(HeaderText(identity, state));
+  const std::string header =
+      HeaderBytes(CheckpointHeader(identity, state, BytesOf(survey), BytesOf(arrays)).text(),
+                  survey.empty() ? PlainVersion : SurveyVersion);
   file.write(header.data(), header.size());
   auto total = static_cast<std::int64_t>(header.size());
-  for (const StateArray& array : arrays) {
-    const std::string front = FrontOf(array);
-    const auto bytes = static_cast<std::size_t>(array.bytes);
-    const std::uint32_t checksum =
-        ContinueChecksum(ContinueChecksum(0, array.data, bytes), front.data(), front.size());
-    file.write(front.data(), front.size());
-    file.write(array.data, bytes);
-    file.write(&checksum, sizeof(checksum));
-    total += static_cast<std::int64_t>(FrontSize) + array.bytes + ChecksumSize;
+  for (const StateArrays& part : {std::cref(survey), std::cref(arrays)}) {
+    for (const StateArray& array : part) {
+      total += WriteArray(file, array);
+    }
   }
   file.commit();
   return total;
@@ -168,10 +133,10 @@ void CheckpointFile::readHeader()
     throw Error(ErrorCode::Malformed, "it is not a checkpoint of a training", 0);
   }
   const auto version = FromBytes<std::uint32_t>(start.data() + NameSize);
-  if (version != Version) {
+  if (version != PlainVersion && version != SurveyVersion) {
     throw Error(ErrorCode::Unsupported, "it has format version " + std::to_string(version) +
-                                            ", this program reads version " +
-                                            std::to_string(Version));
+                                            ", this program reads versions up to " +
+                                            std::to_string(SurveyVersion));
   }
   const std::int64_t length = FromBytes<std::uint32_t>(start.data() + NameSize + sizeof(version));
   const auto header = static_cast<std::int64_t>(StartSize);
@@ -186,78 +151,100 @@ void CheckpointFile::readHeader()
     RefuseAsBroken("the checksum of its header is wrong");
   }
   this->FirstArray = header + length + ChecksumSize;
-  this->parseHeader(text);
-}
-
-void CheckpointFile::parseHeader(const std::string& text)
-{
-  const json header = ParseText(text);
-  const JsonSection section(header, "header");
-  if (!section.section("training").present()) {
-    section.refuse("training", "is missing");
+  const CheckpointHeader parsed(text);
+  const std::int64_t rest = this->File.size() - this->FirstArray - parsed.surveyBytes;
+  if (parsed.surveyBytes > 0 && (rest < 0 || rest != parsed.trainingBytes)) {
+    RefuseAsBroken("the file has " + std::to_string(this->File.size()) + " bytes");
   }
-  this->Identity = ParseIdentity(section);
-  this->State.steps = Count(section, "steps");
-  this->State.plannedSteps = Count(section, "planned_steps");
-  this->State.seconds = FiniteNumber(section, "seconds");
-  this->State.psnr = FiniteNumber(section, "psnr");
-  this->State.finished = section.boolean("finished", false);
-  if (this->State.seconds < 0) {
-    section.refuse("seconds", "is negative");
-  }
+  this->Identity = parsed.identity;
+  this->State = parsed.state;
+  this->SurveyBytes = parsed.surveyBytes;
 }
 
 void CheckpointFile::load(const StateArrays& arrays) const
 {
   try {
-    this->requireSize(arrays);
-    this->readArrays(arrays, false);
-    this->readArrays(arrays, true);
+    const std::int64_t begin = this->FirstArray + this->SurveyBytes;
+    if (begin + BytesOf(arrays) != this->File.size()) {
+      RefuseAsBroken("the file has " + std::to_string(this->File.size()) +
+                     " bytes where its model needs " + std::to_string(begin + BytesOf(arrays)));
+    }
+    this->readArrays(arrays, begin, false);
+    this->readArrays(arrays, begin, true);
   } catch (const Error& error) {
     throw error.inContext("cannot go on from '" + this->Path + "': ");
   }
 }
 
-/// Nothing is allocated by what the file says: the arrays are there already.
-void CheckpointFile::requireSize(const StateArrays& arrays) const
+void CheckpointFile::loadSurvey(const StateArrays& survey) const
 {
-  std::int64_t size = this->FirstArray;
-  for (const StateArray& array : arrays) {
-    size += static_cast<std::int64_t>(FrontSize) + array.bytes + ChecksumSize;
-  }
-  if (size != this->File.size()) {
-    RefuseAsBroken("the file has " + std::to_string(this->File.size()) +
-                   " bytes where its model needs " + std::to_string(size));
+  try {
+    if (BytesOf(survey) != this->SurveyBytes) {
+      RefuseAsBroken("its survey has " + std::to_string(this->SurveyBytes) +
+                     " bytes where this one has " + std::to_string(BytesOf(survey)));
+    }
+    this->requireWhole();
+    this->readArrays(survey, this->FirstArray, false);
+    this->readArrays(survey, this->FirstArray, true);
+  } catch (const Error& error) {
+    throw error.inContext("cannot go on from '" + this->Path + "': ");
   }
 }
 
-/// Checks them all; with `keep` fills them, too.
-void CheckpointFile::readArrays(const StateArrays& arrays, bool keep) const
+/// Whatever its arrays are.
+void CheckpointFile::requireWhole() const
 {
-  std::vector<char> piece(static_cast<std::size_t>(keep ? 0 : PieceSize));
   std::int64_t at = this->FirstArray;
+  while (at < this->File.size()) {
+    const std::int64_t room =
+        this->File.size() - at - static_cast<std::int64_t>(FrontSize) - ChecksumSize;
+    std::string front(FrontSize, '\0');
+    if (room >= 0) {
+      this->File.read(at, front.data(), front.size());
+    }
+    const auto bytes = FromBytes<std::uint64_t>(front.data() + NameSize);
+    if (room < 0 || bytes > static_cast<std::uint64_t>(room)) {
+      RefuseAsBroken("an array goes beyond its end", at);
+    }
+    at = this->readArray(front, at, nullptr);
+  }
+}
+
+/// Checks them all; with `keep` fills them, too. Nothing is allocated by what the file says: the
+/// arrays are there already.
+void CheckpointFile::readArrays(const StateArrays& arrays, std::int64_t at, bool keep) const
+{
   for (const StateArray& array : arrays) {
     std::string front(FrontSize, '\0');
     this->File.read(at, front.data(), front.size());
     if (front != FrontOf(array)) {
       RefuseAsBroken(std::string("'") + array.name + "' is not what comes here", at);
     }
-    at += static_cast<std::int64_t>(FrontSize);
-    std::uint32_t checksum = 0;
-    for (std::int64_t done = 0; done < array.bytes; done += PieceSize) {
-      char* const to = keep ? static_cast<char*>(array.data) + done : piece.data();
-      const auto bytes = static_cast<std::size_t>(std::min(PieceSize, array.bytes - done));
-      this->File.read(at + done, to, bytes);
-      checksum = ContinueChecksum(checksum, to, bytes);
-    }
-    at += array.bytes;
-    std::uint32_t expected = 0;
-    this->File.read(at, &expected, sizeof(expected));
-    if (ContinueChecksum(checksum, front.data(), front.size()) != expected) {
-      RefuseAsBroken(std::string("the checksum of '") + array.name + "' is wrong", at);
-    }
-    at += ChecksumSize;
+    at = this->readArray(front, at, keep ? static_cast<char*>(array.data) : nullptr);
   }
+}
+
+/// What comes behind `front`, which is at byte `at`; null = only checks it. Returns where it ends.
+std::int64_t CheckpointFile::readArray(const std::string& front, std::int64_t at, char* to) const
+{
+  const auto size = static_cast<std::int64_t>(FromBytes<std::uint64_t>(front.data() + NameSize));
+  std::vector<char> piece(static_cast<std::size_t>(to ? 0 : std::min(PieceSize, size)));
+  at += static_cast<std::int64_t>(FrontSize);
+  std::uint32_t checksum = 0;
+  for (std::int64_t done = 0; done < size; done += PieceSize) {
+    char* const there = to ? to + done : piece.data();
+    const auto bytes = static_cast<std::size_t>(std::min(PieceSize, size - done));
+    this->File.read(at + done, there, bytes);
+    checksum = ContinueChecksum(checksum, there, bytes);
+  }
+  at += size;
+  std::uint32_t expected = 0;
+  this->File.read(at, &expected, sizeof(expected));
+  if (ContinueChecksum(checksum, front.data(), front.size()) != expected) {
+    RefuseAsBroken("the checksum of '" + std::string(front, 0, front.find('\0')) + "' is wrong",
+                   at);
+  }
+  return at + ChecksumSize;
 }
 
 } // namespace inr

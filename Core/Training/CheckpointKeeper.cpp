@@ -112,7 +112,7 @@ std::string CheckpointKeeper::replace(const TrainingState& state, const StateArr
       SetAside(this->Options.path);
       this->IsOthers = false;
     }
-    WriteCheckpoint(this->Options.path, this->Identity, state, arrays);
+    WriteCheckpoint(this->Options.path, this->Identity, state, arrays, this->Survey);
     this->HasWritten = true;
     this->tell(CheckpointEvent::Written,
                "'" + this->Options.path + "' holds " + std::to_string(state.steps) + " steps");

@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace inr {
 
@@ -17,6 +18,9 @@ class CheckpointKeeper
 public:
   /// Removes what processes that were killed while they wrote this checkpoint have left.
   CheckpointKeeper(CheckpointOptions options, TrainingIdentity identity);
+
+  /// What to write in front of the training's own arrays, each time; see WriteCheckpoint.
+  void keep(StateArrays survey) { this->Survey = std::move(survey); }
 
   /// Fills the arrays from the checkpoint and says how far the training was; nothing where it
   /// begins anew, for want of a checkpoint or of a fitting one.
@@ -41,6 +45,7 @@ private:
 
   CheckpointOptions Options;
   TrainingIdentity Identity;
+  StateArrays Survey;
   TrainingClock SinceWritten;
   double WriteSeconds = 0; ///< that the last took
   bool HasWritten = false; ///< or gone on from

@@ -15,7 +15,8 @@ enum class RandomStream : std::uint64_t {
   Estimate = 3,      ///< voxels that PsnrEstimate looks at
   PoolPositions = 4, ///< samples of blocks
   PoolOrder = 5,     ///< in which blocks are read again
-  Bars = 6           ///< that quality is measured in
+  Bars = 6,          ///< that quality is measured in
+  KeptBlocks = 7     ///< that are looked at when a training goes on
 };
 
 /// The seed of a stream.

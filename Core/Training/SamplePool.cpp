@@ -43,6 +43,18 @@ std::vector<std::int64_t> Shuffled(std::int64_t count, std::uint64_t stream)
 
 } // namespace
 
+std::int64_t CountDifferences(const double* a, const double* b, std::int64_t count,
+                              double tolerance)
+{
+  std::int64_t differing = 0;
+  for (std::int64_t k = 0; k < count; ++k) {
+    const bool same = a[k] == b[k] || std::abs(a[k] - b[k]) <= tolerance ||
+                      (std::isnan(a[k]) && std::isnan(b[k]));
+    differing += same ? 0 : 1;
+  }
+  return differing;
+}
+
 SamplePool::SamplePool(const BlockGrid& blocks, std::int64_t mostSamples, std::uint64_t seed,
                        const BlockShare& share)
     : Blocks(blocks), Seed(seed), Share(share),
@@ -92,6 +104,34 @@ std::string SamplePool::name() const
 void SamplePool::put(std::int64_t block, const std::vector<double>& values)
 {
   std::copy(values.begin(), values.end(), &this->Values[this->place(block)]);
+}
+
+StateArrays SamplePool::state()
+{
+  const auto bytes = [](const auto& values) {
+    return static_cast<std::int64_t>(values.size() * sizeof(values[0]));
+  };
+  return {{"samples", this->Values.data(), bytes(this->Values)},
+          {"rounds", this->Rounds.data(), bytes(this->Rounds)},
+          {"reread", &this->Used, sizeof(this->Used)}};
+}
+
+bool SamplePool::resume()
+{
+  const auto again = std::count(this->Rounds.begin(), this->Rounds.end(), 1u);
+  const auto first = std::count(this->Rounds.begin(), this->Rounds.end(), 0u);
+  this->Asked = this->Used;
+  return this->Used == again && again + first == this->Share.blocks();
+}
+
+std::int64_t SamplePool::differences(std::int64_t block, const VolumePiece& piece, double tolerance,
+                                     const Arena& arena) const
+{
+  const std::uint32_t round =
+      this->Rounds[static_cast<std::size_t>(block - this->Share.firstBlock)];
+  const std::vector<double> now = this->sample(block, round, piece, arena);
+  return CountDifferences(now.data(), &this->Values[this->place(block)], this->Boxes.count(),
+                          tolerance);
 }
 
 void SamplePool::begin(double low, double high, double rereads)

@@ -15,6 +15,10 @@
 
 namespace inr {
 
+/// How many pairs of values are further apart than `tolerance`; NaNs are alike.
+std::int64_t CountDifferences(const double* a, const double* b, std::int64_t count,
+                              double tolerance);
+
 /// Samples of a volume that does not fit in memory: one in each of many equal boxes, the same
 /// number in every block, so that no region is ever seen more than another. While the training
 /// goes on, blocks are read again, one after the other, and their samples drawn anew.
@@ -44,6 +48,16 @@ public:
 
   /// The first reading of a block, before the training.
   void put(std::int64_t block, const std::vector<double>& values);
+
+  /// Where the samples lie in memory, and what says which they are. After other bytes were put
+  /// there: resume(), which says whether they can be those of a pool like this one.
+  StateArrays state();
+  bool resume();
+
+  /// How many of the pool's samples of a block are not what the piece, which holds
+  /// blocks.voxels(block), says, but off by more than `tolerance`.
+  std::int64_t differences(std::int64_t block, const VolumePiece& piece, double tolerance,
+                           const Arena& arena) const;
 
   /// Before the training: what is target 0 and 1, and the share of blocks to read again, 0 to 1.
   void begin(double low, double high, double rereads);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
+#include "Core/Training/Checkpoint.h"
 #include "Core/Training/ParallelTraining.h"
 #include "Core/Training/ProgressRelay.h"
 #include "Core/Training/StreamBudget.h"
@@ -10,6 +11,9 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <filesystem>
+#include <memory>
+#include <system_error>
 #include <thread>
 
 namespace inr {
@@ -31,6 +35,13 @@ TrainingOptions WithModel(TrainingOptions options, const StreamBudget& budget)
   return options;
 }
 
+/// A volume of which is known what a first reading tells.
+struct Surveyed
+{
+  std::unique_ptr<StreamedVolume> volume;
+  bool isFromCheckpoint = false;
+};
+
 double ShareToRead(const StreamedVolume& volume, const TrainingOptions& options)
 {
   const bool byTheClock = options.timeLimit > 0 && options.maximumSteps == 0;
@@ -41,14 +52,14 @@ double ShareToRead(const StreamedVolume& volume, const TrainingOptions& options)
 
 /// Trains on a thread of its own while this one reads: the reader belongs to the host application,
 /// which expects to be called where it called.
-void TrainWhileReading(TrainingRun& run, StreamedVolume& volume, SamplePool& pool,
+void TrainWhileReading(TrainingRun& run, StreamedVolume& volume, BatchSource& batches,
                        const Arena& arena, ProgressRelay& relay)
 {
   std::exception_ptr failure;
   std::atomic<bool> done{false};
   std::thread trainer([&] {
     try {
-      run.train(pool, volume.estimate(PsnrEstimate::UsualVoxels), arena);
+      run.train(batches, volume.estimate(PsnrEstimate::UsualVoxels), arena);
     } catch (...) {
       failure = std::current_exception();
     }
@@ -70,17 +81,19 @@ void TrainWhileReading(TrainingRun& run, StreamedVolume& volume, SamplePool& poo
   }
 }
 
-/// A pool that is read on the thread that trains: the one from which a process may call the others,
-/// and the host application be called.
-class PoolReadBetweenSteps : public BatchSource
+/// The samples of a volume, and what is worth keeping of it.
+class PoolBatches : public BatchSource
 {
 public:
-  PoolReadBetweenSteps(StreamedVolume& volume, SamplePool& pool) : Volume(volume), Pool(pool) {}
+  PoolBatches(StreamedVolume& volume, SamplePool& pool, bool isFromCheckpoint)
+      : Volume(volume), Pool(pool), FromCheckpoint(isFromCheckpoint)
+  {}
 
   std::string name() const override { return this->Pool.name(); }
+  StateArrays survey() override { return this->Volume.state(); }
+  bool isFromCheckpoint() const override { return this->FromCheckpoint; }
   void prepare(const TrainingStep& step, const StopCheck& check) override
   {
-    this->Volume.readBefore(step);
     this->Pool.prepare(step, check);
   }
   std::int64_t count() const override { return this->Pool.count(); }
@@ -91,20 +104,78 @@ public:
     this->Pool.draw(stream, step, begin, end, positions, targets);
   }
 
-private:
+protected:
   StreamedVolume& Volume;
   SamplePool& Pool;
+
+private:
+  bool FromCheckpoint;
 };
 
-void Train(TrainingRun& run, StreamedVolume& volume, SamplePool& pool, const TrainingGroup& group,
-           const Arena& arena, ProgressRelay& relay)
+/// A pool that is read on the thread that trains: the one from which a process may call the others,
+/// and the host application be called. Each process has a part of it and the first one the
+/// checkpoint, so nothing of it is kept there.
+class PoolReadBetweenSteps : public PoolBatches
 {
+public:
+  PoolReadBetweenSteps(StreamedVolume& volume, SamplePool& pool) : PoolBatches(volume, pool, false)
+  {}
+
+  StateArrays survey() override { return {}; }
+  void prepare(const TrainingStep& step, const StopCheck& check) override
+  {
+    this->Volume.readBefore(step);
+    this->PoolBatches::prepare(step, check);
+  }
+};
+
+void Train(TrainingRun& run, Surveyed& surveyed, const TrainingGroup& group, const Arena& arena,
+           ProgressRelay& relay, double rereads)
+{
+  StreamedVolume& volume = *surveyed.volume;
+  SamplePool& pool = volume.begin(rereads);
   if (group.size() == 1) {
-    TrainWhileReading(run, volume, pool, arena, relay);
+    PoolBatches batches(volume, pool, surveyed.isFromCheckpoint);
+    TrainWhileReading(run, volume, batches, arena, relay);
     return;
   }
   PoolReadBetweenSteps batches(volume, pool);
   run.train(batches, volume.estimate(PsnrEstimate::UsualVoxels), arena);
+}
+
+/// Where it may tell of the volume.
+bool HasCheckpoint(const TrainingOptions& options, const TrainingGroup& group)
+{
+  const CheckpointOptions& kept = options.checkpoint;
+  std::error_code unknown;
+  return group.size() == 1 && kept.resume && !kept.path.empty() &&
+         std::filesystem::exists(kept.path, unknown);
+}
+
+/// Takes up what the checkpoint tells of the volume, as long as it is one of the training that is
+/// asked for and the volume still looks the same. Otherwise `volume` may have become anything. What
+/// may be wrong with the file the user learns where the training goes on from it, or not.
+bool ResumeSurvey(StreamedVolume& volume, const VolumeInfo& whole, const TrainingOptions& options)
+{
+  std::uint64_t steps = 0;
+  try {
+    const CheckpointFile file(options.checkpoint.path);
+    if (!file.hasSurvey()) {
+      return false;
+    }
+    file.loadSurvey(volume.state());
+    const TrainingObserver nobody;
+    const TrainingRun run(whole, volume.statistics(), options, nobody);
+    const PoolBatches batches(volume, volume.pool(), true);
+    const PsnrEstimate estimate = volume.estimate(PsnrEstimate::UsualVoxels);
+    if (!volume.resume() || run.identity(estimate, batches) != file.identity()) {
+      return false;
+    }
+    steps = file.state().steps;
+  } catch (const Error&) {
+    return false;
+  }
+  return volume.isAsBefore(steps);
 }
 
 /// The same in all processes, whose readers may keep different arrays beside the one.
@@ -149,15 +220,28 @@ ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const Trai
     }
   };
 
-  StreamedVolume volume(reader, budget, MacroCellSizeOf(whole, options), options, group, arena);
-  volume.survey([&](double done) { say(TrainingPhase::Reading, ReadingShare * done, 0); });
+  const auto makeVolume = [&] {
+    return std::make_unique<StreamedVolume>(reader, budget, MacroCellSizeOf(whole, options),
+                                            options, group, arena);
+  };
+  Surveyed surveyed{makeVolume()};
+  if (HasCheckpoint(options, group)) {
+    surveyed.isFromCheckpoint = ResumeSurvey(*surveyed.volume, whole, options);
+  }
+  if (!surveyed.isFromCheckpoint) {
+    surveyed.volume.reset(); // there is memory for one
+    surveyed.volume = makeVolume();
+    surveyed.volume->survey(
+        [&](double done) { say(TrainingPhase::Reading, ReadingShare * done, 0); });
+  }
+  StreamedVolume& volume = *surveyed.volume;
   ProgressRelay relay(observer, ReadingShare);
   const TrainingObserver relayed = [&](const TrainingProgress& now) { return relay(now); };
   TrainingRun run(whole, volume.statistics(), options, relayed, &group);
   if (run.isConstant()) {
     return run.constantModel();
   }
-  Train(run, volume, volume.begin(ShareToRead(volume, options)), group, arena, relay);
+  Train(run, surveyed, group, arena, relay, ShareToRead(volume, options));
   std::shared_ptr<Model> trained;
   group.together([&] { trained = run.store(volume.estimate(PsnrEstimate::StoringVoxels)); });
 

@@ -22,6 +22,9 @@ constexpr std::int64_t VoxelsOfMeasuredBlock = std::int64_t{1} << 20;
 
 constexpr double MostReadings = 3.0;
 
+/// Share of the range by which a value may differ when it is computed again.
+constexpr double SameValue = 1e-6;
+
 std::int64_t Voxels(const glm::i64vec3& dims) { return dims.x * dims.y * dims.z; }
 
 /// Blocks of at most so many voxels, and enough of them for each process to have about as many.
@@ -109,76 +112,6 @@ VolumePiece StreamedVolume::read(const VoxelBox& box)
 /// Takes part in what others read.
 void StreamedVolume::readNothing() { this->read({glm::i64vec3(0), glm::i64vec3(1)}); }
 
-void StreamedVolume::survey(const Progress& progress)
-{
-  const TrainingClock clock;
-  for (std::int64_t k = 0; k < this->Share.mostBlocks; ++k) {
-    const std::int64_t block = this->Share.firstBlock + k;
-    this->Group.together(
-        [&] { progress(static_cast<double>(k) / static_cast<double>(this->Share.mostBlocks)); });
-    this->Group.together(
-        [&] { block < this->Share.endBlock ? this->survey(block) : this->readNothing(); });
-  }
-  const std::vector<double> seconds = this->Group.valuesOfAll(clock.seconds());
-  this->SurveySeconds = *std::max_element(seconds.begin(), seconds.end());
-  const VolumeStatistics own = this->Statistics;
-  this->Statistics = VolumeStatistics();
-  for (const VolumeStatistics& each : this->Group.valuesOfAll(own)) {
-    this->Statistics.add(each);
-  }
-  if (!this->measuresAll()) {
-    this->Ranges.gather(this->Group);
-  }
-  this->shareEstimates();
-}
-
-void StreamedVolume::survey(std::int64_t block)
-{
-  const VolumePiece piece = this->read(this->Blocks.voxels(block));
-  const VoxelBox own = this->Blocks.ownVoxels(block);
-  this->Statistics.add(MeasureBox(piece, own, this->Threads));
-  if (!this->measuresAll()) {
-    this->Ranges.add(piece, own, this->Threads);
-  }
-  this->Pool.put(block, this->Pool.sample(block, 0, piece, this->Threads));
-  this->sampleEstimate(block, piece);
-}
-
-void StreamedVolume::sampleEstimate(std::int64_t block, const VolumePiece& piece)
-{
-  for (const std::size_t k : this->EstimatesOfBlocks[static_cast<std::size_t>(block)]) {
-    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, 0,
-                &this->EstimateValues[k]);
-  }
-}
-
-/// Each process tells the values in its blocks, in an order that all know.
-void StreamedVolume::shareEstimates()
-{
-  const auto numbers = [this](int rank) {
-    const BlockShare share(this->Blocks.count(), rank, this->Group.size());
-    std::vector<std::size_t> found;
-    for (std::int64_t block = share.firstBlock; block < share.endBlock; ++block) {
-      const std::vector<std::size_t>& here =
-          this->EstimatesOfBlocks[static_cast<std::size_t>(block)];
-      found.insert(found.end(), here.begin(), here.end());
-    }
-    return found;
-  };
-  std::string mine;
-  for (const std::size_t k : numbers(this->Group.rank())) {
-    mine.append(reinterpret_cast<const char*>(&this->EstimateValues[k]), sizeof(double));
-  }
-  const std::vector<std::string> all = this->Group.gather(mine);
-  for (int rank = 0; rank < this->Group.size(); ++rank) {
-    const char* next = all[static_cast<std::size_t>(rank)].data();
-    for (const std::size_t k : numbers(rank)) {
-      this->EstimateValues[k] = FromBytes<double>(next);
-      next += sizeof(double);
-    }
-  }
-}
-
 PsnrEstimate StreamedVolume::estimate(std::int64_t voxels) const
 {
   std::vector<float> targets;
@@ -217,6 +150,30 @@ void StreamedVolume::requireKnownRange(const VolumePiece& piece, const VoxelBox&
   }
 }
 
+/// Looks at those of PsnrEstimate: within the range they may have changed, too, the more easily
+/// since the first reading was in another process.
+void StreamedVolume::requireKnownValues(std::int64_t block, const VolumePiece& piece) const
+{
+  std::int64_t differing = 0;
+  for (const std::size_t k : this->EstimatesOfBlocks[static_cast<std::size_t>(block)]) {
+    double now = 0;
+    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, 0, &now);
+    differing += CountDifferences(&now, &this->EstimateValues[k], 1, this->tolerance());
+  }
+  if (differing > 0) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the data changed after they were first read: of the voxels " +
+                    ToText(this->Blocks.ownVoxels(block)) + " at least " +
+                    std::to_string(differing) +
+                    " have other values; if these are right, begin the training anew");
+  }
+}
+
+double StreamedVolume::tolerance() const
+{
+  return SameValue * (this->Statistics.high - this->Statistics.low);
+}
+
 void StreamedVolume::readAgain()
 {
   const std::optional<std::int64_t> block = this->Pool.wanted();
@@ -229,6 +186,7 @@ void StreamedVolume::readAgain(std::int64_t block)
 {
   const VolumePiece piece = this->read(this->Blocks.voxels(block));
   this->requireKnownRange(piece, this->Blocks.ownVoxels(block));
+  this->requireKnownValues(block, piece);
   this->Pool.offer(block, this->Pool.sample(block, 1, piece, this->Threads));
 }
 

@@ -30,11 +30,23 @@ public:
 
   /// The first reading; for all.
   void survey(const Progress& progress);
+
+  /// Where all that lies in memory that it has told, with what was read again since. After other
+  /// bytes were put there: resume(), which says whether they can be those of a volume like this.
+  StateArrays state();
+  bool resume();
+
+  /// Reads a few blocks and says whether the volume is still the one that state() tells of; others
+  /// for another `number`.
+  bool isAsBefore(std::uint64_t number);
+
   const VolumeStatistics& statistics() const { return this->Statistics; }
   double surveySeconds() const { return this->SurveySeconds; } ///< of the slowest process
 
   /// Of the random voxels of PsnrEstimate the first `voxels`, at most StoringVoxels.
   PsnrEstimate estimate(std::int64_t voxels) const;
+
+  SamplePool& pool() { return this->Pool; }
 
   /// Lets the pool be trained from; the share `rereads` of it is to be read again.
   SamplePool& begin(double rereads);
@@ -43,7 +55,8 @@ public:
   double mostRereads() const;
 
   /// Reads the block again that the pool wants, or waits a moment when there is none. Throws
-  /// Error(InvalidArgument) where a value is outside the range that the survey found.
+  /// Error(InvalidArgument) where a value is outside the range that the survey found, or is not
+  /// what it was.
   void readAgain();
 
   /// Reads the blocks again that are to be read before a step, where one thread reads and trains.
@@ -61,6 +74,8 @@ private:
   void readNothing();
   void survey(std::int64_t block);
   void sampleEstimate(std::int64_t block, const VolumePiece& piece);
+  void requireKnownValues(std::int64_t block, const VolumePiece& piece) const;
+  double tolerance() const;
   void shareEstimates();
   void readAgain(std::int64_t block);
   void measureShare(const BlockGrid& boxes, const std::vector<std::int64_t>& chosen,

@@ -37,7 +37,7 @@ void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const Psn
                        const EvaluateKernel& kernel)
 {
   this->planAhead(descent);
-  this->resume(descent);
+  this->resume(descent, batches);
   if (this->Finished) {
     return;
   }
@@ -137,14 +137,19 @@ bool TrainingLoop::goesOn(GradientDescent& descent)
   return decision.goesOn;
 }
 
-void TrainingLoop::resume(GradientDescent& descent)
+void TrainingLoop::resume(GradientDescent& descent, BatchSource& batches)
 {
   struct Before
   {
     bool known;
     TrainingState state;
   };
+  this->Keeper.keep(batches.survey());
   const std::optional<TrainingState> mine = this->Keeper.resume(descent.state());
+  if (batches.isFromCheckpoint() && !mine) { // what the user is told then is true of the next time
+    throw Error(ErrorCode::CannotRead, "'" + this->Options.checkpoint.path +
+                                           "' changed while it was read; begin the training anew");
+  }
   const Before before =
       this->Group.valueOfFirst(Before{mine.has_value(), mine.value_or(TrainingState())});
   if (!before.known) {

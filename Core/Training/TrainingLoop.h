@@ -37,7 +37,7 @@ public:
 
 private:
   void planAhead(GradientDescent& descent);
-  void resume(GradientDescent& descent);
+  void resume(GradientDescent& descent, BatchSource& batches);
   void shareArrays(const StateArrays& arrays) const;
   bool goesOn(GradientDescent& descent);
   void train(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,

@@ -142,6 +142,12 @@ ModelPointer TrainingRun::constantModel()
   return std::make_shared<const Model>(std::move(model));
 }
 
+TrainingIdentity TrainingRun::identity(const PsnrEstimate& estimate,
+                                       const BatchSource& batches) const
+{
+  return IdentityOf(this->Result, this->Options, estimate, batches, this->group().size());
+}
+
 void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena)
 {
   Model& model = this->Result;
@@ -149,9 +155,8 @@ void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, cons
   StartFrom(this->Options.start, model, descent);
   descent.share(this->group());
   const bool first = this->group().rank() == 0;
-  CheckpointKeeper keeper(
-      first ? this->Options.checkpoint : CheckpointOptions(),
-      IdentityOf(model, this->Options, estimate, batches, this->group().size()));
+  CheckpointKeeper keeper(first ? this->Options.checkpoint : CheckpointOptions(),
+                          this->identity(estimate, batches));
   TrainingLoop loop(this->Options, this->Observer, keeper, this->group());
   loop.run(descent, batches, estimate, EvaluateKernelFor(this->Set));
   model.training->steps = descent.steps();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Training/BatchSource.h"
+#include "Core/Training/Checkpoint.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Trainer.h"
 #include "Core/Training/TrainingGroup.h"
@@ -29,6 +30,9 @@ public:
   /// Whether all finite voxels are equal: no step is needed to be exact.
   bool isConstant() const;
   ModelPointer constantModel();
+
+  /// What tells its checkpoint from those of other trainings.
+  TrainingIdentity identity(const PsnrEstimate& estimate, const BatchSource& batches) const;
 
   /// Takes steps until a limit is reached.
   void train(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena);

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t Start = 16;       // magic, version, length of the header
 constexpr std::size_t ChecksumSize = 4; // the header's, behind it
 constexpr std::size_t FrontSize = 16;   // name and length of an array
+constexpr std::size_t VersionAt = 8;    // 2: the same arrays are there twice
 
 void PutChecksum(std::uint8_t* begin, std::size_t bytes)
 {
@@ -34,9 +35,17 @@ void PutArrayChecksum(std::uint8_t* front, std::size_t bytes)
 /// those of the arrays.
 void Repair(std::uint8_t* data, std::size_t size)
 {
-  CheckpointArrays known;
+  if (size <= VersionAt) {
+    return;
+  }
+  CheckpointArrays arrays;
+  inr::StateArrays known = arrays.list();
+  if (data[VersionAt] == 2) {
+    const inr::StateArrays survey = known;
+    known.insert(known.end(), survey.begin(), survey.end());
+  }
   std::size_t behind = 0;
-  for (const inr::StateArray& array : known.list()) {
+  for (const inr::StateArray& array : known) {
     behind += FrontSize + static_cast<std::size_t>(array.bytes) + ChecksumSize;
   }
   if (size < Start + ChecksumSize + behind) {
@@ -47,7 +56,7 @@ void Repair(std::uint8_t* data, std::size_t size)
   std::memcpy(data + Start - sizeof(length), &length, sizeof(length));
   PutChecksum(data, header);
   std::uint8_t* at = data + header + ChecksumSize;
-  for (const inr::StateArray& array : known.list()) {
+  for (const inr::StateArray& array : known) {
     const auto bytes = static_cast<std::size_t>(array.bytes);
     PutArrayChecksum(at, bytes);
     at += FrontSize + bytes + ChecksumSize;

@@ -111,6 +111,8 @@ void WriteSeeds(const fs::path& folder)
   CheckpointArrays arrays;
   inr::WriteCheckpoint((folder / "checkpoint" / "seed").string(), {{"seed", "1"}, {"a", "b"}},
                        {12, 100, 6.5, 38.5, false}, arrays.list());
+  inr::WriteCheckpoint((folder / "checkpoint" / "survey").string(), {{"seed", "1"}, {"a", "b"}},
+                       {12, 100, 6.5, 38.5, true}, arrays.list(), arrays.list());
 }
 
 } // namespace

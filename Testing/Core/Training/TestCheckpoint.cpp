@@ -100,15 +100,57 @@ TEST_F(Checkpoint, RefusesEveryTruncationAndABitFlippedAnywhere)
   }
 }
 
+TEST_F(Checkpoint, HoldsASurvey)
+{
+  EXPECT_FALSE(inr::CheckpointFile(this->Path).hasSurvey());
+  Arrays survey;
+  survey.values = {7, 8, 9};
+  this->Size =
+      inr::WriteCheckpoint(this->Path, Identity, State, this->Written.list(), survey.list());
+  EXPECT_EQ(this->Size, static_cast<std::int64_t>(std::filesystem::file_size(this->Path)));
+  const inr::CheckpointFile file(this->Path);
+  ASSERT_TRUE(file.hasSurvey());
+  Arrays read;
+  read.values = {0, 0, 0};
+  file.loadSurvey(read.list());
+  EXPECT_EQ(read.values, survey.values);
+  file.load(read.list());
+  EXPECT_EQ(read.values, this->Written.values);
+  inr::StateArrays fewer = read.list();
+  fewer.pop_back();
+  EXPECT_THROW(file.loadSurvey(fewer), inr::Error);
+}
+
+// A survey is of no use without the training: what is broken anywhere is not loaded.
+TEST_F(Checkpoint, RefusesTheSurveyOfABrokenFile)
+{
+  inr::WriteCheckpoint(this->Path, Identity, State, this->Written.list(), this->Written.list());
+  const std::string whole = ReadBytes(this->Path);
+  const auto expectRefused = [this](const std::string& bytes) {
+    WriteBytes(this->Path, bytes);
+    Arrays read;
+    read.values = {0, 0, 0};
+    EXPECT_THROW(inr::CheckpointFile(this->Path).loadSurvey(read.list()), inr::Error)
+        << bytes.size();
+    EXPECT_EQ(read.values, std::vector<float>(3));
+  };
+  for (std::size_t byte = 0; byte < whole.size(); ++byte) {
+    expectRefused(whole.substr(0, byte));
+    std::string broken = whole;
+    broken[byte] = static_cast<char>(broken[byte] ^ (1 << byte % 8));
+    expectRefused(broken);
+  }
+}
+
 TEST_F(Checkpoint, SaysWhatItIsNot)
 {
   const std::string whole = ReadBytes(this->Path);
   WriteBytes(this->Path, "a text that somebody has named like that");
   this->expectRefused("not a checkpoint");
   std::string later = whole;
-  later[8] = 2;
+  later[8] = 3;
   WriteBytes(this->Path, later);
-  this->expectRefused("version 2", inr::ErrorCode::Unsupported);
+  this->expectRefused("version 3", inr::ErrorCode::Unsupported);
   std::filesystem::remove(this->Path);
   std::filesystem::create_directory(this->Path);
   this->expectRefused("directory", inr::ErrorCode::CannotRead);

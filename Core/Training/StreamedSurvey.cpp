@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The first reading of a volume, and what a checkpoint keeps of it.
+#include "Core/Training/RandomStream.h"
+#include "Core/Training/StreamedVolume.h"
+#include "Core/Training/TrainingClock.h"
+
+#include <algorithm>
+#include <string>
+
+namespace inr {
+
+void StreamedVolume::survey(const Progress& progress)
+{
+  const TrainingClock clock;
+  for (std::int64_t k = 0; k < this->Share.mostBlocks; ++k) {
+    const std::int64_t block = this->Share.firstBlock + k;
+    this->Group.together(
+        [&] { progress(static_cast<double>(k) / static_cast<double>(this->Share.mostBlocks)); });
+    this->Group.together(
+        [&] { block < this->Share.endBlock ? this->survey(block) : this->readNothing(); });
+  }
+  const std::vector<double> seconds = this->Group.valuesOfAll(clock.seconds());
+  this->SurveySeconds = *std::max_element(seconds.begin(), seconds.end());
+  const VolumeStatistics own = this->Statistics;
+  this->Statistics = VolumeStatistics();
+  for (const VolumeStatistics& each : this->Group.valuesOfAll(own)) {
+    this->Statistics.add(each);
+  }
+  if (!this->measuresAll()) {
+    this->Ranges.gather(this->Group);
+  }
+  this->shareEstimates();
+}
+
+void StreamedVolume::survey(std::int64_t block)
+{
+  const VolumePiece piece = this->read(this->Blocks.voxels(block));
+  const VoxelBox own = this->Blocks.ownVoxels(block);
+  this->Statistics.add(MeasureBox(piece, own, this->Threads));
+  if (!this->measuresAll()) {
+    this->Ranges.add(piece, own, this->Threads);
+  }
+  this->Pool.put(block, this->Pool.sample(block, 0, piece, this->Threads));
+  this->sampleEstimate(block, piece);
+}
+
+StateArrays StreamedVolume::state()
+{
+  StateArrays arrays = {{"range", &this->Statistics, sizeof(this->Statistics)},
+                        {"seconds", &this->SurveySeconds, sizeof(this->SurveySeconds)},
+                        {"random", this->EstimateValues.data(),
+                         static_cast<std::int64_t>(this->EstimateValues.size() * sizeof(double))}};
+  if (!this->measuresAll()) {
+    arrays.push_back(this->Ranges.state());
+  }
+  const StateArrays pool = this->Pool.state();
+  arrays.insert(arrays.end(), pool.begin(), pool.end());
+  return arrays;
+}
+
+bool StreamedVolume::resume() { return this->Pool.resume() && this->Statistics.hasValues(); }
+
+bool StreamedVolume::isAsBefore(std::uint64_t number)
+{
+  constexpr std::int64_t share = 16; // of so many blocks one, and not more than some
+  constexpr std::int64_t most = 8;
+  const std::uint64_t stream = RandomBits(StreamSeed(this->Seed, RandomStream::KeptBlocks), number);
+  const std::int64_t count = std::clamp(this->Blocks.count() / share, std::int64_t{1}, most);
+  for (std::int64_t k = 0; k < count; ++k) {
+    const auto block = static_cast<std::int64_t>(RandomBits(stream, static_cast<std::uint64_t>(k)) %
+                                                 static_cast<std::uint64_t>(this->Blocks.count()));
+    const VolumePiece piece = this->read(this->Blocks.voxels(block));
+    if (this->Pool.differences(block, piece, this->tolerance(), this->Threads) > 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void StreamedVolume::sampleEstimate(std::int64_t block, const VolumePiece& piece)
+{
+  for (const std::size_t k : this->EstimatesOfBlocks[static_cast<std::size_t>(block)]) {
+    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, 0,
+                &this->EstimateValues[k]);
+  }
+}
+
+/// Each process tells the values in its blocks, in an order that all know.
+void StreamedVolume::shareEstimates()
+{
+  const auto numbers = [this](int rank) {
+    const BlockShare share(this->Blocks.count(), rank, this->Group.size());
+    std::vector<std::size_t> found;
+    for (std::int64_t block = share.firstBlock; block < share.endBlock; ++block) {
+      const std::vector<std::size_t>& here =
+          this->EstimatesOfBlocks[static_cast<std::size_t>(block)];
+      found.insert(found.end(), here.begin(), here.end());
+    }
+    return found;
+  };
+  std::string mine;
+  for (const std::size_t k : numbers(this->Group.rank())) {
+    mine.append(reinterpret_cast<const char*>(&this->EstimateValues[k]), sizeof(double));
+  }
+  const std::vector<std::string> all = this->Group.gather(mine);
+  for (int rank = 0; rank < this->Group.size(); ++rank) {
+    const char* next = all[static_cast<std::size_t>(rank)].data();
+    for (const std::size_t k : numbers(rank)) {
+      this->EstimateValues[k] = FromBytes<double>(next);
+      next += sizeof(double);
+    }
+  }
+}
+
+} // namespace inr
