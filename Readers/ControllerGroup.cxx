@@ -20,6 +20,12 @@ void RequireReached(int result)
   }
 }
 
+/// How many processes have this key; one at least, since it is one's.
+std::int64_t CountOf(std::uint64_t key, const std::vector<std::uint64_t>& keys)
+{
+  return std::max<std::int64_t>(1, std::count(keys.begin(), keys.end(), key));
+}
+
 /// For parts of these lengths, one after the other; returns where they go.
 std::vector<vtkIdType> MakeRoom(const std::vector<vtkIdType>& lengths, inr::GatheredBytes& parts)
 {
@@ -132,7 +138,7 @@ std::int64_t ControllerGroup::memoryShare(std::int64_t limit) const
   std::int64_t share = limit;
   const std::vector<std::int64_t> limits = this->valuesOfAll(limit);
   for (std::size_t k = 0; k < limits.size(); ++k) {
-    share = std::min(share, limits[k] / std::count(machines.begin(), machines.end(), machines[k]));
+    share = std::min(share, limits[k] / CountOf(machines[k], machines));
   }
   return share;
 }
@@ -150,6 +156,6 @@ int ControllerGroup::threads() const
   }
   const std::uint64_t own = inr::AvailableCoresKey();
   const std::vector<std::uint64_t> keys = this->valuesOfAll(own);
-  const auto sharers = static_cast<int>(std::count(keys.begin(), keys.end(), own));
+  const auto sharers = static_cast<int>(CountOf(own, keys));
   return std::max(1, inr::AvailableCores() / sharers);
 }
