@@ -143,6 +143,16 @@ std::int64_t ControllerGroup::memoryShare(std::int64_t limit) const
   return share;
 }
 
+std::string ControllerGroup::firstOf(const std::string& said) const
+{
+  for (const std::string& text : this->gather(said)) {
+    if (!text.empty()) {
+      return text;
+    }
+  }
+  return {};
+}
+
 bool ControllerGroup::any(bool said) const
 {
   const std::vector<int> all = this->valuesOfAll(static_cast<int>(said));

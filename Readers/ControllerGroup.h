@@ -32,6 +32,9 @@ public:
   /// all.
   std::int64_t memoryShare(std::int64_t limit) const;
 
+  /// What the first of them says that says something; empty where none does.
+  std::string firstOf(const std::string& said) const;
+
   /// Whether one of them says so.
   bool any(bool said) const;
 

@@ -2,6 +2,7 @@
 #include "PipelineReader.h"
 
 #include "Core/Error.h"
+#include "RawFiles.h"
 #include "Upstream.h"
 
 #include <vtkAbstractArray.h>
@@ -123,7 +124,7 @@ PipelineReader::PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, 
 vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) const
 {
   const Extent extent = ExtentOf(box, this->Whole.extent);
-  const std::string rawProblem = FindBadRawFile(&this->Consumer); // it may have been cut since
+  const std::string rawProblem = RawFiles(&this->Consumer).problem(); // it may have been cut since
   if (!rawProblem.empty()) {
     throw inr::Error(inr::ErrorCode::CannotRead, rawProblem);
   }

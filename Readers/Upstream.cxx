@@ -6,9 +6,9 @@
 #include <vtkAlgorithm.h>
 #include <vtkAlgorithmOutput.h>
 #include <vtkCallbackCommand.h>
-#include <vtkDataArray.h>
+#include <vtkDataObject.h>
+#include <vtkDemandDrivenPipeline.h>
 #include <vtkExecutive.h>
-#include <vtkImageReader2.h>
 #include <vtkNew.h>
 #include <vtkOutputWindow.h>
 
@@ -17,10 +17,6 @@
 #endif
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <system_error>
 
 namespace {
 
@@ -46,25 +42,6 @@ void AddUpstream(vtkAlgorithm* algorithm, std::vector<vtkAlgorithm*>& found)
   for (vtkAlgorithm* other : UpstreamOf(algorithm)) {
     AddUpstream(other, found);
   }
-}
-
-/// Bytes of the values that a reader of one raw file was told of; 0 for any other reader.
-std::uint64_t RawBytes(vtkImageReader2* reader)
-{
-  const std::string name = reader->GetClassName();
-  const bool raw = name == "vtkImageReader" || name == "vtkMPIImageReader";
-  if (!raw || !reader->GetFileName() || reader->GetFileDimensionality() != 3) {
-    return 0;
-  }
-  std::uint64_t bytes =
-      static_cast<std::uint64_t>(reader->GetNumberOfScalarComponents()) *
-      static_cast<std::uint64_t>(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
-  const int* extent = reader->GetDataExtent();
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t voxels = std::int64_t{extent[2 * axis + 1]} - extent[2 * axis] + 1;
-    bytes *= static_cast<std::uint64_t>(std::max<std::int64_t>(voxels, 0));
-  }
-  return bytes;
 }
 
 } // namespace
@@ -97,27 +74,11 @@ bool ComesFromApplication(vtkAlgorithm* algorithm)
                      [](vtkAlgorithm* other) { return other->IsA("vtkTrivialProducer") != 0; });
 }
 
-std::string FindBadRawFile(vtkAlgorithm* algorithm)
+bool IsUpToDate(vtkAlgorithm* algorithm)
 {
-  for (vtkAlgorithm* other : UpstreamOf(algorithm)) {
-    auto* reader = vtkImageReader2::SafeDownCast(other);
-    const std::uint64_t wanted = reader ? RawBytes(reader) : 0;
-    if (wanted == 0) {
-      continue;
-    }
-    if (!std::ifstream(reader->GetFileName())) {
-      return "'" + std::string(reader->GetFileName()) + "' cannot be opened for reading";
-    }
-    std::error_code unknown;
-    const std::uintmax_t size = std::filesystem::file_size(reader->GetFileName(), unknown);
-    if (!unknown && size < wanted) {
-      return "'" + std::string(reader->GetFileName()) + "' has " + std::to_string(size) +
-             " bytes, and the reader's DataExtent, DataScalarType and NumberOfScalarComponents "
-             "ask for " +
-             std::to_string(wanted) + "; correct these, or the file is incomplete";
-    }
-  }
-  return {};
+  auto* producer = vtkDemandDrivenPipeline::SafeDownCast(algorithm->GetInputExecutive());
+  vtkDataObject* data = algorithm->GetInputDataObject(0, 0);
+  return producer && data && data->GetUpdateTime() > producer->GetPipelineMTime();
 }
 
 UpstreamErrors::UpstreamErrors(vtkAlgorithm* algorithm)

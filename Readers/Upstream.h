@@ -23,10 +23,8 @@ std::string FindWholeFileReader(vtkAlgorithm* algorithm);
 /// of a grid.
 bool ComesFromApplication(vtkAlgorithm* algorithm);
 
-/// Says what is wrong where a raw file upstream cannot be read, or is shorter than its reader was
-/// told: ParaView's complains and gives what it has, or tries for ever to read on. Empty where
-/// nothing is wrong.
-std::string FindBadRawFile(vtkAlgorithm* algorithm);
+/// Whether an algorithm's first input is there as it would come if it were asked for again.
+bool IsUpToDate(vtkAlgorithm* algorithm);
 
 /// Keeps what algorithms and executives upstream report as errors while it lives: many readers say
 /// so, and then hand on memory that nobody has written to. Messages are shown as ever.

@@ -10,6 +10,7 @@
 #include "MemoryCheck.h"
 #include "ParallelInput.h"
 #include "PipelineReader.h"
+#include "RawFiles.h"
 #include "StepSequence.h"
 #include "StopSignals.h"
 #include "TrainingCheckpoint.h"
@@ -124,7 +125,7 @@ void vtkINRWriter::PlanSteps(vtkInformation* input)
     this->Internal->Steps =
         StepSequence(std::vector<double>(times, times + count), this->MinTimeStep,
                      this->MaxTimeStep, this->TimeStepStride);
-  } catch (const std::exception& error) { // inr::Error, or no memory
+  } catch (const std::exception& error) {   // inr::Error, or no memory
     this->Internal->Problem = error.what(); // to be told when it is to be written
   }
 }
@@ -139,10 +140,12 @@ std::int64_t vtkINRWriter::MemoryLimitInBytes() const
 void vtkINRWriter::PlanReading(vtkInformation* input)
 {
   this->Internal->Errors = std::make_unique<UpstreamErrors>(this);
-  this->Internal->RawProblem = FindBadRawFile(this);
   const WholeImage whole = WholeImage::Of(input);
   this->Internal->Whole = whole;
   const ControllerGroup group(this->Internal->Controller);
+  // Who has the data does not need the file; but none reads where others cannot.
+  const bool isThere = IsUpToDate(this) && IsPieceInMemory(input, whole, group);
+  this->Internal->RawProblem = group.firstOf(isThere ? "" : RawFiles(this).problem());
   const bool isLarge = this->IsTooLarge(input, group);
   const std::string wholeReader = FindWholeFileReader(this);
   this->Internal->WholeReader =
@@ -322,8 +325,13 @@ inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
   }
   auto* image = vtkImageData::SafeDownCast(this->GetInput());
   const auto find = [this](vtkImageData* piece) { return this->FindInput(piece); };
+  const RawFiles files(this);
   PipelineReader reader(*this, whole, *image, find, group.size() > 1);
-  return inr::TrainModel(reader, first.info, options, group, observe);
+  try {
+    return inr::TrainModel(reader, first.info, options, group, observe);
+  } catch (const inr::Error& error) {
+    throw files.complete(error);
+  }
 }
 
 void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,

@@ -8,12 +8,10 @@
 #include "vtkINRWriter.h"
 
 #include <vtkCallbackCommand.h>
-#include <vtkImageReader.h>
 #include <vtkImageShiftScale.h>
 #include <vtkNew.h>
 
 #include <filesystem>
-#include <fstream>
 
 namespace {
 
@@ -148,29 +146,6 @@ TEST_F(Streaming, BelievesASourceThatComplainsAndSucceeds)
       EXPECT_FALSE(std::filesystem::exists(this->path()));
     }
   }
-}
-
-// ParaView's reader of raw files would try for ever.
-TEST_F(Streaming, RefusesARawFileThatIsTooShortOrGone)
-{
-  const std::string path = this->Folder / "short.raw";
-  std::ofstream(path) << std::string(1000, 'x');
-  vtkNew<vtkImageReader> reader;
-  reader->SetFileName(path.c_str());
-  reader->SetFileDimensionality(3);
-  reader->SetDataExtent(0, 9, 0, 9, 0, 10);
-  reader->SetDataScalarTypeToUnsignedChar();
-  this->Writer->SetInputConnection(reader->GetOutputPort());
-  const MessageCapture messages;
-  this->Writer->Write();
-  EXPECT_NE(messages.text().find("has 1000 bytes"), std::string::npos) << messages.text();
-  EXPECT_NE(messages.text().find("ask for 1100"), std::string::npos);
-  std::filesystem::remove(path);
-  reader->Modified();
-  this->Writer->Write();
-  EXPECT_NE(messages.text().find("cannot be opened"), std::string::npos) << messages.text();
-  EXPECT_NE(this->Writer->GetErrorCode(), 0u);
-  EXPECT_FALSE(std::filesystem::exists(this->path()));
 }
 
 TEST_F(Streaming, CountsAllArraysOfTheSource)

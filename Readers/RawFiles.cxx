@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RawFiles.h"
+
+#include "Upstream.h"
+
+#include <vtkDataArray.h>
+#include <vtkImageReader2.h>
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+namespace {
+
+/// Bytes of the values that a reader of one raw file was told of; 0 for any other reader.
+std::uint64_t RawBytes(vtkImageReader2* reader)
+{
+  const std::string name = reader->GetClassName();
+  const bool raw = name == "vtkImageReader" || name == "vtkMPIImageReader";
+  if (!raw || !reader->GetFileName() || reader->GetFileDimensionality() != 3) {
+    return 0;
+  }
+  std::uint64_t bytes =
+      static_cast<std::uint64_t>(reader->GetNumberOfScalarComponents()) *
+      static_cast<std::uint64_t>(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
+  const int* extent = reader->GetDataExtent();
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t voxels = std::int64_t{extent[2 * axis + 1]} - extent[2 * axis] + 1;
+    bytes *= static_cast<std::uint64_t>(std::max<std::int64_t>(voxels, 0));
+  }
+  return bytes;
+}
+
+} // namespace
+
+RawFiles::RawFiles(vtkAlgorithm* algorithm)
+{
+  for (vtkAlgorithm* other : UpstreamOf(algorithm)) {
+    auto* reader = vtkImageReader2::SafeDownCast(other);
+    const std::uint64_t wanted = reader ? RawBytes(reader) : 0;
+    if (wanted > 0) {
+      this->add(reader->GetFileName(), wanted);
+    }
+  }
+}
+
+void RawFiles::add(const std::string& path, std::uint64_t wanted)
+{
+  std::error_code unknown; // of what is no plain file
+  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+  std::string problem;
+  if (std::filesystem::is_directory(path) || !std::ifstream(path)) {
+    problem = "cannot be opened for reading";
+  } else if (!unknown && bytes < wanted) {
+    problem = "has " + std::to_string(bytes) +
+              " bytes, and the reader's DataExtent, DataScalarType and NumberOfScalarComponents "
+              "ask for " +
+              std::to_string(wanted) + "; correct these, or the file is incomplete";
+  } else {
+    this->Files[path] = {bytes, std::filesystem::last_write_time(path, unknown)};
+  }
+  if (!problem.empty() && this->Problem.empty()) {
+    this->Problem = "'" + path + "' " + problem;
+  }
+}
+
+inr::Error RawFiles::complete(const inr::Error& error) const
+{
+  for (const auto& [path, before] : this->Files) {
+    std::error_code gone;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, gone);
+    const auto written = std::filesystem::last_write_time(path, gone);
+    if (!gone && bytes == before.bytes && written == before.written) {
+      continue;
+    }
+    const std::string text = error.what();
+    return text.find(path) != std::string::npos
+               ? error
+               : inr::Error(error.code(), text + "; '" + path + "' has been " +
+                                              (gone ? "removed" : "replaced or written to") +
+                                              " since it was read first");
+  }
+  return error;
+}
