@@ -11,12 +11,12 @@
 #include "ParallelInput.h"
 #include "PipelineReader.h"
 #include "RawFiles.h"
+#include "ReadingPlan.h"
 #include "StepSequence.h"
 #include "StopSignals.h"
 #include "TrainingCheckpoint.h"
 #include "TrainingInput.h"
 #include "TrainingReport.h"
-#include "Upstream.h"
 #include "VTKCompat.h"
 
 #include <vtkAlgorithm.h>
@@ -47,14 +47,10 @@ constexpr std::int64_t MiB = std::int64_t{1} << 20;
 class vtkINRWriter::Internals
 {
 public:
-  StepSequence Steps;                     ///< those of WriteTimeSteps
-  std::string Problem;                    ///< why there are none
-  std::string Target;                     ///< the file that is being written
-  WholeImage Whole;                       ///< the input
-  bool InPieces = false;                  ///< whether it is read so
-  std::unique_ptr<UpstreamErrors> Errors; ///< while the input is updated
-  std::string RawProblem;                 ///< what is wrong with a raw file
-  std::string WholeReader;                ///< what gives the whole of too much, for the user
+  StepSequence Steps;  ///< those of WriteTimeSteps
+  std::string Problem; ///< why there are none
+  std::string Target;  ///< the file that is being written
+  ReadingPlan Reading; ///< of the input
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
   inr::ModelPointer Previous; ///< what was written last, if it is of a time step
@@ -92,7 +88,8 @@ vtkTypeBool vtkINRWriter::ProcessRequest(vtkInformation* request, vtkInformation
   const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
   if (input && request->Has(Pipeline::REQUEST_UPDATE_EXTENT())) {
     try {
-      this->PlanReading(input);
+      const ControllerGroup group(this->Internal->Controller);
+      this->Internal->Reading = ReadingPlan(this, input, this->MemoryLimitInBytes(), group);
     } catch (const std::exception& error) { // other processes cannot be reached
       this->Internal->Problem = error.what();
     }
@@ -135,46 +132,6 @@ std::int64_t vtkINRWriter::MemoryLimitInBytes() const
   return this->MemoryLimit > 0 ? MiB * this->MemoryLimit : PhysicalMemory() / 2;
 }
 
-/// Asks for the whole input or, in a group, this process' piece of it, or for one voxel where the
-/// rest is going to be read in pieces or not at all.
-void vtkINRWriter::PlanReading(vtkInformation* input)
-{
-  this->Internal->Errors = std::make_unique<UpstreamErrors>(this);
-  const WholeImage whole = WholeImage::Of(input);
-  this->Internal->Whole = whole;
-  const ControllerGroup group(this->Internal->Controller);
-  // Who has the data does not need the file; but none reads where others cannot.
-  const bool isThere = IsUpToDate(this) && IsPieceInMemory(input, whole, group);
-  this->Internal->RawProblem = group.firstOf(isThere ? "" : RawFiles(this).problem());
-  const bool isLarge = this->IsTooLarge(input, group);
-  const std::string wholeReader = FindWholeFileReader(this);
-  this->Internal->WholeReader =
-      isLarge && !wholeReader.empty() ? wholeReader + ", the source" : std::string();
-  this->Internal->InPieces = group.any(isLarge && this->Internal->WholeReader.empty());
-  if (whole.dims.x * whole.dims.y * whole.dims.z == 0) {
-    return;
-  }
-  const bool isShort = !this->Internal->RawProblem.empty();
-  if (group.size() > 1 && !isShort && !this->Internal->InPieces) {
-    RequestPiece(input, whole, wholeReader.empty(), group);
-  } else {
-    whole.ask(input, this->Internal->InPieces || isShort);
-  }
-}
-
-/// Whether to hold what this process would train on is too much for its share of the memory limit;
-/// what it holds already, it keeps.
-bool vtkINRWriter::IsTooLarge(vtkInformation* input, const ControllerGroup& group)
-{
-  const WholeImage& whole = this->Internal->Whole;
-  const auto limit = static_cast<double>(group.memoryShare(this->MemoryLimitInBytes()));
-  if (whole.bytes / group.size() <= limit / 2) {
-    return false;
-  }
-  return group.size() == 1 ? !whole.isInMemory
-                           : !IsPieceInMemory(input, whole, group) && !ComesFromApplication(this);
-}
-
 void vtkINRWriter::WriteData()
 {
   this->ForgetResult();
@@ -194,12 +151,13 @@ void vtkINRWriter::WriteData()
 
 void vtkINRWriter::WriteInput(const StopSignals& signals)
 {
-  const auto errors = std::move(this->Internal->Errors);
+  ReadingPlan& reading = this->Internal->Reading;
+  const auto errors = reading.takeErrors();
   std::string& fileName = this->Internal->Target;
   if (fileName.empty()) {
     throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
   }
-  for (const std::string& problem : {this->Internal->Problem, this->Internal->RawProblem}) {
+  for (const std::string& problem : {this->Internal->Problem, reading.problem()}) {
     if (!problem.empty()) {
       throw inr::Error(inr::ErrorCode::InvalidArgument, problem);
     }
@@ -211,7 +169,8 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
   }
   const ControllerGroup group(this->Internal->Controller);
   group.together([&] { errors ? errors->check() : void(); });
-  ParallelInput input = this->FindInput(group);
+  ParallelInput input = reading.find(
+      this->GetInput(), [this](vtkDataObject* data) { return this->FindInput(data); }, group);
   if (!steps.isEmpty()) {
     input.input.info.time = steps.time();
   }
@@ -223,27 +182,6 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
     }
   });
   this->Train(input, signals, group);
-}
-
-/// What is to be trained on; of what is read in pieces, a voxel of it.
-ParallelInput vtkINRWriter::FindInput(const ControllerGroup& group)
-{
-  bool& inPieces = this->Internal->InPieces;
-  const WholeImage& whole = this->Internal->Whole;
-  auto* image = vtkImageData::SafeDownCast(this->GetInput());
-  const bool isWhole = image && std::equal(whole.extent, whole.extent + 6, image->GetExtent());
-  if (inPieces && !group.any(!isWhole)) { // although a voxel was asked for
-    inPieces = false;
-    this->Internal->WholeReader = "The source";
-  }
-  if (group.size() > 1 && !inPieces) {
-    return FindPiece(
-        this->GetInput(), whole, [this](vtkDataObject* data) { return this->FindInput(data); },
-        group);
-  }
-  ParallelInput found;
-  group.together([&] { found.input = this->FindInput(this->GetInput()); });
-  return found;
 }
 
 TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
@@ -307,7 +245,7 @@ void vtkINRWriter::WarnOfWhole(const std::string& source)
 {
   vtkWarningMacro(<< source << " of '" << this->Internal->Target
                   << "' cannot give parts of its data: all of them, "
-                  << this->Internal->Whole.bytes / MiB
+                  << this->Internal->Reading.whole().bytes / MiB
                   << " MiB, are in memory, more than half of the MemoryLimit of "
                   << this->MemoryLimitInBytes() / MiB << " MiB.");
 }
@@ -317,7 +255,7 @@ inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
                                               const ControllerGroup& group,
                                               const inr::TrainingObserver& observe)
 {
-  const WholeImage& whole = this->Internal->Whole;
+  const WholeImage& whole = this->Internal->Reading.whole();
   if (group.rank() == 0) {
     vtkLog(INFO, << this->Internal->Target << ": the data take " << whole.bytes / MiB
                  << " MiB and are read in pieces, within " << options.memoryLimit / MiB << " MiB"
@@ -347,8 +285,9 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
                                 this->Resume);
   options.checkpoint = checkpoint.options();
 
-  if (!this->Internal->WholeReader.empty() && group.rank() == 0) {
-    this->WarnOfWhole(this->Internal->WholeReader);
+  const ReadingPlan& reading = this->Internal->Reading;
+  if (!reading.wholeReader().empty() && group.rank() == 0) {
+    this->WarnOfWhole(reading.wholeReader());
   }
   TrainingReport report;
   const auto observe = [&](const inr::TrainingProgress& progress) {
@@ -359,7 +298,7 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   };
   inr::ModelPointer model;
   try {
-    if (this->Internal->InPieces) {
+    if (reading.inPieces()) {
       model = this->TrainInPieces(input, options, group, observe);
     } else if (group.size() > 1) {
       model = inr::TrainModel(given.piece(), input.info, options, group, observe);

@@ -83,20 +83,20 @@ public:
   ///@{
   /// Stop training after so many seconds, within a step if need be; 0 = no limit. Default 300.
   ///
-  /// Neither of what comes before, the first reading of an input that is read in pieces, which gives
-  /// the range of values, nor of what comes after, packing (a second per million parameters) and
-  /// measuring the quality, which takes as long as decoding all the voxels: without them the file
-  /// would be wrong about its data, and how much time to leave for them nobody knows beforehand. So
-  /// the same limit gives the same quality, wherever the data come from; AbortExecute and signals
-  /// end them, too.
+  /// Neither of what comes before, the first reading of an input that is read in pieces, which
+  /// gives the range of values, nor of what comes after, packing (a second per million parameters)
+  /// and measuring the quality, which takes as long as decoding all the voxels: without them the
+  /// file would be wrong about its data, and how much time to leave for them nobody knows
+  /// beforehand. So the same limit gives the same quality, wherever the data come from;
+  /// AbortExecute and signals end them, too.
   vtkSetClampMacro(TimeLimit, double, 0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimeLimit, double);
   ///@}
 
   ///@{
-  /// Seconds of training between two checkpoints, which take 14 bytes per parameter and, of an input
-  /// that is read in pieces, its samples: 512 MiB at most, and 16 bytes per macro-cell. The distance
-  /// grows where writing takes more than a twentieth of the time. 0 = none. Default 60.
+  /// Seconds of training between two checkpoints, which take 14 bytes per parameter and, of an
+  /// input that is read in pieces, its samples: 512 MiB at most, and 16 bytes per macro-cell. The
+  /// distance grows where writing takes more than a twentieth of the time. 0 = none. Default 60.
   vtkSetClampMacro(CheckpointInterval, double, 0, VTK_DOUBLE_MAX);
   vtkGetMacro(CheckpointInterval, double);
   ///@}
@@ -239,11 +239,8 @@ private:
   class Internals;
 
   void PlanSteps(vtkInformation* input);
-  void PlanReading(vtkInformation* input);
   void WriteInput(const StopSignals& signals);
-  ParallelInput FindInput(const ControllerGroup& group);
   TrainingInput FindInput(vtkDataObject* data);
-  bool IsTooLarge(vtkInformation* input, const ControllerGroup& group);
   std::int64_t MemoryLimitInBytes() const;
   inr::TrainingOptions MakeOptions() const;
   void WarnOfWhole(const std::string& source);

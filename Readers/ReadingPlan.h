@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ControllerGroup.h"
+#include "ParallelInput.h"
+#include "PipelineReader.h"
+#include "Upstream.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+class vtkAlgorithm;
+class vtkDataObject;
+class vtkInformation;
+
+/// How what an algorithm's first input gives comes to a training: as a whole, in a group as a piece
+/// for each process, or box by box while it trains.
+class ReadingPlan
+{
+public:
+  ReadingPlan() = default;
+
+  /// Asks for the whole input or, in a group, this process' piece of it, or for one voxel where the
+  /// rest is going to be read in pieces or not at all. `memoryLimit`: bytes of this machine. For
+  /// all processes of a group; throws inr::Error where others cannot be reached.
+  ReadingPlan(vtkAlgorithm* consumer, vtkInformation* input, std::int64_t memoryLimit,
+              const ControllerGroup& group);
+
+  const WholeImage& whole() const { return this->Whole; }
+  bool inPieces() const { return this->InPieces; }
+
+  /// What is wrong with a raw file that had to be read; the same in all processes.
+  const std::string& problem() const { return this->Problem; }
+
+  /// What gives the whole of too much, for the user; empty where nothing does.
+  const std::string& wholeReader() const { return this->WholeReader; }
+
+  /// What upstream has reported since this was made, and reports as long as that lives.
+  std::unique_ptr<UpstreamErrors> takeErrors() { return std::move(this->Errors); }
+
+  using Finder = std::function<TrainingInput(vtkDataObject*)>;
+
+  /// What is to be trained on, of what came; of what is read in pieces, a voxel of it. Throws
+  /// inr::Error as `find` and FindPiece do. For all processes of a group.
+  ParallelInput find(vtkDataObject* data, const Finder& find, const ControllerGroup& group);
+
+private:
+  bool isTooLarge(vtkAlgorithm* consumer, vtkInformation* input, std::int64_t memoryLimit,
+                  const ControllerGroup& group) const;
+
+  WholeImage Whole;
+  bool InPieces = false;
+  std::string Problem;
+  std::string WholeReader;
+  std::unique_ptr<UpstreamErrors> Errors;
+};
