@@ -9,12 +9,35 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
 #include <iostream>
 #include <sstream>
 #include <string>
 #include <vector>
 
 constexpr double EqualPictures = 200; ///< dB, that stand for infinity
+
+/// Writes two pictures for a metric that is not ours, where INR_PICTURES names a folder for them;
+/// returns the file's path, or nothing. perceptual.py reads it.
+inline std::string KeepPictures(const inr::Image& reference, const inr::Image& picture)
+{
+  static int number = 0;
+  const char* const folder = std::getenv("INR_PICTURES");
+  if (folder == nullptr || reference.channels != 4) {
+    return {};
+  }
+  const std::string path = std::string(folder) + "/" + std::to_string(++number);
+  std::ofstream file(path, std::ios::binary);
+  const std::int32_t size[] = {reference.width, reference.height};
+  file.write(reinterpret_cast<const char*>(size), sizeof(size));
+  for (const inr::Image* image : {&reference, &picture}) {
+    file.write(reinterpret_cast<const char*>(image->pixels.data()),
+               static_cast<std::streamsize>(image->pixels.size() * sizeof(float)));
+  }
+  return path;
+}
 
 /// One line of JSON.
 class Record
@@ -44,6 +67,10 @@ public:
     this->add("psnr_" + with, std::min(EqualPictures, inr::ImagePsnr(reference, picture)));
     this->add("ssim_" + with, inr::ImageSsim(reference, picture));
     this->add("flip_" + with, inr::ImageFlip(reference, picture));
+    const std::string pictures = KeepPictures(reference, picture);
+    if (!pictures.empty()) {
+      this->add("pictures_" + with, pictures);
+    }
     return this->add("max_" + with, inr::ImageMaximumError(reference, picture));
   }
   void print() const { std::cout << this->Text.str() << "}" << std::endl; }

@@ -9,15 +9,20 @@
 
 VOLUMES is the folder of the .vti files. What was trained and measured stays in the folder WORK, and
 a PART ("knobs", "loading", ...: those whose name has it) measures anew just that; without one, all is
-measured. Times are of the processor, beside those of the default settings in turn.
+measured. Times are of the processor, beside those of the default settings in turn. Where the package
+lpips of PyPI and its network's weights are on this machine, pictures are compared by that, too (see
+perceptual.py); where not, the result file says why.
 """
 import json
 import math
+import os
 import statistics
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
+import perceptual
 import results_file
 import volumes
 from inr_files import Writer
@@ -48,6 +53,7 @@ class Bench:
     def __init__(self, programs, work, data):
         self.programs, self.work, self.data = Path(programs), Path(work), Path(data)
         self.work.mkdir(parents=True, exist_ok=True)
+        self.lpips, self.about_lpips = perceptual.load()
 
     def model(self, volume, size, raw):
         """The path of a model, trained if there is none yet; its JSON is what bench_train said."""
@@ -69,9 +75,8 @@ class Bench:
         with volumes.raw_file(volumes.read(self.data / f"{volume}.vti")) as raw:
             model = self.model(volume, size, raw)
             usual = [self.model(volume, "default", raw)] if what == "model" else []
-            run = subprocess.run([self.programs / "bench_tradeoff", model, volume, *raw, what, view,
-                                  *usual], check=True, stdout=subprocess.PIPE, text=True)
-        lines = [json.loads(line) for line in run.stdout.splitlines()]
+            lines = self.run(self.programs / "bench_tradeoff", model, volume, *raw, what, view,
+                             *usual)
         for line in lines:
             line["ratio"] = round(self.ratio(model), 1)
             if what in ("volume", "memory") or (what == "model" and "knob" not in line):
@@ -82,6 +87,18 @@ class Bench:
                 line["name"] = f"{line['scene']}, {line['knob']} {size}"
         self.file(volume, size, what, view).write_text(
             json.dumps({"commit": results_file.commit(), "lines": lines}))
+
+    def run(self, *command):
+        with tempfile.TemporaryDirectory() as folder:
+            pictures = {"INR_PICTURES": folder} if self.lpips else {}
+            run = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True,
+                                 env={**os.environ, **pictures})
+            return [self.with_lpips(json.loads(line)) for line in run.stdout.splitlines()]
+
+    def with_lpips(self, line):
+        for key in [key for key in line if key.startswith("pictures_")]:
+            line[key.replace("pictures", "lpips")] = self.lpips.of_file(line.pop(key))
+        return line
 
     def file(self, *part):
         return self.work / f"{'-'.join(part)}.json"
@@ -143,9 +160,10 @@ def summaries(lines):
 
 def errors(lines, look):
     """Medians over scenes, against every reference."""
-    return {f"{look}_{key}_{reference}":
-            statistics.median(line[f"{key}_{reference}"] for line in lines)
-            for reference in "abc" for key in ("psnr", "ssim", "flip", "max")}
+    keys = [f"{key}_{reference}" for reference in "abc"
+            for key in ("psnr", "ssim", "flip", "max", "lpips")]
+    return {f"{look}_{key}": statistics.median(line[key] for line in lines)
+            for key in keys if all(key in line for line in lines)}
 
 
 def geometric_mean(values):
@@ -161,7 +179,8 @@ def main():
             bench.measure(*part)
     lines = list(bench.measured(PARTS))
     results = [*summaries(lines), *map(result_of, lines)]
-    results_file.write("tradeoff", [rounded(result) for result in results])
+    results_file.write("tradeoff", [rounded(result) for result in results],
+                       lpips=bench.about_lpips)
 
 
 if __name__ == "__main__":
