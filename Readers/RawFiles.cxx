@@ -73,12 +73,13 @@ inr::Error RawFiles::complete(const inr::Error& error) const
     if (!gone && bytes == before.bytes && written == before.written) {
       continue;
     }
-    const std::string text = error.what();
-    return text.find(path) != std::string::npos
-               ? error
-               : inr::Error(error.code(), text + "; '" + path + "' has been " +
-                                              (gone ? "removed" : "replaced or written to") +
-                                              " since it was read first");
+    std::string text = error.what();
+    if (text.find(path) != std::string::npos) {
+      return error;
+    }
+    text.append("; '").append(path).append("' has been ");
+    text.append(gone ? "removed" : "replaced or written to").append(" since it was read first");
+    return inr::Error(error.code(), text);
   }
   return error;
 }

@@ -58,7 +58,7 @@ public:
 
 vtkINRWriter::vtkINRWriter() : Internal(std::make_unique<Internals>())
 {
-  this->SetFileNameSuffix("_%d");
+  this->vtkINRWriter::SetFileNameSuffix("_%d");
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
                                vtkDataSetAttributes::SCALARS);
 }
