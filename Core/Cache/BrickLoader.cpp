@@ -115,8 +115,9 @@ bool BrickLoader::tryToInferOne(std::unique_lock<std::mutex>& lock)
 /// False when there is nothing to begin.
 bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
 {
-  if (this->Source->bricksAtOnce() > 0) {
-    return this->inferTogether(lock);
+  const std::int64_t atOnce = this->Source->bricksAtOnce(); // read once: it may change
+  if (atOnce > 0) {
+    return this->inferTogether(atOnce, lock);
   }
   Brick* brick = this->claim();
   if (brick == nullptr) {
@@ -167,12 +168,12 @@ BrickLoader::Brick* BrickLoader::begin()
 }
 
 /// As many bricks as the source infers at once; false when there is none.
-bool BrickLoader::inferTogether(std::unique_lock<std::mutex>& lock)
+bool BrickLoader::inferTogether(std::int64_t atOnce, std::unique_lock<std::mutex>& lock)
 {
   std::vector<Brick*> bricks;
-  bricks.reserve(static_cast<std::size_t>(this->Source->bricksAtOnce()));
+  bricks.reserve(static_cast<std::size_t>(atOnce));
   try {
-    while (static_cast<std::int64_t>(bricks.size()) < this->Source->bricksAtOnce()) {
+    while (static_cast<std::int64_t>(bricks.size()) < atOnce) {
       Brick* const brick = this->begin();
       if (brick == nullptr) {
         break;

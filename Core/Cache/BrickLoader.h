@@ -77,7 +77,7 @@ private:
   bool hasWork() const;
   bool inferOne(std::unique_lock<std::mutex>& lock);
   bool tryToInferOne(std::unique_lock<std::mutex>& lock);
-  bool inferTogether(std::unique_lock<std::mutex>& lock);
+  bool inferTogether(std::int64_t atOnce, std::unique_lock<std::mutex>& lock);
   Brick* claim();
   Brick* begin();
   void inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock);

@@ -25,7 +25,7 @@ public:
   virtual void inferLayer(BrickKey key, std::int64_t z, float* values) const = 0;
 
   /// Bricks that are best inferred together, by one call of infer; 0: layers, on any number of
-  /// threads at once.
+  /// threads at once. It may change at any time: a device may fail.
   virtual std::int64_t bricksAtOnce() const { return 0; }
 
   /// All layers of `count` bricks, one brick after the other.

@@ -217,6 +217,30 @@ TEST_P(BrickLoaderTest, BeginsTogetherWhatIsBestInferredTogether)
   EXPECT_EQ(source->calls, 5); // 3 and 2, twice, and 1
 }
 
+/// A device that fails, upon which the CPU takes over: at any time between two bricks.
+class FailingTogether : public TogetherSource
+{
+public:
+  explicit FailingTogether(int looks) : Left(looks) {}
+  std::int64_t bricksAtOnce() const override { return this->Left-- > 0 ? 3 : 0; }
+
+private:
+  mutable std::atomic<int> Left;
+};
+
+TEST_P(BrickLoaderTest, ForgetsNothingWhenBricksAreNoLongerInferredTogether)
+{
+  for (int looks = 1; looks < 8; ++looks) {
+    const auto source = std::make_shared<FailingTogether>(looks);
+    inr::BrickLoader loader(source, GetParam(), 100);
+    loader.request(Bricks(5, 20));
+    loader.loadFor(Forever);
+    std::vector<inr::BrickKey> keys = Receive(loader);
+    std::sort(keys.begin(), keys.end());
+    ASSERT_EQ(keys, Bricks(5, 20)) << looks;
+  }
+}
+
 TEST_P(BrickLoaderTest, OfBricksThatFailTogetherNoneComes)
 {
   const auto source = std::make_shared<TogetherSource>();
