@@ -31,7 +31,8 @@ bool StoreKey::operator==(const StoreKey& other) const
     return std::tie(key.kernel, key.dims.x, key.dims.y, key.dims.z, key.brickSize, key.precision,
                     key.bytes, key.background);
   };
-  return IsSame(this->field, other.field) && rest(*this) == rest(other);
+  return IsSame(this->field, other.field) && IsSame(this->accelerator, other.accelerator) &&
+         rest(*this) == rest(other);
 }
 
 std::shared_ptr<CacheBudget> CacheBudget::ofProcess()

@@ -29,6 +29,7 @@ struct StoreKey
   CachePrecision precision;
   std::int64_t bytes;
   bool background;
+  std::weak_ptr<const void> accelerator = {}; ///< that infers them; none for the CPU
 
   bool operator==(const StoreKey& other) const;
 };

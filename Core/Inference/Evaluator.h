@@ -37,6 +37,9 @@ public:
   /// value does not depend on the lattice around it.
   virtual void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const;
 
+  /// Points that a call should have where there are as many: a device is far away. 0: any number.
+  virtual std::int64_t pointsAtOnce() const { return 0; }
+
   /// The instruction set in use: "avx512", "avx2" or "baseline".
   virtual std::string kernel() const = 0;
 };

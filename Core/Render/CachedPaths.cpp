@@ -241,14 +241,17 @@ TracedTiles TraceWithNetwork(const PathRound& round, const Evaluator& field,
                              const std::function<bool()>& keepGoing)
 {
   const Timer timer;
-  const Tiling tiling(round.output.rgba.width, round.output.rgba.height);
+  const int edge = round.whole ? EdgeFor(field.pointsAtOnce(), 1) : Tiling::Edge;
+  const Tiling tiling(round.output.rgba.width, round.output.rgba.height, edge);
+  const std::int64_t tiles =
+      round.whole ? tiling.count() : static_cast<std::int64_t>(round.tiles.size());
   TracedTiles traced;
-  traced.tiles.resize(round.tiles.size());
-  ForEachTile(arena, static_cast<std::int64_t>(round.tiles.size()), keepGoing, [&](std::int64_t i) {
+  traced.tiles.resize(round.tiles.size()); // of larger tiles, there is nothing in the last ones
+  ForEachTile(arena, tiles, keepGoing, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
     EvaluatorSampler sampler(field, dims);
     StoppableSampler stoppable(sampler, keepGoing);
-    const Tile tile = tiling.tile(round.tiles[k]);
+    const Tile tile = tiling.tile(round.whole ? i : round.tiles[k]);
     traced.tiles[k] = round.tracer.trace(tile, stoppable, round.output.rgba, round.output.depth);
     traced.tiles[k].work.networkSamples = traced.tiles[k].samples;
   });

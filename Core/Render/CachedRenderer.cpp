@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/CachedRenderer.h"
 
+#include "Core/Cache/AcceleratedField.h"
 #include "Core/Error.h"
 #include "Core/Render/CachedPaths.h"
 #include "Core/Render/WorkLimit.h"
@@ -30,19 +31,23 @@ const CacheOptions& Checked(const CacheOptions& options)
 }
 
 /// What all renderers of the same field with the same options share.
-std::shared_ptr<BrickStore> StoreFor(const std::shared_ptr<const Evaluator>& field,
-                                     const std::shared_ptr<const void>& identity,
-                                     const glm::i64vec3& dims, const CacheOptions& options,
-                                     const Arena& arena)
+std::shared_ptr<BrickStore>
+StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<const void>& identity,
+         const glm::i64vec3& dims, const CacheOptions& options, const Arena& arena,
+         const std::shared_ptr<const Accelerator>& accelerator, const ModelPointer& model)
 {
   const std::int64_t bytes = options.bytes > 0 ? options.bytes : DefaultCacheBytes();
   const std::shared_ptr<CacheBudget> budget = CacheBudget::ofProcess();
-  const StoreKey key{identity, field->kernel(),   dims, options.brickSize, options.precision,
-                     bytes,    options.background};
+  const StoreKey key{identity, field->kernel(),    dims,       options.brickSize, options.precision,
+                     bytes,    options.background, accelerator};
   return budget->storeFor(key, [&] {
-    return std::make_shared<BrickStore>(
-        budget, MakeBrickSource(field, Hierarchy(dims, options.brickSize)), options.precision,
-        bytes, options.background, arena.threads());
+    std::shared_ptr<const BrickSource> source =
+        MakeBrickSource(field, Hierarchy(dims, options.brickSize));
+    if (accelerator) {
+      source = MakeBrickSource(accelerator, model, std::move(source));
+    }
+    return std::make_shared<BrickStore>(budget, std::move(source), options.precision, bytes,
+                                        options.background, arena.threads());
   });
 }
 
@@ -59,9 +64,11 @@ std::int64_t DefaultCacheBytes()
 CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field,
                                const std::shared_ptr<const void>& identity,
                                const glm::i64vec3& dims, const CacheOptions& options,
-                               const BrickKernel& kernel, const Arena& arena)
+                               const BrickKernel& kernel, const Arena& arena,
+                               const std::shared_ptr<const Accelerator>& accelerator,
+                               const ModelPointer& model)
     : Options(Checked(options)), Kernel(kernel), Threads(arena), Field(std::move(field)),
-      Store(StoreFor(this->Field, identity, dims, options, arena))
+      Store(StoreFor(this->Field, identity, dims, options, arena, accelerator, model))
 {}
 
 void CachedRenderer::beginFrame() { this->Latest = this->Store->beginFrame(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/Accelerator.h"
 #include "Core/Cache/BrickStore.h"
 #include "Core/Parallel.h"
 #include "Core/Render/PathPicture.h"
@@ -50,11 +51,14 @@ std::int64_t DefaultCacheBytes();
 class CachedRenderer
 {
 public:
-  /// `identity`: the same object for the same field. Throws what Hierarchy and BrickCache throw.
-  /// `arena` must outlive the renderer.
+  /// `identity`: the same object for the same field. `accelerator`: infers the bricks; where it is
+  /// not null, the field is that of `model`. Throws what Hierarchy and BrickCache throw. `arena`
+  /// must outlive the renderer.
   CachedRenderer(std::shared_ptr<const Evaluator> field,
                  const std::shared_ptr<const void>& identity, const glm::i64vec3& dims,
-                 const CacheOptions& options, const BrickKernel& kernel, const Arena& arena);
+                 const CacheOptions& options, const BrickKernel& kernel, const Arena& arena,
+                 const std::shared_ptr<const Accelerator>& accelerator = nullptr,
+                 const ModelPointer& model = nullptr);
 
   /// Within a call; see Renderer::render. The references are for this only.
   FrameStatistics render(const Frame& frame, const RayGeometry& geometry,

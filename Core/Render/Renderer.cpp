@@ -45,19 +45,37 @@ FrameStatistics Sum(const std::vector<FrameStatistics>& tiles)
 
 struct Renderer::Implementation
 {
+  /// `model`: null for another field.
   Implementation(std::shared_ptr<const Evaluator> field, std::shared_ptr<const void> identity,
-                 VolumeInfo volume, const MacroCells& cells, RendererOptions options)
+                 const ModelPointer& model, VolumeInfo volume, const MacroCells& cells,
+                 RendererOptions options)
       : Field(std::move(field)), Identity(std::move(identity)), Volume(std::move(volume)),
         Options(Consistent(std::move(options))), Threads(this->Options.threads),
         Cells(this->Options.cached ? Majorants(cells, this->Volume.dims, this->Threads)
                                    : Majorants(cells))
   {
+    if (!model) {
+      this->Options.accelerator = nullptr;
+    }
+    this->Samples = this->Field;
+    const std::shared_ptr<const Accelerator>& accelerator = this->Options.accelerator;
+    if (accelerator) {
+      this->Accelerated = accelerator->open(model);
+    }
     if (this->Options.cached) { // at once, so that whom this one replaces can leave its bricks
       const BrickKernel& kernel = BrickKernelFor(ChooseInstructionSet(this->Options.kernel));
       this->Cached.emplace(this->Field, this->Identity, this->Volume.dims, this->Options.cache,
-                           kernel, this->Threads);
+                           kernel, this->Threads, accelerator, model);
+    } else if (accelerator) {
+      this->Samples = MakeEvaluator(this->Accelerated, this->Field);
+    }
+    if (accelerator) {
+      this->tryAccelerator();
     }
   }
+
+  /// Has it made what frames will ask for, so that it is known beforehand whether it can.
+  void tryAccelerator();
 
   Projector projector() const
   {
@@ -83,11 +101,13 @@ struct Renderer::Implementation
   FrameStatistics tracePaths(const Frame& frame, const PassOutput& output,
                              const std::function<bool()>& keepGoing);
 
-  std::shared_ptr<const Evaluator> Field;
+  std::shared_ptr<const Evaluator> Field; ///< by the CPU
   std::shared_ptr<const void>
       Identity; ///< of the field: renderers that have the same share a cache
   VolumeInfo Volume;
   RendererOptions Options;
+  std::shared_ptr<AcceleratedField> Accelerated; ///< null where only the CPU computes
+  std::shared_ptr<const Evaluator> Samples;      ///< of frames without a cache: the field
   Arena Threads;
   Majorants Cells;
   std::optional<TransferFunction> Function;
@@ -102,13 +122,13 @@ struct Renderer::Implementation
 };
 
 Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
-    : Self(std::make_unique<Implementation>(MakeEvaluator(model, options.kernel), model,
+    : Self(std::make_unique<Implementation>(MakeEvaluator(model, options.kernel), model, model,
                                             model->volume, model->macroCells, options))
 {}
 
 Renderer::Renderer(const std::shared_ptr<const Evaluator>& field, const VolumeInfo& volume,
                    const MacroCells& cells, const RendererOptions& options)
-    : Self(std::make_unique<Implementation>(field, field, volume, cells, options))
+    : Self(std::make_unique<Implementation>(field, field, nullptr, volume, cells, options))
 {}
 
 Renderer::~Renderer() = default;
@@ -135,6 +155,18 @@ std::shared_ptr<const KeptBricks> Renderer::keepBricks() const
 
 std::string Renderer::kernel() const { return this->Self->Field->kernel(); }
 
+std::string Renderer::accelerator() const
+{
+  const std::shared_ptr<AcceleratedField>& field = this->Self->Accelerated;
+  return field && !field->failure() ? field->name() : "";
+}
+
+std::optional<AcceleratedField::Failure> Renderer::acceleratorFailure() const
+{
+  const std::shared_ptr<AcceleratedField>& field = this->Self->Accelerated;
+  return field ? field->failure() : std::nullopt;
+}
+
 int Renderer::threads() const { return this->Self->Threads.threads(); }
 
 void Renderer::setTransferFunction(const TransferFunction& transferFunction)
@@ -149,6 +181,16 @@ void Renderer::setTransferFunction(const TransferFunction& transferFunction)
   self.Colors.emplace(std::move(colors));
   self.build();
   self.Function = transferFunction;
+}
+
+void Renderer::Implementation::tryAccelerator()
+{
+  if (this->Cached) {
+    const Hierarchy& levels = this->Cached->store().cache().hierarchy();
+    this->Accelerated->bricks(*MakeBrickSource(this->Field, levels));
+  } else {
+    this->Accelerated->evaluator(*this->Field);
+  }
 }
 
 void Renderer::Implementation::build()
@@ -180,9 +222,10 @@ FrameStatistics Renderer::Implementation::renderUncached(
     const Shading* shading, const PassOutput& output, const std::function<bool()>& keepGoing) const
 {
   const Timer timer;
-  const MarchScene scene{frame,        geometry, this->Cells, this->Colors->lookup(),
-                         *this->Field, settings, shading};
-  const Tiling tiling(frame.width, frame.height);
+  const MarchScene scene{frame,          geometry, this->Cells, this->Colors->lookup(),
+                         *this->Samples, settings, shading};
+  const int edge = EdgeFor(this->Samples->pointsAtOnce(), TileMarcher::SamplesPerRound);
+  const Tiling tiling(frame.width, frame.height, edge);
   std::vector<FrameStatistics> tiles(static_cast<std::size_t>(tiling.count()));
   ForEachTile(this->Threads, tiling.count(), keepGoing, [&](std::int64_t k) {
     TileMarcher marcher(scene);
@@ -265,7 +308,7 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
   PathMedium medium{this->Volume.dims, this->Cells, this->Colors->lookup()};
   if (!this->Cached) {
     const TraceTiles trace = [&](const PathRound& round) {
-      return TraceWithNetwork(round, *this->Field, this->Volume.dims, this->Threads, keepGoing);
+      return TraceWithNetwork(round, *this->Samples, this->Volume.dims, this->Threads, keepGoing);
     };
     const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
     return this->Paths->advance(frame, medium, trace, limit, output);

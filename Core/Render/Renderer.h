@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/AcceleratedField.h"
 #include "Core/Cache/KeptBricks.h"
 #include "Core/Image/Image.h"
 #include "Core/Inference/Evaluator.h"
@@ -11,6 +12,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace inr {
@@ -24,12 +26,14 @@ struct RendererOptions
   /// bricks come in within them only; see WorkLimit. CacheOptions::background is then off.
   bool deterministic = false;
   CacheOptions cache;
+  /// Infers the bricks of a model or, without a cache, the samples; null: the CPU does.
+  std::shared_ptr<const Accelerator> accelerator;
 
   bool operator==(const RendererOptions& other) const
   {
     return this->threads == other.threads && this->kernel == other.kernel &&
            this->cached == other.cached && this->deterministic == other.deterministic &&
-           this->cache == other.cache;
+           this->cache == other.cache && this->accelerator == other.accelerator;
   }
 };
 
@@ -48,6 +52,11 @@ struct RendererOptions
 /// renderer is not for use from two threads at once; several are, and those that share bricks take
 /// turns. In the middle of rendering (in keepGoing), another that shares its bricks throws
 /// Error(Cancelled).
+///
+/// Where an accelerator fails, the CPU takes over within the call and goes on: no call fails
+/// because of it, no brick is lost, and the picture is the same but for the rounding of float32.
+/// Samples that paths take of the network for want of room in the cache, and what a tolerance
+/// measures, are always the CPU's.
 class Renderer
 {
 public:
@@ -77,8 +86,14 @@ public:
   /// Keeps the bricks beyond the life of the renderer; null where there is no cache.
   std::shared_ptr<const KeptBricks> keepBricks() const;
 
-  /// The instruction set that infers: Evaluator::kernel().
+  /// The instruction set with which the CPU computes: Evaluator::kernel().
   std::string kernel() const;
+
+  /// What infers bricks or, without a cache, samples in the CPU's place: Accelerator::name(). Empty
+  /// where nothing does.
+  std::string accelerator() const;
+  /// Why it does not.
+  std::optional<AcceleratedField::Failure> acceleratorFailure() const;
 
   /// That compute the pictures.
   int threads() const;

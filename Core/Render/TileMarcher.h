@@ -28,16 +28,16 @@ struct MarchScene
 class TileMarcher
 {
 public:
+  /// Samples per ray and round: enough to fill a batch, few enough not to overshoot an opaque
+  /// surface.
+  static constexpr int SamplesPerRound = 8;
+
   explicit TileMarcher(const MarchScene& scene) : Scene(scene) {}
 
   /// Writes the tile's pixels; `depth` may be null.
   FrameStatistics march(const Tile& tile, Image& rgba, Image* depth);
 
 private:
-  /// Samples per ray and round: enough to fill a batch, few enough not to overshoot an opaque
-  /// surface.
-  static constexpr int SamplesPerRound = 8;
-
   /// A surface between two places of a ray.
   struct Crossing
   {

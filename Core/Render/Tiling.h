@@ -16,23 +16,36 @@ struct Tile
 class Tiling
 {
 public:
-  static constexpr int Edge = 16;
+  static constexpr int Edge = 16; ///< of what stays in a core's caches
 
-  Tiling(int width, int height) : Width(width), Height(height) {}
+  /// `edge`: pixels, at least 1.
+  Tiling(int width, int height, int edge = Edge) : Width(width), Height(height), Size(edge) {}
 
-  int columns() const { return (this->Width + Edge - 1) / Edge; }
-  int rows() const { return (this->Height + Edge - 1) / Edge; }
+  int columns() const { return (this->Width + this->Size - 1) / this->Size; }
+  int rows() const { return (this->Height + this->Size - 1) / this->Size; }
   std::int64_t count() const { return static_cast<std::int64_t>(this->columns()) * this->rows(); }
   Tile tile(std::int64_t k) const
   {
-    const int x = static_cast<int>(k % this->columns()) * Edge;
-    const int y = static_cast<int>(k / this->columns()) * Edge;
-    return {x, y, std::min(Edge, this->Width - x), std::min(Edge, this->Height - y)};
+    const int x = static_cast<int>(k % this->columns()) * this->Size;
+    const int y = static_cast<int>(k / this->columns()) * this->Size;
+    return {x, y, std::min(this->Size, this->Width - x), std::min(this->Size, this->Height - y)};
   }
 
 private:
   int Width;
   int Height;
+  int Size;
 };
+
+/// Edge of the largest tiles, the usual one times a power of two, whose pixels ask for no more than
+/// `points` points at once, so many each.
+inline int EdgeFor(std::int64_t points, int pointsPerPixel)
+{
+  int edge = Tiling::Edge;
+  while (std::int64_t{4} * edge * edge * pointsPerPixel <= points) {
+    edge *= 2;
+  }
+  return edge;
+}
 
 } // namespace inr

@@ -4,6 +4,7 @@
 // field that is added does not compile here before it is thought of: it needs a name in FieldsOf
 // and a line in a table.
 #include "Core/Render/Renderer.h"
+#include "Testing/Core/FakeAccelerator.h"
 
 #include <gtest/gtest.h>
 
@@ -60,8 +61,8 @@ std::size_t FieldsOf(const inr::TranslucentLayers::Layer& layer)
 
 std::size_t FieldsOf(const inr::RendererOptions& options)
 {
-  const auto& [a, b, c, d, e] = options;
-  return Count(a, b, c, d, e);
+  const auto& [a, b, c, d, e, f] = options;
+  return Count(a, b, c, d, e, f);
 }
 
 std::size_t FieldsOf(const inr::CacheOptions& options)
@@ -206,12 +207,15 @@ TEST(Frame, HasPartsThatAreOthersWithAnotherValueOfAnyField)
 // A renderer is made anew when they change.
 TEST(RendererOptions, AreOthersWithAnotherValueOfAnyField)
 {
-  ExpectDifferent<inr::RendererOptions>({},
-                                        {{"threads", [](auto& o) { o.threads = 3; }},
-                                         {"kernel", [](auto& o) { o.kernel = "scalar"; }},
-                                         {"cached", [](auto& o) { o.cached = false; }},
-                                         {"deterministic", [](auto& o) { o.deterministic = true; }},
-                                         {"cache", [](auto& o) { o.cache.brickSize = 8; }}});
+  ExpectDifferent<inr::RendererOptions>(
+      {}, {{"threads", [](auto& o) { o.threads = 3; }},
+           {"kernel", [](auto& o) { o.kernel = "scalar"; }},
+           {"cached", [](auto& o) { o.cached = false; }},
+           {"deterministic", [](auto& o) { o.deterministic = true; }},
+           {"cache", [](auto& o) { o.cache.brickSize = 8; }},
+           {"accelerator", [](auto& o) {
+              o.accelerator = std::make_shared<FakeAccelerator>(std::make_shared<FakeDevice>());
+            }}});
   ExpectDifferent<inr::CacheOptions>(
       {}, {{"bytes", [](auto& o) { o.bytes = 1; }},
            {"precision", [](auto& o) { o.precision = inr::CachePrecision::Bits8; }},
