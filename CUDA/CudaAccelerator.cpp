@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/CudaAccelerator.h"
+
+#include "CUDA/Engine.h"
+
+#include <algorithm>
+#include <mutex>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace inr {
+namespace cuda {
+
+namespace {
+
+class CudaAccelerator : public Accelerator
+{
+public:
+  CudaAccelerator(Device device, Precision precision) : Where(std::move(device)), Kind(precision) {}
+  ~CudaAccelerator() override;
+
+  std::string name() const override
+  {
+    return std::string("CUDA ") + (this->Kind == Precision::Half ? "half" : "float32") + ", " +
+           this->Where.name;
+  }
+
+  std::shared_ptr<const Evaluator> makeEvaluator(const ModelPointer& model) const override
+  {
+    return MakeEvaluator(this->uploaded(model));
+  }
+
+  std::shared_ptr<const BrickSource> makeBrickSource(const ModelPointer& model,
+                                                     const Hierarchy& hierarchy) const override
+  {
+    return MakeBrickSource(this->uploaded(model), hierarchy);
+  }
+
+private:
+  /// One copy for all that is made of a model.
+  std::shared_ptr<const DeviceModel> uploaded(const ModelPointer& model) const
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    const auto isGone = [](const auto& entry) { return entry.second.expired(); };
+    this->Uploaded.erase(std::remove_if(this->Uploaded.begin(), this->Uploaded.end(), isGone),
+                         this->Uploaded.end());
+    for (const auto& entry : this->Uploaded) {
+      std::shared_ptr<const DeviceModel> copy = entry.second.lock();
+      if (copy && entry.first.lock() == model) {
+        return copy;
+      }
+    }
+    std::shared_ptr<const DeviceModel> copy = UploadModel(model, this->Where, this->Kind);
+    this->Uploaded.emplace_back(model, copy);
+    return copy;
+  }
+
+  Device Where;
+  Precision Kind;
+  mutable std::mutex Mutex; ///< guards what follows
+  mutable std::vector<std::pair<std::weak_ptr<const Model>, std::weak_ptr<const DeviceModel>>>
+      Uploaded;
+};
+
+// The process may end, or this library go, with or without somebody holding one.
+static_assert(std::is_trivially_destructible_v<std::mutex>);
+std::mutex SharedMutex;
+constexpr int MostDevices = 64;
+const CudaAccelerator* Shared[MostDevices] = {}; ///< by ordinal
+
+CudaAccelerator::~CudaAccelerator()
+{
+  const std::lock_guard<std::mutex> lock(SharedMutex);
+  std::replace(std::begin(Shared), std::end(Shared), static_cast<const CudaAccelerator*>(this),
+               static_cast<const CudaAccelerator*>(nullptr));
+}
+
+std::shared_ptr<const Accelerator> SharedAccelerator(const Device& device)
+{
+  if (device.ordinal >= MostDevices) {
+    return MakeAccelerator(device);
+  }
+  std::shared_ptr<const Accelerator> accelerator; // whose destructor takes the mutex, too
+  const std::lock_guard<std::mutex> lock(SharedMutex);
+  const CudaAccelerator*& shared = Shared[device.ordinal];
+  accelerator = shared != nullptr ? shared->weak_from_this().lock() : nullptr;
+  if (!accelerator || accelerator->hasFailed()) { // or one that is waiting to say that it goes
+    auto made = std::make_shared<CudaAccelerator>(device, Precision::Float32);
+    shared = made.get();
+    return made;
+  }
+  return accelerator;
+}
+
+} // namespace
+
+std::shared_ptr<const Accelerator> MakeAccelerator(const Device& device, Precision precision)
+{
+  return std::make_shared<CudaAccelerator>(device, precision);
+}
+
+FoundAccelerator FindAccelerator(int localRank)
+{
+  const Devices devices = FindDevices();
+  if (devices.usable.empty()) {
+    return {nullptr, devices.reason};
+  }
+  return {SharedAccelerator(
+              devices.usable[static_cast<std::size_t>(localRank) % devices.usable.size()]),
+          ""};
+}
+
+} // namespace cuda
+} // namespace inr
