@@ -163,9 +163,14 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   return problem;
 }
 
-void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOptions& options)
+void FramePainter::makeRenderer(const vtkINRDataArray& array, RendererOptions options)
 {
   const ModelPointer& model = array.GetModel();
+  // What has failed stays where bricks are that it brought, and is not tried with every time step.
+  const bool isElsewhere = this->CasterModel != model || !this->CasterOptions.accelerator;
+  if (options.accelerator == this->GivenUp && isElsewhere) {
+    options.accelerator = nullptr;
+  }
   if (this->Caster && this->CasterModel == model && this->CasterOptions == options) {
     return;
   }
@@ -301,9 +306,7 @@ bool FramePainter::render(const Frame& scene, const Viewport& viewport, const Su
     last = {};
     throw;
   }
-  const int threads = this->Caster->threads();
-  last.backend = "CPU " + this->Caster->kernel() + ", " + std::to_string(threads) +
-                 (threads == 1 ? " thread" : " threads");
+  this->noteBackend();
   last.reduction = reduction;
   this->resolution(frame.mode)
       .record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
@@ -311,6 +314,22 @@ bool FramePainter::render(const Frame& scene, const Viewport& viewport, const Su
     this->Key.emplace(frame, this->CountSamples, this->Caster->majorantBuilds());
   }
   return true;
+}
+
+void FramePainter::noteBackend()
+{
+  const int threads = this->Caster->threads();
+  std::string& backend = this->Last.backend;
+  backend = "CPU " + this->Caster->kernel() + ", " + std::to_string(threads) +
+            (threads == 1 ? " thread" : " threads");
+  const std::string accelerator = this->Caster->accelerator();
+  if (!accelerator.empty()) {
+    backend += (this->CasterOptions.cached ? "; bricks by " : "; samples by ") + accelerator;
+  }
+  const auto failure = this->acceleratorFailure();
+  if (failure && failure->atWork) {
+    this->GivenUp = this->CasterOptions.accelerator;
+  }
 }
 
 bool FramePainter::showAgain(const Frame& frame)

@@ -61,7 +61,7 @@ struct PaintedFrame
   Image depth;
   Image samples; ///< empty unless asked for and known
   FrameStatistics statistics;
-  std::string backend; ///< "CPU avx512, 2 threads", ...
+  std::string backend; ///< "CPU avx512, 2 threads; bricks by CUDA float32, NVIDIA A100", ...
   double seconds = 0;  ///< from the mapper's call to the blended picture
   int reduction = 0;   ///< viewport size / image size
   bool depthRead = false;
@@ -101,6 +101,10 @@ public:
   const PaintedFrame& last() const { return this->Last; }
   /// See Renderer.
   std::int64_t cacheBytes() const { return this->Caster ? this->Caster->cacheBytes() : 0; }
+  std::optional<AcceleratedField::Failure> acceleratorFailure() const
+  {
+    return this->Caster ? this->Caster->acceleratorFailure() : std::nullopt;
+  }
   void release(vtkWindow* window)
   {
     this->Refine.cancel();
@@ -109,7 +113,8 @@ public:
   }
 
 private:
-  void makeRenderer(const vtkINRDataArray& array, const RendererOptions& options);
+  void makeRenderer(const vtkINRDataArray& array, RendererOptions options);
+  void noteBackend();
   using Clock = std::chrono::steady_clock;
 
   bool draw(const Frame& frame, vtkRenderer* renderer);
@@ -137,6 +142,7 @@ private:
   std::unique_ptr<Renderer> Caster;
   ModelPointer CasterModel;
   RendererOptions CasterOptions;
+  std::shared_ptr<const Accelerator> GivenUp; ///< it has failed
   bool CountSamples = false;
   TransferFunctionCache TransferFunctions;
   ImageReduction Rays;

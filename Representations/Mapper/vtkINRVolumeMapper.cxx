@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRVolumeMapper.h"
 
+#include "CUDA/CudaAccelerator.h"
 #include "Core/Error.h"
 #include "Core/Image/Exr.h"
 #include "DeferredDrawing.h"
@@ -57,6 +58,11 @@ struct vtkINRVolumeMapper::Internals
   bool IsAhead = false; ///< drawn because of another volume, which is in front
   std::string LastError;
   vtkTimeStamp Drawn; ///< the last frame
+
+  bool Searched = false; ///< for an accelerator, which may be null
+  std::shared_ptr<const inr::Accelerator> Accelerator;
+  std::string WhyNone;
+  bool BackendReported = false; ///< since it was set
 };
 
 vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>(this)) {}
@@ -72,6 +78,83 @@ void vtkINRVolumeMapper::SetCacheMode(int mode)
   if (mode != this->CacheMode) {
     this->CacheMode = mode;
     this->Modified();
+  }
+}
+
+void vtkINRVolumeMapper::SetBackend(int backend)
+{
+  if (backend < AUTO || backend > CUDA) {
+    vtkErrorMacro("There is no Backend " << backend << "; it is 0 (auto), 1 (CPU) or 2 (CUDA).");
+    return;
+  }
+  if (backend != this->Backend || this->Self->BackendReported) {
+    this->Modified();
+  }
+  this->Backend = backend;
+  this->Self->Searched = false; // what has failed is tried again
+  this->Self->BackendReported = false;
+}
+
+void vtkINRVolumeMapper::SetLocalRank(int rank)
+{
+  rank = std::max(rank, 0);
+  if (rank != this->LocalRank) {
+    this->LocalRank = rank;
+    this->Self->Searched = false;
+    this->Modified();
+  }
+}
+
+std::shared_ptr<const inr::Accelerator> vtkINRVolumeMapper::FindAccelerator(std::string& reason)
+{
+  inr::cuda::FoundAccelerator found = inr::cuda::FindAccelerator(this->LocalRank);
+  reason = found.reason;
+  return found.accelerator;
+}
+
+std::shared_ptr<const inr::Accelerator> vtkINRVolumeMapper::WantedAccelerator()
+{
+  Internals& self = *this->Self;
+  if (this->Backend == CPU) {
+    return nullptr;
+  }
+  if (!self.Searched) {
+    self.Accelerator = this->FindAccelerator(self.WhyNone);
+    self.Searched = true;
+  }
+  return self.Accelerator;
+}
+
+/** Empty where there is nothing to say. */
+std::string vtkINRVolumeMapper::WhyNotAccelerated() const
+{
+  const Internals& self = *this->Self;
+  const bool asked = this->Backend == CUDA;
+  if (asked && self.Searched && !self.Accelerator) {
+    return "There is no GPU for Backend CUDA (" + self.WhyNone +
+           "). The CPU draws instead; with Backend Auto or CPU it does so without a word.";
+  }
+  const auto failure = self.Painter.acceleratorFailure();
+  if (failure && failure->atWork) {
+    return "The GPU has failed and is not used any more: " + failure->reason +
+           ". The CPU goes on with the picture; set Backend to try the GPU again.";
+  }
+  if (failure && asked) {
+    return "The GPU cannot be used for this volume: " + failure->reason +
+           ". The CPU draws instead; set Backend to try the GPU again.";
+  }
+  return "";
+}
+
+void vtkINRVolumeMapper::ReportBackend()
+{
+  if (this->Self->BackendReported) {
+    return;
+  }
+  const std::string reason = this->WhyNotAccelerated();
+  if (!reason.empty()) {
+    this->Self->BackendReported = true;
+    vtkWarningMacro(<< reason);
   }
 }
 
@@ -240,7 +323,9 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   this->DrawVolumesBehind(renderer, volume);
   std::string problem;
   try {
-    problem = this->Self->Painter.paint(this, renderer, volume, this->Settings());
+    inr::PaintSettings settings = this->Settings();
+    settings.renderer.accelerator = this->WantedAccelerator();
+    problem = this->Self->Painter.paint(this, renderer, volume, settings);
   } catch (const std::bad_alloc&) {
     problem =
         "There is not enough memory to draw the volume; make the picture or CacheSize smaller.";
@@ -252,6 +337,7 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     this->Self->Drawn.Modified();
   }
   this->ReportOnce(problem);
+  this->ReportBackend();
 }
 
 void vtkINRVolumeMapper::DrawVolumesBehind(vtkRenderer* renderer, vtkVolume* volume)
@@ -303,6 +389,8 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "RenderMode: " << this->RenderMode << "\n"
+     << indent << "Backend: " << this->Backend << "\n"
+     << indent << "LocalRank: " << this->LocalRank << "\n"
      << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n"
      << indent << "ScatteringAlbedo: " << this->ScatteringAlbedo << "\n"
      << indent << "Anisotropy: " << this->Anisotropy << "\n"

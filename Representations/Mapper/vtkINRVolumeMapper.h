@@ -62,10 +62,12 @@
 #include <vtkVolumeMapper.h>
 
 #include <memory> // for std::unique_ptr
+#include <string> // for FindAccelerator
 
 namespace inr {
+class Accelerator;
 struct PaintSettings;
-}
+} // namespace inr
 
 class VTKINRMAPPER_EXPORT vtkINRVolumeMapper : public vtkVolumeMapper
 {
@@ -79,6 +81,34 @@ public:
   /** One of RenderModes. Default RAY_MARCHING. */
   vtkSetClampMacro(RenderMode, int, RAY_MARCHING, PATH_TRACING);
   vtkGetMacro(RenderMode, int);
+  ///@}
+
+  enum Backends {
+    AUTO = 0, ///< an NVIDIA GPU where one can be used, else the CPU
+    CPU = 1,
+    CUDA = 2 ///< the same as AUTO, and a warning says why where none can be used
+  };
+  ///@{
+  /**
+   * What asks the network for voxels of bricks or, with CacheMode NETWORK_ONLY, for samples; one of
+   * Backends, anything else is refused. The rest of a picture is computed by the CPU. A GPU's
+   * values are float32, as the CPU's are, but for the order of summation. One that fails, at
+   * whatever time, is given up for the CPU with a warning, without loss of a brick or change in a
+   * picture, until this is called again, if only with the same. So is one whose memory is short, of
+   * which AUTO says nothing. A change empties the cache. GetBackendInUse() says what is at work.
+   * Default AUTO.
+   */
+  void SetBackend(int backend);
+  vtkGetMacro(Backend, int);
+  ///@}
+
+  ///@{
+  /**
+   * Of the processes on this machine that draw, which one this is, from 0 on, for them to share the
+   * machine's GPUs. Default 0.
+   */
+  void SetLocalRank(int rank);
+  vtkGetMacro(LocalRank, int);
   ///@}
 
   ///@{
@@ -358,7 +388,11 @@ public:
   /** Paths through each pixel in the last frame; 0 when rays were marched. */
   vtkIdType GetNumberOfPaths() const;
 
-  /** What computed the last frame, such as "CPU avx512"; empty before the first. */
+  /**
+   * What computed the last frame, such as "CPU avx512, 2 threads", and what inferred its bricks or
+   * samples if that was not the CPU: "...; bricks by CUDA float32, NVIDIA H200". Empty before the
+   * first.
+   */
   const char* GetBackendInUse() const;
 
   /** Width and height of the last frame's picture in pixels; 0 before the first. */
@@ -399,16 +433,24 @@ protected:
   vtkINRVolumeMapper();
   ~vtkINRVolumeMapper() override;
 
+  /** What CUDA stands for: null, with the reason, where there is nothing that can be used. */
+  virtual std::shared_ptr<const inr::Accelerator> FindAccelerator(std::string& reason);
+
 private:
   vtkINRVolumeMapper(const vtkINRVolumeMapper&) = delete;
   void operator=(const vtkINRVolumeMapper&) = delete;
 
   void ReportOnce(const std::string& problem);
+  std::shared_ptr<const inr::Accelerator> WantedAccelerator();
+  std::string WhyNotAccelerated() const;
+  void ReportBackend();
   void DrawVolumesBehind(vtkRenderer* renderer, vtkVolume* volume);
 
   inr::PaintSettings Settings() const;
 
   int RenderMode = RAY_MARCHING;
+  int Backend = AUTO;
+  int LocalRank = 0;
   int SamplesPerPixel = 64;
   double ScatteringAlbedo = 1.0;
   double Anisotropy = 0.0;

@@ -10,4 +10,8 @@ namespace inr {
 /// own. At least 1. All processes of `controller` must call it together.
 int ThreadShare(vtkMultiProcessController* controller);
 
+/// Which of `controller`'s processes on this machine this one is, from 0 on. All must call it
+/// together, too.
+int LocalRank(vtkMultiProcessController* controller);
+
 } // namespace inr

@@ -85,7 +85,9 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
   }
   if (request == vtkPVView::REQUEST_UPDATE()) {
     if (this->SharedThreads == 0) { // in all processes alike: they share them out together
-      this->SharedThreads = inr::ThreadShare(vtkMultiProcessController::GetGlobalController());
+      vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+      this->SharedThreads = inr::ThreadShare(controller);
+      this->GetMapper()->SetLocalRank(inr::LocalRank(controller));
     }
     this->Deliver(in, out);
   } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
@@ -312,6 +314,8 @@ void vtkINRVolumeRepresentation::SetErrorTolerance(double tolerance)
 {
   this->GetMapper()->SetErrorTolerance(tolerance);
 }
+
+void vtkINRVolumeRepresentation::SetBackend(int backend) { this->GetMapper()->SetBackend(backend); }
 
 void vtkINRVolumeRepresentation::SetCacheMode(int mode) { this->GetMapper()->SetCacheMode(mode); }
 

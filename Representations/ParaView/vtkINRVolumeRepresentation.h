@@ -47,6 +47,7 @@ public:
   ///@{
   /// Forwarded to vtkINRVolumeMapper, where they are documented.
   void SetRenderMode(int mode);
+  void SetBackend(int backend);
   void SetSamplesPerPixel(int paths);
   void SetScatteringAlbedo(double albedo);
   void SetAnisotropy(double meanCosine);

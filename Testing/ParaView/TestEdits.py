@@ -17,6 +17,7 @@ dice = random.Random(7)
 
 SETTINGS = {
     "RenderMode": ["Ray Marching"] * 4 + ["Path Tracing"],
+    "Backend": ["Auto", "CPU"],
     "LevelOfDetailScale": [0, 0.5, 1, 2, 4],
     "SampleDistance": [0.5, 1, 2],
     "CacheSize": [4, 8, 64],

@@ -9,6 +9,7 @@ view = show_view()
 reader = simple.OpenDataFile(MODEL)
 display = simple.Show(reader, view)
 display.SampleDistance = 0.75
+display.Backend = "CPU"
 display.ScalarOpacityUnitDistance = 3
 table = simple.GetColorTransferFunction(ARRAY)
 table.RescaleTransferFunction(20, 120)
@@ -28,6 +29,7 @@ with Messages() as messages:
 check(messages.errors() == 0, "loading reported", messages.text)
 check(display.Representation == "INR Volume", "came back as", display.Representation)
 check(display.SampleDistance == 0.75, "sample distance", display.SampleDistance)
+check(display.Backend == "CPU", "backend", display.Backend)
 check(display.ScalarOpacityUnitDistance == 3, "unit distance", display.ScalarOpacityUnitDistance)
 points = simple.GetColorTransferFunction(ARRAY).RGBPoints
 check((points[0], points[-4]) == (20, 120), "colours span", points)
