@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds Core and CUDA on a machine with the CUDA toolkit, without VTK, and proves them on its GPU:
-# the conformance tests, small ones of them under compute-sanitizer, and the benchmark, which writes
-# Testing/Benchmarks/results/<gpu>/cuda.json. On Debian it installs what else is missing.
+# the conformance tests (of kernels, and of pictures of what they infer), small ones of them under
+# compute-sanitizer, and the benchmarks, which write Testing/Benchmarks/results/<gpu>/cuda.json. On
+# Debian it installs what else is missing.
 #
 #   Testing/run_cuda.sh
 #
@@ -40,7 +41,7 @@ if command -v apt-get > /dev/null; then
   bash CMake/install-debian-packages.sh core || echo "== Going on with what there is"
 fi
 if ! { cmake --preset cuda ${capability:+-DINR_CUDA_ARCHITECTURES="$capability"} &&
-       cmake --build --preset cuda --target test_cuda bench_cuda; } > "$build.log" 2>&1; then
+       cmake --build --preset cuda --target test_cuda bench_cuda bench_cuda_frames; } > "$build.log" 2>&1; then
   tail -n 60 "$build.log"
   echo "== Preset cuda does not build ($build.log)"
   failed=1
@@ -94,7 +95,7 @@ if [ -z "$gpu" ]; then
   echo "   skipped: no GPU"
   skipped=$((skipped + 1))
 else
-  python3 Testing/Benchmarks/cuda.py "$benchmark" "$conformance_failed"
+  python3 Testing/Benchmarks/cuda.py "$(dirname "$benchmark")" "$conformance_failed"
   count $?
 fi
 finish

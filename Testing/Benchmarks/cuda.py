@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs bench_cuda on this machine's GPU and writes cuda.json; see Testing/run_cuda.sh.
+"""Runs bench_cuda and bench_cuda_frames on this machine's GPU and writes cuda.json; see
+Testing/run_cuda.sh.
 
-    Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA/bench_cuda FAILED_CONFORMANCE_TESTS
+    Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA FAILED_CONFORMANCE_TESTS
 """
 import json
+import os
 import subprocess
 import sys
 
@@ -39,11 +41,23 @@ def results_of(measured, failed):
                                       baseline=f"ceiling, {what}", **more)
 
 
+def frames_of(lines):
+    """What bench_cuda_frames prints: the GPU infers, the CPU's cores draw."""
+    note = "768 x 768, default model as 256^3 voxels; drawn by all of the CPU's cores"
+    for line in lines.splitlines():
+        measured = json.loads(line)
+        yield {**measured, "value": float(f"{measured['value']:.4g}"), "note": note}
+
+
+def run(folder, program):
+    return subprocess.run([os.path.join(folder, program)], check=True, stdout=subprocess.PIPE).stdout
+
+
 def main():
-    program, failed = sys.argv[1:]
-    output = subprocess.run([program], check=True, stdout=subprocess.PIPE).stdout
-    measured = json.loads(output)
+    folder, failed = sys.argv[1:]
+    measured = json.loads(run(folder, "bench_cuda"))
     results = list(results_of(measured, int(failed)))
+    results += frames_of(run(folder, "bench_cuda_frames"))
     for result in results:
         print(f"{result['name']}: {result['value']} {result['unit']}")
     device = measured["device"]
