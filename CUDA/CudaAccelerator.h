@@ -2,7 +2,7 @@
 #pragma once
 
 #include "CUDA/Device.h"
-#include "CUDA/PackedModel.h"
+#include "CUDA/Precision.h"
 #include "Core/Cache/Accelerator.h"
 
 #include <memory>

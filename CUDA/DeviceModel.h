@@ -3,6 +3,7 @@
 
 #include "CUDA/Engine.h"
 #include "CUDA/Kernels/BrickKernels.h"
+#include "CUDA/PackedModel.h"
 #include "CUDA/Runtime.h"
 
 #include <optional>

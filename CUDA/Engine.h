@@ -2,7 +2,7 @@
 #pragma once
 
 #include "CUDA/Device.h"
-#include "CUDA/PackedModel.h"
+#include "CUDA/Precision.h"
 #include "Core/Cache/BrickSource.h"
 
 #include <memory>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "CUDA/Kernels/PointKernels.h"
+#include "CUDA/Precision.h"
 #include "Core/Model/Model.h"
 
 #include <string>
@@ -9,12 +10,6 @@
 
 namespace inr {
 namespace cuda {
-
-/// What a GPU computes with.
-enum class Precision {
-  Half,   ///< parameters and layers' results are halves, sums are floats: tensor cores, fused
-  Float32 ///< everything float32: any model, slower
-};
 
 /// Throws Error(InvalidModel) where Core's evaluator would: when the parameter count does not fit
 /// the description or a parameter is NaN or infinite.

@@ -3,6 +3,7 @@
 // What is said of GPUs and of models that they cannot have.
 #include "CUDA/Engine.h"
 #include "CUDA/Kernels/LatticeShare.h"
+#include "CUDA/PackedModel.h"
 #include "Core/Error.h"
 #include "Testing/Core/RandomModel.h"
 
