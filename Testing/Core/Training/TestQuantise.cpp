@@ -18,11 +18,13 @@ namespace {
 /// What a network that was trained on a field is quantised with.
 struct Quantising : testing::Test
 {
-  Quantising()
+  Quantising() { this->train(SmallDescription()); }
+
+  void train(const inr::Description& description)
   {
     inr::TrainingOptions options = Steps(200);
     options.storedAs = inr::ParameterType::Half;
-    options.description = SmallDescription();
+    options.description = description;
     this->Trained = *inr::TrainModel(this->Data.data(), {}, options);
   }
 
@@ -45,7 +47,7 @@ struct Quantising : testing::Test
 
   Field<float> Data = Waves();
   inr::InMemorySource Source{this->Data.data(), -1, 1};
-  inr::PsnrEstimate Estimate{this->Source, 1};
+  inr::PsnrEstimate Estimate{this->Source, 1, 1 << 13}; ///< of 8,160 voxels
   inr::Model Trained;
 };
 
@@ -151,11 +153,10 @@ TEST_F(Quantising, ClearsWhatNothingDependsOn)
 // One number that dwarfs its level leaves no step for the others; here nothing reads it.
 TEST_F(Quantising, StaysInHalvesWhereSixteenBitsAreTooFew)
 {
-  inr::TrainingOptions options = Steps(200);
-  options.storedAs = inr::ParameterType::Half;
-  options.description = SmallDescription();
-  options.description->grid.baseResolution = 5; // 125 of 128 entries
-  inr::Model model = *inr::TrainModel(this->Data.data(), {}, options);
+  inr::Description description = SmallDescription();
+  description.grid.baseResolution = 5; // 125 of 128 entries
+  this->train(description);
+  inr::Model model = this->Trained;
   model.parameters[inr::Layout(model.description).gridOffset + 127 * 4] = 3e7f;
   const double before = this->psnr(model);
   this->quantise(model);
