@@ -276,7 +276,11 @@ bool LevelChooser::measure(const std::vector<std::int64_t>& left, const Majorant
                            const Arena& arena, const WorkLimit& limit,
                            const std::function<bool()>& keepGoing)
 {
-  const LevelErrors::Question question = this->question(cells);
+  LevelErrors::Question question = this->question(cells);
+  question.isTooLarge = [this, known = std::move(question.isTooLarge)](std::int64_t cell,
+                                                                       const LineErrors& lines) {
+    return this->Allowed[static_cast<std::size_t>(cell)] == 0 || known(cell, lines); // not met
+  };
   const auto count = static_cast<std::int64_t>(left.size());
   const std::int64_t round = limit.isTimed() ? arena.threads() : count;
   for (std::int64_t first = 0; first < count; first += round) {

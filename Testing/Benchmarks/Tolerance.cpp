@@ -112,10 +112,10 @@ private:
     return shown;
   }
 
-  /// With nothing decoded or measured before.
+  /// With nothing decoded or measured before: of a model of its own, whose bricks nobody keeps.
   void reportFirst(double tolerance)
   {
-    inr::Renderer renderer(this->Model, Cached());
+    inr::Renderer renderer(std::make_shared<inr::Model>(*this->Model), Cached());
     renderer.setTransferFunction(this->Function);
     inr::Frame frame = this->Picture;
     frame.errorTolerance = tolerance;

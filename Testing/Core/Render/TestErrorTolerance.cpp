@@ -9,54 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 
 namespace {
-
-const glm::i64vec3 Dims(112, 96, 104);
-
-/// Smooth nearly everywhere, with wires a voxel or two thick.
-float FogAndWires(const glm::vec3& u)
-{
-  const float fog = 0.3f + 0.2f * std::sin(5 * u.x + 2 * u.z) * std::cos(4 * u.y);
-  float wire = 0;
-  for (const glm::vec2 at : {glm::vec2(0.3f, 0.4f), glm::vec2(0.7f, 0.6f)}) {
-    const float x = 100 * (u.x - at.x - 0.05f * std::sin(6 * u.z));
-    const float y = 100 * (u.y - at.y);
-    wire = std::max(wire, std::exp(-0.7f * (x * x + y * y)));
-  }
-  return fog * (1 - wire) + wire;
-}
-
-inr::TransferFunction Glow()
-{
-  inr::TransferFunction function;
-  function.table = {{0.1f, 0.2f, 1, 0.005f}, {0.2f, 0.6f, 0.8f, 0.02f}, {1, 0.3f, 0, 0.3f}};
-  return function;
-}
-
-inr::Renderer MakeRenderer(std::int64_t cacheBytes = 64 << 20, int threads = 2)
-{
-  inr::RendererOptions options;
-  options.threads = threads;
-  options.cache.bytes = cacheBytes;
-  options.cache.precision = inr::CachePrecision::Float32;
-  options.cache.brickSize = 16;
-  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(Dims),
-                         CellsOf(FogAndWires, Dims), options);
-  renderer.setTransferFunction(Glow());
-  return renderer;
-}
-
-inr::Frame FrameWith(std::optional<double> tolerance)
-{
-  inr::Frame frame = Oblique(glm::dvec3(Dims), 72);
-  frame.sampleDistance = 0.5;
-  frame.unitDistance = 2;
-  frame.errorTolerance = tolerance;
-  return frame;
-}
 
 TEST(ErrorTolerance, OfZeroIsTheFullResolution)
 {
@@ -139,29 +94,6 @@ TEST(ErrorTolerance, AsksForNextToNothingWhereColoursAreTheSame)
   EXPECT_LT(255 * inr::ImageMaximumError(drawn.picture, exact.picture), 0.01);
   EXPECT_LT(drawn.statistics.samples, exact.statistics.samples / 6);
   EXPECT_EQ(drawn.statistics.levels.finest, inr::LevelErrors::Coarsest);
-}
-
-/// Macro-cells of 300 voxels would have to be known at once.
-TEST(ErrorTolerance, TakesEverySampleOfWhatIsTooMuchToMeasure)
-{
-  const glm::i64vec3 dims(600, 600, 600);
-  inr::MacroCells cells = inr::MakeMacroCells(dims, 300);
-  std::fill(cells.ranges.begin(), cells.ranges.end(), inr::ValueRange{0, 1});
-  inr::RendererOptions options;
-  options.cache = Options(inr::CachePrecision::Float32, 16);
-  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(dims), cells,
-                         options);
-  renderer.setTransferFunction(Glow());
-  inr::Frame frame = Oblique(glm::dvec3(dims), 4);
-  frame.width = frame.height = 4;
-  frame.unitDistance = 20;
-  frame.errorTolerance = 0;
-  const Drawn exact = Draw(renderer, frame);
-  frame.errorTolerance = 20;
-  const Drawn drawn = Draw(renderer, frame);
-  EXPECT_EQ(drawn.picture.pixels, exact.picture.pixels);
-  EXPECT_EQ(drawn.statistics.samples, exact.statistics.samples);
-  EXPECT_EQ(drawn.statistics.work.networkSamples, 0); // for nothing but bricks
 }
 
 /// With next to no tolerance, in a medium of one colour: a part of the exact samples, at most.
@@ -255,32 +187,6 @@ TEST(ErrorTolerance, IsNotForWhatIsLitCroppedOrProjected)
   expectExact(frame);
 }
 
-/// However short a frame's time is, the next one is further.
-TEST(ErrorTolerance, ComesAboutInLimitedTime)
-{
-  inr::Renderer renderer = MakeRenderer();
-  inr::Frame frame = FrameWith({});
-  frame.adaptiveSampling = false;
-  frame.levelOfDetailScale = 1;
-  frame.width = frame.height = 24;
-  EXPECT_GT(Draw(renderer, frame).statistics.levels.finest, 0); // shown meanwhile: it is there
-  frame.errorTolerance = 4.0;
-  frame.timeLimit = 1e-3;
-  inr::Image picture;
-  inr::FrameStatistics statistics = renderer.render(frame, picture);
-  EXPECT_FALSE(statistics.complete);
-  EXPECT_EQ(statistics.missed, 0);
-  int frames = 1;
-  for (; !statistics.complete; ++frames) {
-    ASSERT_LT(frames, 2000);
-    statistics = renderer.render(frame, picture);
-  }
-  EXPECT_GT(frames, 2); // eight blocks on two threads
-  inr::Renderer unhurried = MakeRenderer();
-  frame.timeLimit = 0;
-  EXPECT_LE(inr::ImageMaximumError(picture, Draw(unhurried, frame).picture), 2e-3f);
-}
-
 /// What is known of one tolerance is enough for smaller ones and, here, for other colours.
 TEST(ErrorTolerance, MeasuresNothingTwice)
 {
@@ -288,38 +194,12 @@ TEST(ErrorTolerance, MeasuresNothingTwice)
   EXPECT_EQ(Draw(renderer, FrameWith(0.0)).statistics.work.networkSamples, 0);
   const Drawn first = Draw(renderer, FrameWith(4.0));
   const auto measured = first.statistics.work.networkSamples;
-  EXPECT_GE(measured, Dims.x * Dims.y * Dims.z);
-  EXPECT_LT(measured, 2.3 * static_cast<double>(Dims.x * Dims.y * Dims.z)); // blocks overlap
+  EXPECT_GE(measured, FoggyDims.x * FoggyDims.y * FoggyDims.z);
+  EXPECT_LT(measured,
+            2.3 * static_cast<double>(FoggyDims.x * FoggyDims.y * FoggyDims.z)); // blocks overlap
   EXPECT_EQ(Draw(renderer, FrameWith(2.0)).statistics.work.networkSamples, 0);
   renderer.setTransferFunction(UniformMedium(0.2f));
   EXPECT_EQ(Draw(renderer, FrameWith(2.0)).statistics.work.networkSamples, 0);
-}
-
-/// Whether to go on is asked for each cell, as a block of small ones takes seconds.
-TEST(ErrorTolerance, CanBeStoppedWhileABlockIsMeasured)
-{
-  const glm::i64vec3 dims(32, 32, 32);
-  inr::RendererOptions options;
-  options.cache = Options(inr::CachePrecision::Float32, 16);
-  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(dims),
-                         CellsOf(FogAndWires, dims, 2), options);
-  renderer.setTransferFunction(Glow());
-  inr::Frame frame = Oblique(glm::dvec3(dims), 24);
-  frame.errorTolerance = 0;
-  std::atomic<int> asked{0};
-  const auto count = [&] {
-    ++asked;
-    return true;
-  };
-  inr::Image picture;
-  renderer.render(frame, picture, nullptr, count);
-  const int before = asked.exchange(0);
-  frame.errorTolerance = 4;
-  EXPECT_THROW(renderer.render(frame, picture, nullptr, [&] { return ++asked < 20; }), inr::Error);
-  EXPECT_LT(asked, 30);
-  asked = 0;
-  renderer.render(frame, picture, nullptr, count);
-  EXPECT_GT(asked, before + 500);
 }
 
 TEST(ErrorTolerance, MustBeAFiniteNumberFromZeroOn)
