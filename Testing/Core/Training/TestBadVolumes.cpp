@@ -7,7 +7,6 @@
 #include "Core/Model/ModelFile.h"
 #include "Core/Random.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
-#include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
 
 #include <gtest/gtest.h>
@@ -174,24 +173,17 @@ void ExpectSameFromFile(const inr::Model& model)
   ExpectSameQuality(*read->quality, *model.quality);
 }
 
-/// Of a small model, which has the same values to come to terms with.
-template <class T> void ExpectSameOnAnyThreads(const Field<T>& field)
+template <class T> void CheckVolume(const BadVolume& volume)
 {
+  const Field<T> field = Make<T>(volume);
   inr::TrainingOptions options = Steps(80);
-  options.description = SmallDescription();
   options.threads = 1;
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
   options.threads = 2;
   const inr::ModelPointer again = inr::TrainModel(field.data(), {}, options);
   EXPECT_EQ(model->parameters, again->parameters);
   ExpectSameQuality(*model->quality, *again->quality);
-}
 
-template <class T> void CheckVolume(const BadVolume& volume)
-{
-  const Field<T> field = Make<T>(volume);
-  ExpectSameOnAnyThreads(field);
-  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(80));
   ExpectFinite(*model);
   const Normalised reference(field, model->volume);
   const inr::Quality measured = reference.against(Decode(model));
