@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A volume is as good as itself times a plus b, as long as its numbers can be told apart then.
-#include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
 
 #include <gtest/gtest.h>
@@ -32,9 +31,7 @@ template <class T> Field<T> Changed(inr::ScalarType type, const Change& change)
 
 template <class T> inr::ModelPointer Train(inr::ScalarType type, const Change& change)
 {
-  inr::TrainingOptions options = Steps(30);
-  options.description = SmallDescription(); // values are changed outside the network
-  return inr::TrainModel(Changed<T>(type, change).data(), {}, options);
+  return inr::TrainModel(Changed<T>(type, change).data(), {}, Steps(30));
 }
 
 template <class T> void ExpectTheSame(inr::ScalarType type, const Change& change)
