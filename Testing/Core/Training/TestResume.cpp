@@ -117,7 +117,8 @@ TEST_F(Resume, WritesInIntervals)
   inr::TrainingOptions options = this->options(400);
   options.checkpoint.interval = 0.01;
   const inr::ModelPointer whole = this->train(options);
-  EXPECT_GT(this->count(CheckpointEvent::Written), 2);
+  // One on the way, or more: writing takes no more than a twentieth of the time.
+  EXPECT_GE(this->count(CheckpointEvent::Written), 2);
   EXPECT_EQ(this->count(CheckpointEvent::Failed), 0);
   // The last one is of all steps: what is left is to measure.
   const inr::CheckpointFile file(this->Path);
