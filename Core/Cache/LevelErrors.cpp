@@ -16,6 +16,8 @@ namespace inr {
 
 namespace {
 
+static_assert(LevelErrors::Coarsest <= 3, "LineKernel compares samples with up to 9 values");
+
 constexpr double BlockEdge = 64; ///< voxels: a picture in a limited time waits for one block
 
 glm::i64vec3 PlaceOf(std::int64_t number, const glm::i64vec3& dims)

@@ -90,8 +90,8 @@ struct Frame
   /// Samples where little can be seen stand for up to four times the sample distance.
   bool adaptiveSampling = true;
 
-  /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel at most as large
-  /// as a pixel, 0 reads the full resolution everywhere; not negative.
+  /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel at most as
+  /// large as a pixel, 0 reads the full resolution everywhere; not negative.
   double levelOfDetailScale = 1;
 
   /// Takes the place of levelOfDetailScale and adaptiveSampling where it is given: by how many
@@ -101,7 +101,8 @@ struct Frame
   /// less, they come from coarser levels and are further apart wherever that stays within it; see
   /// LevelChooser. Everything else, and paths, is drawn as with 0. What the precision of the cache
   /// rounds comes on top, and up to 0.26 in opaque media, as rays end at 0.999 of opacity; and
-  /// between voxels of the full resolution the field is taken to be linear. Ignored without a cache.
+  /// between voxels of the full resolution the field is taken to be linear. Of pieces, all together
+  /// keep to it. Ignored without a cache.
   std::optional<double> errorTolerance;
 
   /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones

@@ -171,6 +171,22 @@ TEST(LevelErrors, AreThoseOfLayersInAnyDirection)
   }
 }
 
+/// Rays go between voxels: the first one beyond a cell, on either side, is part of what they see.
+TEST(LevelErrors, CountTheVoxelsNextToACell)
+{
+  const glm::i64vec3 dims(64, 48, 48);
+  for (const int plane : {15, 32}) { // of cells of 16, those before and behind the second
+    const Voxels voxels(dims, [&](const glm::vec3& u) {
+      return static_cast<int>(64 * u.x) == plane ? 0.9f : 0.1f;
+    });
+    const inr::LevelErrors errors =
+        Measured([&](const glm::vec3& u) { return voxels.at(u); }, dims, 16);
+    // Level 1 has half of it there, but next to it, inside, no more than a quarter of that.
+    EXPECT_GT(errors.of(1 + 4 * (1 + 3 * 1)).levels.errors[0].largest, 0.35) << plane;
+    EXPECT_GT(errors.of(1 + 4 * (1 + 3 * 1)).levels.errors[0].sum, 0.35 * 18) << plane;
+  }
+}
+
 TEST(LevelErrors, CancelWhereFieldsAreRough)
 {
   const glm::i64vec3 dims(48, 48, 48);

@@ -90,12 +90,38 @@ TEST(ToleranceLimits, CanBeStoppedWhileABlockIsMeasured)
 
 /// A row of blocks of 64^3 cells of a voxel, eight of which may be known: next to nothing of each
 /// can be seen.
-TEST(ToleranceLimits, ForgetWhatIsNoLongerSeen)
+class RowOfBlocks
+{
+public:
+  RowOfBlocks() : Renderer(makeRenderer()) {}
+
+  /// At these voxels along x.
+  Drawn look(double from, double to, double tolerance = 20)
+  {
+    inr::Frame frame;
+    frame.width = 80;
+    frame.height = 16;
+    frame.unitDistance = 20;
+    frame.errorTolerance = tolerance;
+    frame.clipToWorld =
+        glm::inverse(glm::ortho(from, to, 0.0, 63.0, -100.0, 100.0) *
+                     glm::lookAt(glm::dvec3(0), glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0)) *
+                     glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1)));
+    return Draw(this->Renderer, frame);
+  }
+
+private:
+  static inr::Renderer makeRenderer();
+
+  inr::Renderer Renderer;
+};
+
+inr::Renderer RowOfBlocks::makeRenderer()
 {
   const glm::i64vec3 dims(640, 64, 64);
   const auto spots = [](const glm::vec3& u) {
     const glm::vec3 off = glm::mod(glm::vec3(u.x * 10, u.y, u.z), 1.0f) - 0.5f;
-    return std::exp(-300 * glm::dot(off, off));
+    return std::exp(-60 * glm::dot(off, off));
   };
   inr::MacroCells cells = inr::MakeMacroCells(dims, 1);
   for (std::size_t k = 0; k < cells.ranges.size(); ++k) {
@@ -113,26 +139,32 @@ TEST(ToleranceLimits, ForgetWhatIsNoLongerSeen)
     function.table.emplace_back(1, 0.5f, 0, 0.1f * static_cast<float>(std::max(0, k - 128)) / 127);
   }
   renderer.setTransferFunction(function);
-  const auto look = [&](double from, double to) { // at these voxels along x
-    inr::Frame frame;
-    frame.width = 80;
-    frame.height = 16;
-    frame.unitDistance = 20;
-    frame.errorTolerance = 2;
-    frame.clipToWorld =
-        glm::inverse(glm::ortho(from, to, 0.0, 63.0, -100.0, 100.0) *
-                     glm::lookAt(glm::dvec3(0), glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0)) *
-                     glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1)));
-    return Draw(renderer, frame);
-  };
-  const Drawn left = look(0, 319);
+  return renderer;
+}
+
+TEST(ToleranceLimits, ForgetWhatIsNoLongerSeen)
+{
+  RowOfBlocks row;
+  const Drawn left = row.look(0, 319);
   EXPECT_GT(left.statistics.work.networkSamples, 0);
-  EXPECT_EQ(look(0, 319).statistics.work.networkSamples, 0);
-  EXPECT_GT(look(320, 639).statistics.work.networkSamples, 0);
-  const Drawn again = look(0, 319);
+  EXPECT_EQ(row.look(0, 319).statistics.work.networkSamples, 0);
+  EXPECT_GT(row.look(320, 639).statistics.work.networkSamples, 0);
+  const Drawn again = row.look(0, 319);
   EXPECT_EQ(again.statistics.work.networkSamples, left.statistics.work.networkSamples);
   EXPECT_EQ(again.picture.pixels, left.picture.pixels);
-  EXPECT_EQ(look(0, 319).statistics.work.networkSamples, 0);
+  EXPECT_EQ(row.look(0, 319).statistics.work.networkSamples, 0);
+}
+
+/// And not by what had been measured when there was less to see.
+TEST(ToleranceLimits, MeasureNothingWhereTooManyCellsAreSeen)
+{
+  RowOfBlocks row;
+  EXPECT_LT(row.look(0, 319).statistics.samples, row.look(0, 319, 0).statistics.samples);
+  const Drawn known = row.look(0, 639);
+  EXPECT_EQ(known.statistics.work.networkSamples, 0);
+  const Drawn fresh = RowOfBlocks().look(0, 639);
+  EXPECT_EQ(known.statistics.samples, fresh.statistics.samples);
+  EXPECT_EQ(known.picture.pixels, fresh.picture.pixels);
 }
 
 } // namespace

@@ -32,7 +32,7 @@ Afar LookFromAfar(const FieldEvaluator::Function& field, std::int64_t size, int 
                          CellsOf(linear, dims, edge), options);
   renderer.setTransferFunction(colours);
   const glm::dvec3 middle(0.5 * static_cast<double>(size - 1));
-  const double reach = glm::length(middle);
+  const double reach = glm::length(middle) + 0.5;
   const double across = zoom * reach;
   inr::Frame frame;
   frame.width = frame.height = 480;
