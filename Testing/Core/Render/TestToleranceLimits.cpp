@@ -95,16 +95,16 @@ class RowOfBlocks
 public:
   RowOfBlocks() : Renderer(makeRenderer()) {}
 
-  /// At these voxels along x.
-  Drawn look(double from, double to, double tolerance = 20)
+  /// At these voxels along x; those that rays meet are the same wherever it looks.
+  Drawn look(int from, int to, double tolerance = 20)
   {
     inr::Frame frame;
-    frame.width = 80;
+    frame.width = (to + 1 - from) / 8;
     frame.height = 16;
     frame.unitDistance = 20;
     frame.errorTolerance = tolerance;
     frame.clipToWorld =
-        glm::inverse(glm::ortho(from, to, 0.0, 63.0, -100.0, 100.0) *
+        glm::inverse(glm::ortho(from - 0.5, to + 0.5, -0.5, 63.5, -100.0, 100.0) *
                      glm::lookAt(glm::dvec3(0), glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0)) *
                      glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1)));
     return Draw(this->Renderer, frame);
