@@ -44,6 +44,9 @@ public:
     return powers;
   }
 
+  /// Of the first cell, as last chosen.
+  int level() const { return this->Chooser.sampling()[0].level; }
+
   /// Light that passes two cells of 16 slices of it: the third has no smoke on its one side.
   static double light() { return std::pow(1.0 - Opacity, 32); }
 
@@ -94,6 +97,7 @@ TEST(LevelChooser, AllowsMoreBehindSmokeByWhatItHides)
   EXPECT_GE(alike, 22);
   EXPECT_EQ(clear.powers(1e-4), std::vector<int>(12, 0));
   EXPECT_EQ(clear.powers(0.05), std::vector<int>({3, 3, 3, 3, 3, 3, 3, 3, 2, 2, 2, 2}));
+  EXPECT_EQ(clear.level(), 3); // rather than every eighth sample of level 0
 }
 
 } // namespace
