@@ -45,8 +45,8 @@ public:
   static constexpr double LongestStep = 1.0;
 
   /// Of a tolerance, what is made use of: lines between the directions that LevelErrors looks at
-  /// may be further off. Of about 1,000 scenes that are hard to keep to, none was off by more than
-  /// 0.96 of the tolerance with it.
+  /// may be further off. With it, the worst of 1,170 pictures that are hard to keep to, of fields
+  /// linear between voxels, was off by 0.96 of the tolerance.
   static constexpr double Certain = 0.8;
 
   /// `levels`: of the cache.
