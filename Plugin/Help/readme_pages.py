@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Parts of the README as HTML pages: of Markdown, what the README uses."""
+import html
+import os
+import re
+
+TABLE_LINE = re.compile(r"\|.*\|$")
+ITEM = re.compile(r"(?:- |\d+\. )")
+
+
+def anchor(heading):
+    """The anchor that Markdown viewers give a heading."""
+    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+
+
+def sections(text):
+    """Yields (level, heading, body) of each heading of `text`; what is in fences is no heading."""
+    level, heading, body, fenced = 1, "", [], False
+    for line in text.splitlines():
+        fenced ^= line.startswith("```")
+        found = None if fenced else re.match(r"(#{1,3}) (.*)", line)
+        if not found:
+            body.append(line)
+            continue
+        yield level, heading, "\n".join(body)
+        level, heading, body = len(found[1]), found[2], []
+    yield level, heading, "\n".join(body)
+
+
+class Markdown:
+    """Turns Markdown into HTML. `pages`: from anchors to the pages they are on; other links become
+    plain text. `root`: the folder that pictures are relative to; `pictures` collects those seen."""
+
+    def __init__(self, root, pages):
+        self.root = root
+        self.pages = pages
+        self.pictures = set()
+
+    def link(self, found):
+        text, target = found.groups()
+        if target.startswith(("http:", "https:")):
+            return f'<a href="{target}">{text}</a>'
+        page = self.pages.get(target[1:]) if target.startswith("#") else None
+        return f'<a href="{page}">{text}</a>' if page else text
+
+    def picture(self, found):
+        path = os.path.join(self.root, found[1])
+        if not os.path.dirname(path).endswith("gallery"):
+            return ""  # plots belong to the measurements, which are not in the help
+        self.pictures.add(path)
+        return f'<img src="{os.path.basename(path)}">'
+
+    def inline(self, text):
+        """Of one paragraph or table cell."""
+        codes = []
+
+        def keep(found):
+            codes.append(f"<code>{html.escape(found[1], quote=False)}</code>")
+            return f"\0{len(codes) - 1}\0"
+
+        text = html.escape(re.sub(r"`([^`]+)`", keep, text), quote=False)
+        text = re.sub(r"!\[[^\]]*\]\(([^)]+)\)", self.picture, text)
+        text = re.sub(r"\[([^\]]+)\]\(([^)]+)\)", self.link, text)
+        text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
+        text = re.sub(r"\*([^*]+)\*", r"<i>\1</i>", text)
+        return re.sub("\0(\\d+)\0", lambda found: codes[int(found[1])], text)
+
+    def table(self, lines):
+        rows = []
+        for number, line in enumerate(lines):
+            cells = [cell.strip() for cell in line.strip("|").split("|")]
+            if number == 1:
+                continue  # the line below the header
+            tag = "th" if number == 0 else "td"
+            rows.append("".join(f"<{tag}>{self.inline(cell)}</{tag}>" for cell in cells))
+        body = "\n".join(f"<tr>{row}</tr>" for row in rows)
+        return f'<table border="1" cellspacing="0" cellpadding="4">\n{body}\n</table>'
+
+    def items(self, lines):
+        texts = []
+        for line in lines:
+            if ITEM.match(line):
+                texts.append(ITEM.sub("", line, count=1))
+            else:
+                texts[-1] += " " + line.strip()
+        tag = "ul" if lines[0].startswith("- ") else "ol"
+        body = "\n".join(f"<li>{self.inline(text)}</li>" for text in texts)
+        return f"<{tag}>\n{body}\n</{tag}>"
+
+    def block(self, lines):
+        """Of lines between two empty ones."""
+        if lines[0].startswith("    "):
+            return f"<pre>{html.escape(chr(10).join(line[4:] for line in lines))}</pre>"
+        if all(TABLE_LINE.match(line) for line in lines):
+            return self.table(lines)
+        if ITEM.match(lines[0]):
+            return self.items(lines)
+        return f"<p>{self.inline(' '.join(lines))}</p>"
+
+    def convert(self, text):
+        """HTML of the body of a section."""
+        parts = []
+        for number, part in enumerate(re.split(r"^```.*$", text, flags=re.MULTILINE)):
+            if number % 2:
+                parts.append(f"<pre>{html.escape(part.strip())}</pre>")
+                continue
+            blocks = (block.splitlines() for block in re.split(r"\n\s*\n", part.strip("\n")))
+            parts += [self.block(lines) for lines in blocks if lines]
+        return "\n".join(parts)
