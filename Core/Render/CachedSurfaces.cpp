@@ -87,6 +87,9 @@ bool CachedMarcher::drawSurface(CachedRay& state, int surface, int level, double
 {
   const float value = this->Scene.settings.projector.surfaces.values[surface];
   const double t = place * this->Scene.settings.step;
+  if (!state.ray.isInPiece(t)) {
+    return true; // that of another picture finds it, too, from the same samples
+  }
   glm::vec4 color = this->Scene.colors.at(value);
   if (this->Scene.shading != nullptr) {
     float found = 0;

@@ -257,9 +257,6 @@ Ray RayGeometry::clipped(const Line& line, int x, int y, double begin, double en
     ray.footprintGrowth = (atFar - atNear) / line.range;
     ray.footprint = (atNear + ray.footprintGrowth * world.begin) / this->WorldPerUnit;
   }
-  if (this->Picture.blending.mode == BlendMode::Isosurface) {
-    KeepPiece(ray); // surfaces are found between samples, of which the first is where it begins
-  }
   return ray;
 }
 

@@ -21,10 +21,15 @@ struct Ray
   double length = 0;          ///< t where the ray leaves or meets something opaque; <= 0: a miss
   double footprint = 0;       ///< edge of the pixel at t = 0, in units of t
   double footprintGrowth = 0; ///< of the footprint per unit of t
-  double pieceBegin = 0;      ///< t between which the picture\'s piece of the medium is
+  double pieceBegin = 0;      ///< t between which the picture's piece of the medium is
   double pieceEnd = std::numeric_limits<double>::infinity();
 
   INR_HOST_DEVICE glm::dvec3 at(double t) const { return this->entry + t * this->direction; }
+  /// Every place belongs to one of the pieces that make up the whole.
+  INR_HOST_DEVICE bool isInPiece(double t) const
+  {
+    return t >= this->pieceBegin && t < this->pieceEnd;
+  }
 };
 
 /// A Frame's geometry composed in double, once: rays in index space and back to window depth.

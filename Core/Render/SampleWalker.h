@@ -53,7 +53,8 @@ public:
         PieceEnd(ray.pieceEnd / settings.step), Next(jitter < 1.0 ? 0 : -1)
   {}
 
-  /// Moves on to the next sample of the ray's piece that may be seen; false when there is none.
+  /// Moves on to the next sample of the ray's piece that may be seen; false when there is none. Of
+  /// samples at the ends of what they stand for, the last one may be behind the piece.
   INR_HOST_DEVICE bool moveToVisible(const MarchSettings& settings)
   {
     while (this->moveAlongRay(settings)) {
@@ -61,14 +62,14 @@ public:
         return true;
       }
       const AlikeSamples samples = this->alikeOnRay();
-      const double first = static_cast<double>(this->Next) + this->offset(samples);
-      if (first >= this->PieceEnd) {
+      if (this->belongsFrom(samples) >= this->PieceEnd) {
         return false;
       }
-      if (first >= this->PieceBegin) {
+      if (static_cast<double>(this->Next) + this->offset(samples) >= this->PieceBegin) {
         return true;
       }
-      this->pass(samples, this->countBelow(this->PieceBegin, samples));
+      const double first = static_cast<double>(this->Next) + this->offset(samples);
+      this->pass(samples, CountOf(samples, this->PieceBegin - first));
     }
     return false;
   }
@@ -79,7 +80,7 @@ public:
   {
     AlikeSamples samples = this->alikeOnRay();
     if (samples.count > 1 && this->Stretch.exit > this->PieceEnd) {
-      samples.count = this->countBelow(this->PieceEnd, samples);
+      samples.count = CountOf(samples, this->PieceEnd - this->belongsFrom(samples));
     }
     return samples;
   }
@@ -186,11 +187,18 @@ private:
            this->Stretch.exit <= this->PieceEnd;
   }
 
-  /// How many of these samples, the first of them in any case, are at places below `end`.
-  INR_HOST_DEVICE int countBelow(double end, const AlikeSamples& samples) const
+  /// Where a piece must not have ended for the first of such samples to belong to it: at its place.
+  /// One at the end of what it stands for is taken by all pieces that this meets.
+  INR_HOST_DEVICE double belongsFrom(const AlikeSamples& samples) const
   {
-    const double first = static_cast<double>(this->Next) + this->offset(samples);
-    return CountBelow((end - first) / static_cast<double>(samples.steps()), samples.count);
+    const auto begin = static_cast<double>(this->Next);
+    return this->Jitter < 1.0 ? begin + this->offset(samples) : begin;
+  }
+
+  /// How many of these samples, the first of them in any case, begin on a way of `length`.
+  INR_HOST_DEVICE static int CountOf(const AlikeSamples& samples, double length)
+  {
+    return CountBelow(length / static_cast<double>(samples.steps()), samples.count);
   }
 
   /// log2 of the steps that the next sample stands for at least: as many as others here, if the

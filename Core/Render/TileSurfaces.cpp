@@ -111,6 +111,9 @@ void TileMarcher::placeOnSurfaces()
     const auto live = static_cast<std::size_t>(crossing.live);
     const Ray& ray = this->Rays[static_cast<std::size_t>(this->Live[live])].ray;
     const double t = 0.5 * (crossing.low + crossing.high);
+    if (!ray.isInPiece(t)) {
+      continue; // another picture's
+    }
     this->Samples.push_back({FieldPosition(this->Scene.settings, ray.at(t)),
                              {crossing.value, crossing.value},
                              1.0f, // opacity as it is

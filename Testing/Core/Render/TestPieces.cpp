@@ -3,6 +3,7 @@
 // Pictures of pieces of a volume, blended in order of depth, against the picture of the whole.
 #include "Testing/Core/Render/PathScene.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -145,20 +146,41 @@ TEST(Pieces, MakeTheWholeWhenShaded)
   ExpectPiecesOfWhole(false, frame);
 }
 
+/// Cuts through surfaces, so that many a crossing is in an interval of samples that two pieces
+/// share.
+void ExpectSurfacesOfWhole(bool cached, const inr::Frame& frame)
+{
+  inr::Renderer renderer = MakeRenderer(cached);
+  inr::TransferFunction glass;
+  glass.table = {{1, 0.2f, 0, 0.3f}, {0.3f, 1, 0, 0.2f}, {0.1f, 0.5f, 1, 0.4f}};
+  renderer.setTransferFunction(glass);
+  const inr::Image whole = Render(renderer, frame);
+  const PiecesOf pieces(renderer, frame);
+  const inr::Image blended = Blend(pieces.pictures);
+  for (std::size_t k = 0; k < whole.pixels.size(); ++k) {
+    ASSERT_NEAR(blended.pixels[k], whole.pixels[k], 1e-5f) << k;
+  }
+  for (const inr::Image& piece : pieces.pictures) {
+    EXPECT_GT(std::count_if(piece.pixels.begin(), piece.pixels.end(),
+                            [](float value) { return value > 0.01f; }),
+              1000);
+  }
+}
+
 TEST(Pieces, MakeTheWholeOfSurfaces)
 {
   inr::Frame frame = Slanted(0);
-  frame.sampleDistance = 0.25;
   frame.blending.mode = inr::BlendMode::Isosurface;
-  frame.blending.isosurfaces = {0.45, 0.72};
-  inr::Renderer renderer = MakeRenderer(true);
-  const inr::Image whole = Render(renderer, frame);
-  const inr::Image blended = Blend(PiecesOf(renderer, frame).pictures);
-  int differing = 0;
-  for (std::size_t k = 0; k < whole.pixels.size(); ++k) {
-    differing += std::abs(blended.pixels[k] - whole.pixels[k]) > 0.01f ? 1 : 0;
+  frame.blending.isosurfaces = {0.45, 0.52, 0.58, 0.65, 0.72};
+  for (const double distance : {0.25, 1.0, 4.0}) {
+    frame.sampleDistance = distance;
+    ExpectSurfacesOfWhole(true, frame);
+    ExpectSurfacesOfWhole(false, frame);
   }
-  EXPECT_LT(differing, 40) << "but where a surface is touched between two samples";
+  frame.levelOfDetailScale = 2.7;
+  ExpectSurfacesOfWhole(true, frame);
+  frame.shading = inr::Material{};
+  ExpectSurfacesOfWhole(true, frame);
 }
 
 TEST(Pieces, ARayBesideThePieceIsAMiss)
