@@ -3,8 +3,10 @@
 
 #include "vtkINRVolumeMapper.h"
 
+#include <vtkBoundingBox.h>
 #include <vtkCamera.h>
 #include <vtkCommand.h>
+#include <vtkMatrix4x4.h>
 #include <vtkPropCollection.h>
 #include <vtkVolume.h>
 
@@ -23,10 +25,27 @@ struct Box
   glm::dvec3 high;
 };
 
+/// Of the whole volume, in the world: processes that have a piece each agree upon an order.
 Box BoxOf(vtkVolume* volume)
 {
-  const double* b = volume->GetBounds();
-  return {{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
+  double own[6];
+  volume->GetBounds(own);
+  vtkBoundingBox box(own);
+  double whole[6] = {1, 0, 1, 0, 1, 0};
+  vtkINRVolumeMapper::SafeDownCast(volume->GetMapper())->GetWholeBounds(whole);
+  if (whole[0] <= whole[1]) {
+    box.Reset();
+    for (int corner = 0; corner < 8; ++corner) {
+      double at[4] = {whole[corner & 1], whole[2 + (corner >> 1 & 1)], whole[4 + (corner >> 2)], 1};
+      volume->GetMatrix()->MultiplyPoint(at, at);
+      box.AddPoint(at);
+    }
+  }
+  double low[3];
+  double high[3];
+  box.GetMinPoint(low[0], low[1], low[2]);
+  box.GetMaxPoint(high[0], high[1], high[2]);
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
 struct Eye

@@ -64,7 +64,9 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.clipToWorld = ClipToWorld(renderer);
   frame.worldToIndex = WorldToIndex(grid, volume->GetMatrix());
   frame.clippingPlanes = ClippingPlanes(mapper->GetClippingPlanes());
-  frame.piece = PiecePlanes(grid, frame.worldToIndex);
+  if (settings.group.isAlone()) {
+    frame.piece = PiecePlanes(grid, frame.worldToIndex);
+  }
   frame.lights = SceneLights(renderer);
   frame.shading = MaterialOf(volume->GetProperty());
   frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
@@ -138,22 +140,14 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
 {
   const auto start = Clock::now();
   this->Before = std::exchange(this->Last, {});
-  const MapperInput input = FindInput(mapper);
-  if (!input.array) {
-    return input.problem;
-  }
-  vtkVolumeProperty* property = volume->GetProperty();
-  std::string problem = WhyRefused(mapper, property, input.grid, settings.mode);
-  if (!problem.empty()) {
+  this->Group = settings.group;
+  Frame frame;
+  std::string problem;
+  this->Group.together([&] { problem = this->prepare(mapper, renderer, volume, settings, frame); });
+  if (!this->Group.all(problem.empty())) {
     return problem;
   }
-  this->makeRenderer(*input.array, settings.renderer);
-  this->Caster->setTransferFunction(this->TransferFunctions.get(property));
-  Frame frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
-  this->CountSamples = settings.countSamples;
   vtkRenderWindow* window = renderer->GetRenderWindow();
-  frame.sampleDistance *= IsInteractive(window) ? 2 : 1;
-  frame.timeLimit = this->timeLimit(window, settings.stillTimeLimit);
   if (!this->draw(frame, renderer)) {
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
               "float textures.";
@@ -161,6 +155,29 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   this->Last.seconds = SecondsSince(start);
   this->refineLater(window, settings.mode);
   return problem;
+}
+
+std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                                  const PaintSettings& settings, Frame& frame)
+{
+  const MapperInput input = FindInput(mapper);
+  if (!input.array) {
+    return input.problem;
+  }
+  vtkVolumeProperty* property = volume->GetProperty();
+  std::string problem =
+      WhyRefused(mapper, property, input.grid, settings.mode, !settings.group.isAlone());
+  if (!problem.empty()) {
+    return problem;
+  }
+  this->makeRenderer(*input.array, settings.renderer);
+  this->Caster->setTransferFunction(this->TransferFunctions.get(property));
+  frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
+  this->CountSamples = settings.countSamples;
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  frame.sampleDistance *= IsInteractive(window) ? 2 : 1;
+  frame.timeLimit = this->timeLimit(window, settings.stillTimeLimit);
+  return {};
 }
 
 void FramePainter::makeRenderer(const vtkINRDataArray& array, RendererOptions options)
@@ -238,26 +255,52 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
 {
   const Viewport viewport = GetViewport(renderer);
   const std::int64_t pixels = static_cast<std::int64_t>(viewport.width) * viewport.height;
+  if (!this->Group.agree(viewport.width) || !this->Group.agree(viewport.height)) {
+    throw Error(ErrorCode::InvalidArgument, "the processes' windows are not of the same size");
+  }
   if (pixels <= 0) {
     return true;
   }
-  const Surroundings around = this->surroundings(renderer, viewport, !scene.blending.projects());
+  Surroundings around;
+  this->Group.together(
+      [&] { around = this->surroundings(renderer, viewport, !scene.blending.projects()); });
+  this->Group.share(around.depth, static_cast<std::size_t>(pixels));
   vtkRenderWindow* window = renderer->GetRenderWindow();
   const double rate = window->GetDesiredUpdateRate();
-  int reduction = this->resolution(scene.mode).factor(rate, pixels);
+  int reduction = this->Group.largest(this->resolution(scene.mode).factor(rate, pixels));
   Clock::time_point deadline = this->deadline(rate, reduction);
-  while (!this->render(scene, viewport, around, reduction, Unless(window, deadline))) {
-    if (Clock::now() < deadline) {
+  while (!this->renderTogether(scene, viewport, around, reduction, deadline, window)) {
+    if (this->Group.all(Clock::now() < deadline)) {
       return true; // aborted
     }
     reduction = std::min(4 * reduction, ImageReduction::Largest);
     deadline = this->deadline(rate, reduction);
   }
-  if (!this->Blender.blend(renderer, viewport, this->Last.rgba)) {
+  if (!this->blend(renderer, viewport)) {
     return false;
   }
-  this->Last.converged = this->Last.statistics.complete;
+  this->Last.converged = this->Group.all(this->Last.statistics.complete);
   return true;
+}
+
+bool FramePainter::renderTogether(const Frame& scene, const Viewport& viewport,
+                                  const Surroundings& around, int reduction,
+                                  Clock::time_point deadline, vtkRenderWindow* window)
+{
+  bool done = false;
+  this->Group.together(
+      [&] { done = this->render(scene, viewport, around, reduction, Unless(window, deadline)); });
+  return this->Group.all(done);
+}
+
+bool FramePainter::blend(vtkRenderer* renderer, const Viewport& viewport)
+{
+  if (this->Group.isAlone()) {
+    return this->Blender.blend(renderer, viewport, this->Last.rgba);
+  }
+  const Image picture = this->Group.whole(this->Last.rgba);
+  const bool done = !this->Group.draws() || this->Blender.blend(renderer, viewport, picture);
+  return this->Group.all(done);
 }
 
 /// When a picture is given up for one with fewer pixels, so that the window stays alive whatever a
@@ -279,11 +322,16 @@ bool FramePainter::render(const Frame& scene, const Viewport& viewport, const Su
   Frame frame = scene;
   frame.width = (viewport.width + reduction - 1) / reduction;
   frame.height = (viewport.height + reduction - 1) / reduction;
-  const std::vector<float>& depth = around.depth;
-  const bool reducesDepth = reduction > 1 && !depth.empty();
-  const std::vector<float> reduced =
-      reducesDepth ? ReduceDepth(depth, viewport, frame.width, frame.height) : std::vector<float>();
-  frame.opaqueDepth = depth.empty() ? nullptr : (reducesDepth ? reduced : depth).data();
+  const bool reducesDepth = reduction > 1 && !around.depth.empty();
+  std::vector<float> own;
+  if (reducesDepth) {
+    own = ReduceDepth(around.depth, viewport, frame.width, frame.height);
+  } else if (!this->Group.isAlone()) {
+    own = around.depth;
+  }
+  this->Group.leaveToOthers(RowsOf(frame, this->CasterModel->volume.dims), frame, own);
+  const std::vector<float>& depth = own.empty() ? around.depth : own;
+  frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
   frame.layers = reduction > 1 && around.layers
                      ? ReduceLayers(*around.layers, viewport, frame.width, frame.height)
                      : around.layers;

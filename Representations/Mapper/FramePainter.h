@@ -7,6 +7,7 @@
 #include "FrameBuilder.h"
 #include "ImageBlender.h"
 #include "ImageReduction.h"
+#include "PictureGroup.h"
 #include "RefinementTimer.h"
 #include "TransferFunctionBuilder.h"
 #include "TranslucentPeeler.h"
@@ -52,6 +53,7 @@ struct PaintSettings
   double stillTimeLimit = -1; ///< seconds; below 0: see vtkINRVolumeMapper
   std::uint64_t seed = 0;
   RendererOptions renderer;
+  PictureGroup group; ///< with whom to draw, see there
 };
 
 /// The last picture made and what it took; without pixels when nothing was drawn.
@@ -95,7 +97,8 @@ public:
   /// `mayRefine`: see RefinementTimer.
   explicit FramePainter(std::function<bool()> mayRefine) : Refine(std::move(mayRefine)) {}
   /// Draws one frame and returns an empty text, or draws nothing and returns why. A frame aborted
-  /// by the render window is not drawn and not an error. Throws what Renderer throws.
+  /// by the render window is not drawn and not an error. Throws what Renderer throws. Of a group,
+  /// each process keeps its own band and what that took.
   std::string paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                     const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Last; }
@@ -113,6 +116,9 @@ public:
   }
 
 private:
+  /// What to draw, or why nothing is.
+  std::string prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                      const PaintSettings& settings, Frame& frame);
   void makeRenderer(const vtkINRDataArray& array, RendererOptions options);
   void noteBackend();
   using Clock = std::chrono::steady_clock;
@@ -133,6 +139,10 @@ private:
   Surroundings surroundings(vtkRenderer* renderer, const Viewport& viewport, bool meetsLayers);
   bool render(const Frame& scene, const Viewport& viewport, const Surroundings& around,
               int reduction, const std::function<bool()>& keepGoing);
+  /// The same of all processes, each with its part.
+  bool renderTogether(const Frame& scene, const Viewport& viewport, const Surroundings& around,
+                      int reduction, Clock::time_point deadline, vtkRenderWindow* window);
+  bool blend(vtkRenderer* renderer, const Viewport& viewport);
   /// Shows the picture of the call before if that is the one `frame` asks for.
   bool showAgain(const Frame& frame);
   double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;
@@ -144,6 +154,7 @@ private:
   RendererOptions CasterOptions;
   std::shared_ptr<const Accelerator> GivenUp; ///< it has failed
   bool CountSamples = false;
+  PictureGroup Group;
   TransferFunctionCache TransferFunctions;
   ImageReduction Rays;
   /// Nobody knows what paths cost before some are traced: a thousand samples, or ten.

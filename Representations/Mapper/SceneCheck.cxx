@@ -26,7 +26,8 @@ bool UsesGradientOpacity(vtkVolumeProperty* property)
   return false;
 }
 
-std::string WhyNotBlended(vtkVolumeMapper* mapper, const PresentedGrid& grid, RenderMode mode)
+std::string WhyNotBlended(vtkVolumeMapper* mapper, const PresentedGrid& grid, RenderMode mode,
+                          bool together)
 {
   const int blend = mapper->GetBlendMode();
   if (blend == vtkVolumeMapper::COMPOSITE_BLEND) {
@@ -40,7 +41,7 @@ std::string WhyNotBlended(vtkVolumeMapper* mapper, const PresentedGrid& grid, Re
     return "Path tracing knows no blend mode but composite; set the blend mode to composite or the "
            "render mode to ray marching.";
   }
-  return blend != vtkVolumeMapper::ISOSURFACE_BLEND && IsPiece(grid)
+  return blend != vtkVolumeMapper::ISOSURFACE_BLEND && IsPiece(grid) && !together
              ? "A projection (maximum, minimum, average or additive blending) of an INR "
                "needs the whole volume in one process, and this one has a piece; set the "
                "blend mode to composite."
@@ -50,10 +51,10 @@ std::string WhyNotBlended(vtkVolumeMapper* mapper, const PresentedGrid& grid, Re
 } // namespace
 
 std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
-                       const PresentedGrid& grid, RenderMode mode)
+                       const PresentedGrid& grid, RenderMode mode, bool together)
 {
   vtkImageData* image = grid.image;
-  std::string problem = WhyNotBlended(mapper, grid, mode);
+  std::string problem = WhyNotBlended(mapper, grid, mode, together);
   if (!problem.empty()) {
     return problem;
   }

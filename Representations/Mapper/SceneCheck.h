@@ -12,8 +12,9 @@ class vtkVolumeProperty;
 namespace inr {
 
 /// Why a scene that asks for this cannot be drawn, with what to do about it; empty when it can.
-/// What this mapper lacks is refused, never drawn as if it had not been asked for.
+/// What this mapper lacks is refused, never drawn as if it had not been asked for. `together`: with
+/// processes that have the other pieces of the grid; see PictureGroup.
 std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
-                       const PresentedGrid& grid, RenderMode mode);
+                       const PresentedGrid& grid, RenderMode mode, bool together);
 
 } // namespace inr

@@ -11,11 +11,13 @@
 #include <vtkHardwareSelector.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
+#include <vtkMultiProcessController.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkRenderer.h>
 #include <vtkTimeStamp.h>
 #include <vtkVolume.h>
+#include <vtkWeakPointer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +65,8 @@ struct vtkINRVolumeMapper::Internals
   std::shared_ptr<const inr::Accelerator> Accelerator;
   std::string WhyNone;
   bool BackendReported = false; ///< since it was set
+
+  vtkWeakPointer<vtkMultiProcessController> Controller;
 };
 
 vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>(this)) {}
@@ -103,6 +107,23 @@ void vtkINRVolumeMapper::SetLocalRank(int rank)
     this->Self->Searched = false;
     this->Modified();
   }
+}
+
+void vtkINRVolumeMapper::SetController(vtkMultiProcessController* controller)
+{
+  if (controller != this->Self->Controller) {
+    this->Self->Controller = controller;
+    this->Modified();
+  }
+}
+
+bool vtkINRVolumeMapper::GetDrawsTogether()
+{
+  const int blend = this->GetBlendMode();
+  const bool projects = blend != COMPOSITE_BLEND && blend != ISOSURFACE_BLEND;
+  vtkMultiProcessController* controller = this->Self->Controller;
+  return projects && this->RenderMode == RAY_MARCHING && controller &&
+         controller->GetNumberOfProcesses() > 1;
 }
 
 std::shared_ptr<const inr::Accelerator> vtkINRVolumeMapper::FindAccelerator(std::string& reason)
@@ -240,6 +261,9 @@ bool vtkINRVolumeMapper::GetOpaqueDepthRead() const { return this->Self->Painter
 double* vtkINRVolumeMapper::GetBounds()
 {
   double* bounds = this->Superclass::GetBounds();
+  if (this->GetDrawsTogether()) {
+    this->GetWholeBounds(bounds);
+  }
   const inr::MapperInput input = inr::FindInput(this);
   for (int axis = 0; input.array && axis < 3; ++axis) {
     if (input.grid.presented[axis] > 1) {
@@ -325,6 +349,9 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   try {
     inr::PaintSettings settings = this->Settings();
     settings.renderer.accelerator = this->WantedAccelerator();
+    if (this->GetDrawsTogether() && this->DrawingProcess >= 0) {
+      settings.group = inr::PictureGroup(this->Self->Controller, this->DrawingProcess);
+    }
     problem = this->Self->Painter.paint(this, renderer, volume, settings);
   } catch (const std::bad_alloc&) {
     problem =
@@ -391,6 +418,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RenderMode: " << this->RenderMode << "\n"
      << indent << "Backend: " << this->Backend << "\n"
      << indent << "LocalRank: " << this->LocalRank << "\n"
+     << indent << "DrawingProcess: " << this->DrawingProcess << "\n"
      << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n"
      << indent << "ScatteringAlbedo: " << this->ScatteringAlbedo << "\n"
      << indent << "Anisotropy: " << this->Anisotropy << "\n"

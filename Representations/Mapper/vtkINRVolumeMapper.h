@@ -33,9 +33,9 @@
  * whatever their order there. Where they overlap they are not mixed; the one whose middle is nearer
  * to the camera lies over the other.
  *
- * Refused with an error and not drawn: the blend mode slice, projections of a piece of the grid or
- * by path tracing, paths cropped to what is no box, gradient opacity, 2D transfer functions, masks,
- * scalars that are not an INR. A message comes once, not at every frame.
+ * Refused with an error and not drawn: the blend mode slice, projections of a piece of the grid
+ * (but see SetController) or by path tracing, paths cropped to what is no box, gradient opacity, 2D
+ * transfer functions, masks, scalars that are not an INR. A message comes once, not at every frame.
  *
  * What rays meet is decoded brick by brick, at the level of resolution that the picture's pixels
  * deserve, and kept in a cache from frame to frame. A still frame waits until every sample is
@@ -63,6 +63,8 @@
 
 #include <memory> // for std::unique_ptr
 #include <string> // for FindAccelerator
+
+class vtkMultiProcessController;
 
 namespace inr {
 class Accelerator;
@@ -110,6 +112,23 @@ public:
   void SetLocalRank(int rank);
   vtkGetMacro(LocalRank, int);
   ///@}
+
+  ///@{
+  /**
+   * Processes that each have a piece of one grid and a window of the same size. What they draw is
+   * blended window by window, from the furthest piece to the nearest; as values that are projected
+   * are no such pictures, of these each process casts the rays of a band of rows, all through the
+   * whole volume and up to what is opaque in any of the windows, and they come together in the
+   * window of `DrawingProcess`, which has to be the one that lies over the others. All processes
+   * must draw the same volumes with the same settings at the same time; they wait for each other.
+   * A process that cannot draw its band says why, and nothing is drawn. Null or a negative process,
+   * the default: projections of a piece are refused.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  void SetDrawingProcess(int process) { this->DrawingProcess = process; }
+  ///@}
+  /** Whether values are projected and there is more than one such process. */
+  bool GetDrawsTogether();
 
   ///@{
   /**
@@ -417,7 +436,10 @@ public:
    */
   bool WriteEXR(const char* fileName);
 
-  /** Bounds of what is drawn: those of the input, and one spacing along an axis of one voxel. */
+  /**
+   * Bounds of what is drawn: those of the input (of the whole grid, if processes draw it together),
+   * and one spacing along an axis of one voxel.
+   */
   double* GetBounds() VTK_SIZEHINT(6) override;
   using vtkVolumeMapper::GetBounds;
 
@@ -451,6 +473,7 @@ private:
   int RenderMode = RAY_MARCHING;
   int Backend = AUTO;
   int LocalRank = 0;
+  int DrawingProcess = -1;
   int SamplesPerPixel = 64;
   double ScatteringAlbedo = 1.0;
   double Anisotropy = 0.0;

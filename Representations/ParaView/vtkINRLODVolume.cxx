@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRLODVolume.h"
 
+#include "SharedDrawing.h"
+#include "vtkINRVolumeMapper.h"
 #include "vtkInformation.h"
 #include "vtkInformationObjectBaseVectorKey.h"
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLRenderPass.h"
+#include "vtkRenderer.h"
 
 vtkStandardNewMacro(vtkINRLODVolume);
 
@@ -20,7 +23,7 @@ bool IsPeeling(vtkInformation* keys)
 int vtkINRLODVolume::RenderVolumetricGeometry(vtkViewport* viewport)
 {
   this->DrawInOverlay = IsPeeling(this->GetPropertyKeys());
-  return this->DrawInOverlay ? 0 : this->Superclass::RenderVolumetricGeometry(viewport);
+  return this->DrawInOverlay ? 0 : this->Draw(viewport);
 }
 
 int vtkINRLODVolume::RenderOverlay(vtkViewport* viewport)
@@ -29,6 +32,16 @@ int vtkINRLODVolume::RenderOverlay(vtkViewport* viewport)
     return 0;
   }
   this->DrawInOverlay = false;
+  return this->Draw(viewport);
+}
+
+int vtkINRLODVolume::Draw(vtkViewport* viewport)
+{
+  auto* renderer = vtkRenderer::SafeDownCast(viewport);
+  auto* mapper = vtkINRVolumeMapper::SafeDownCast(this->GetMapper());
+  if (renderer && mapper && mapper->GetDrawsTogether()) {
+    mapper->SetDrawingProcess(inr::FrontProcess(renderer));
+  }
   return this->Superclass::RenderVolumetricGeometry(viewport);
 }
 

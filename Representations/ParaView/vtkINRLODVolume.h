@@ -6,7 +6,8 @@
  * ParaView draws translucent geometry by depth peeling, and draws volumes once per peel into
  * buffers that blend by maximum, where a finished picture cannot go. While something is being
  * peeled, this prop therefore steps aside and draws its picture afterwards, in the overlay stage of
- * the same frame. The mapper sees to it that translucent surfaces come out in their places.
+ * the same frame. The mapper sees to it that translucent surfaces come out in their places. It
+ * learns here, too, which process of a parallel server has the picture that lies over the others'.
  */
 #ifndef vtkINRLODVolume_h
 #define vtkINRLODVolume_h
@@ -31,6 +32,8 @@ protected:
 private:
   vtkINRLODVolume(const vtkINRLODVolume&) = delete;
   void operator=(const vtkINRLODVolume&) = delete;
+
+  int Draw(vtkViewport* viewport);
 
   bool DrawInOverlay = false;
 };

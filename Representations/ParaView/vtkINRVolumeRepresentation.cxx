@@ -3,6 +3,7 @@
 
 #include "ClientWatch.h"
 #include "ModelDelivery.h"
+#include "SharedDrawing.h"
 #include "ThreadShare.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
@@ -88,6 +89,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
       this->SharedThreads = inr::ThreadShare(controller);
       this->GetMapper()->SetLocalRank(inr::LocalRank(controller));
+      this->GetMapper()->SetController(controller);
     }
     this->Deliver(in, out);
   } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
@@ -100,6 +102,9 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->GetMapper()->SetNumberOfThreads(this->NumberOfThreads > 0 ? this->NumberOfThreads
                                                                     : this->SharedThreads);
     this->UpdateMapper();
+    if (this->GetMapper()->GetDrawsTogether()) {
+      inr::DrawEverywhere(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
+    }
     this->ReportColouring();
     this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
   }

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Image/Image.h"
+#include "Core/Render/Frame.h"
+
+#include <glm/gtc/type_precision.hpp>
+
+#include <functional>
+#include <vector>
+
+class vtkMultiProcessController;
+
+namespace inr {
+
+/// Rows of a picture, [first, end).
+struct Rows
+{
+  int first = 0;
+  int end = 0;
+};
+
+/// Those of a frame's pixels that may show a volume of `dims` voxels.
+Rows RowsOf(const Frame& frame, const glm::i64vec3& dims);
+
+/// Processes that make one picture together, each a band of its rows from the whole volume. All of
+/// them call the same functions in the same order, and wait for each other. Of a group without
+/// others, each function is about this process.
+class PictureGroup
+{
+public:
+  PictureGroup() = default;
+  /// Process `drawer` gets the picture.
+  PictureGroup(vtkMultiProcessController* controller, int drawer);
+
+  bool isAlone() const { return this->Controller == nullptr; }
+  /// Whether this process gets the picture.
+  bool draws() const;
+
+  /// Whether all say so.
+  bool all(bool said) const;
+  /// The largest of what all say.
+  int largest(int said) const;
+  /// Whether all say the same.
+  bool agree(int said) const { return this->largest(said) == -this->largest(-said); }
+  /// Makes a step. Throws what it throws and, where it does so in another process,
+  /// Error(Cancelled), in all of them.
+  void together(const std::function<void()>& step) const;
+
+  /// Makes window depths, as many in all processes or empty for none, the nearest of all of them.
+  void share(std::vector<float>& depth, std::size_t pixels) const;
+  /// Puts something at the eye wherever rays are others' to cast: all rows but this process' part
+  /// of `seen`. An empty `depth` is one of nothing.
+  void leaveToOthers(const Rows& seen, const Frame& frame, std::vector<float>& depth) const;
+  /// What process `drawer` gets: its own picture and the bands of the others. Nobody else's is
+  /// of use.
+  Image whole(const Image& band) const;
+
+private:
+  vtkMultiProcessController* Controller = nullptr;
+  int Drawer = 0;
+};
+
+} // namespace inr

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SharedDrawing.h"
+
+#include "vtkCameraPass.h"
+#include "vtkIceTCompositePass.h"
+#include "vtkImageProcessingPass.h"
+#include "vtkMultiProcessController.h"
+#include "vtkOrderedCompositingHelper.h"
+#include "vtkRenderer.h"
+
+#include <vector>
+
+namespace inr {
+
+namespace {
+
+/// What composes the pictures that the processes make of a renderer; null where nothing does.
+vtkIceTCompositePass* CompositePassOf(vtkRenderer* renderer)
+{
+  vtkRenderPass* pass = renderer->GetPass();
+  while (pass) {
+    if (auto* found = vtkIceTCompositePass::SafeDownCast(pass)) {
+      return found;
+    }
+    auto* camera = vtkCameraPass::SafeDownCast(pass);
+    auto* processing = vtkImageProcessingPass::SafeDownCast(pass);
+    pass = camera       ? camera->GetDelegatePass()
+           : processing ? processing->GetDelegatePass()
+                        : nullptr;
+  }
+  return nullptr;
+}
+
+bool IsOnePicture(vtkIceTCompositePass* pass)
+{
+  const int* tiles = pass->GetTileDimensions();
+  return tiles[0] == 1 && tiles[1] == 1 && !pass->GetDataReplicatedOnAllProcesses();
+}
+
+} // namespace
+
+void DrawEverywhere(vtkRenderer* renderer)
+{
+  if (vtkIceTCompositePass* pass = CompositePassOf(renderer)) {
+    pass->RenderEmptyImagesOn();
+  }
+}
+
+int FrontProcess(vtkRenderer* renderer)
+{
+  vtkIceTCompositePass* pass = CompositePassOf(renderer);
+  if (!pass || !pass->GetUseOrderedCompositing() || !pass->GetOrderedCompositingHelper() ||
+      !pass->GetRenderEmptyImages() || !IsOnePicture(pass)) {
+    return -1;
+  }
+  const std::vector<int> order =
+      pass->GetOrderedCompositingHelper()->ComputeSortOrder(renderer->GetActiveCamera());
+  vtkMultiProcessController* processes = pass->GetController();
+  const bool isOfAll =
+      processes && static_cast<int>(order.size()) == processes->GetNumberOfProcesses();
+  return isOfAll ? order.front() : -1;
+}
+
+} // namespace inr

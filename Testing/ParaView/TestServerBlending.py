@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The processes of a server, which have a piece each, draw the projections and isosurfaces that this
+process draws: from all sides, cropped, and with opaque things and another volume among them. Arguments:
+the server's port and its number of processes."""
+import os
+import sys
+
+import numpy as np
+from paraview import simple
+from pvtest import ARRAY, MODEL, Messages, check, load_plugin, look_at, picture, show_view
+
+PORT = int(sys.argv[1])
+ALONE = ["Maximum Intensity", "Minimum Intensity", "Average Intensity", "Additive", "side 0", "side 1"]
+ALONE += ["side 2", "cropped", "inside", "two projections", "alone"]
+
+
+def show_scene():
+    """The model between opaque balls, some of each in one piece and some in another."""
+    view = show_view((160, 130))
+    view.UseFXAA = 0
+    view.RemoteRenderThreshold = 0
+    display = simple.Show(simple.OpenDataFile(MODEL), view)
+    display.SetScalarBarVisibility(view, False)
+    look_at(view)
+    balls = []
+    for center, radius in (([20, 30, 70], 16), ([45, 45, 20], 12), ([75, 60, 50], 20)):
+        ball = simple.Sphere(Center=center, Radius=radius, ThetaResolution=40, PhiResolution=40)
+        simple.Show(ball, view).DiffuseColor = [0.2, 0.6, 0.9]
+        balls.append(ball)
+    return view, display, balls
+
+
+def pictures(where):
+    """By name."""
+    result = {}
+    view, display, balls = show_scene()
+
+    def take(name):
+        result[name] = picture(view, f"server-blending-{where}-{name}")
+
+    opacity = simple.GetOpacityTransferFunction(ARRAY)
+    usual = list(opacity.Points)
+    for mode, even in zip(ALONE[:4], (None, None, 1, 0.2)):
+        display.INRBlendMode = mode
+        opacity.Points = [usual[0], even, 0.5, 0, usual[-4], even, 0.5, 0] if even else usual
+        take(mode)
+    opacity.Points = usual
+    display.INRBlendMode = "Maximum Intensity"
+    camera = view.GetActiveCamera()
+    for side in range(3):  # each process is the foremost once, and the hindmost
+        camera.Azimuth(110)
+        camera.Elevation((50, -100, 30)[side])
+        camera.OrthogonalizeViewUp()
+        take(f"side {side}")
+    look_at(view)
+    display.INRUseCropping = 1
+    display.INRCroppingScale = [0.6, 1, 0.5]
+    display.INRCroppingOrigin = [10, 0, 5]
+    take("cropped")
+    display.INRUseCropping = 0
+    camera.Dolly(5)  # into the volume
+    simple.Render(view)
+    take("inside")
+    look_at(view)
+    second = simple.Show(simple.INRReader(FileName=MODEL), view)
+    second.Position = [60, 0, 0]
+    take("composite beside it")
+    second.INRBlendMode = "Minimum Intensity"
+    take("two projections")
+    simple.GetDisplayProperties(balls[0], view).Opacity = 0.5  # which one process peels
+    take("over glass")
+    second.Visibility = 0
+    for ball in balls:
+        simple.Hide(ball, view)
+    take("alone")
+    display.INRBlendMode = "Isosurface"
+    display.INRIsosurfaceValues = [20, 45, 80, 120]
+    take("isosurfaces")
+    display.Shade = 1
+    take("shaded isosurfaces")
+    display.LevelOfDetailScale = 3
+    take("coarse isosurfaces")
+    return view, display, result
+
+
+load_plugin()
+expected = pictures("here")[2]
+check(all(image.std() > 0.03 for image in expected.values()), "nothing is shown")
+
+simple.Connect("localhost", PORT)
+simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=True, ns=vars(simple))
+load_plugin()
+with Messages() as messages:
+    view, display, found = pictures("there")
+check(messages.errors() == 0, "drawing reported", messages.text)
+for name, image in expected.items():
+    difference = 255 * np.abs(found[name] - image)
+    print(f"{name}: largest {difference.max():.0f} of 255, mean {difference.mean():.3f},",
+          f"{np.sum(difference > 2.5)} above 2")
+for name, image in expected.items():
+    difference = 255 * np.abs(found[name] - image)
+    # Of pictures that are composed of pieces, each in 8 bits.
+    rounded = 0 if name in ALONE else 1e-3
+    check(difference.max() < (4.5 if rounded else 2.5), name, "differs")
+    check(np.mean(difference > 2.5) <= rounded, name, "differs")
+
+# While the mouse moves, too: bands of a picture that has fewer pixels than the window.
+display.INRBlendMode = "Maximum Intensity"
+for step in range(5):
+    view.GetActiveCamera().Azimuth(4)
+    view.SMProxy.InteractiveRender()
+display.UpdatePropertyInformation()
+check(display.GetPropertyValue("FrameTime") > 0, "no picture while the mouse moves")
+os._exit(0)
