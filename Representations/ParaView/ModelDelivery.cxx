@@ -2,12 +2,14 @@
 #include "ModelDelivery.h"
 
 #include "Core/Model/ModelBytes.h"
+#include "vtkCellArray.h"
 #include "vtkDataArray.h"
-#include "vtkDataObject.h"
-#include "vtkFieldData.h"
 #include "vtkINRDataArray.h"
 #include "vtkImageData.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -43,9 +45,20 @@ vtkSmartPointer<vtkImageData> ImageOf(const ModelPointer& model, const char* nam
   return image;
 }
 
+/// A tuple belongs to a point, and without a cell that is left out.
+void AddPoint(vtkPolyData* carrier)
+{
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(0, 0, 0);
+  vtkNew<vtkCellArray> vertices;
+  vertices->InsertNextCell({0});
+  carrier->SetPoints(points);
+  carrier->SetVerts(vertices);
+}
+
 } // namespace
 
-void ModelDelivery::send(vtkImageData* image, vtkDataObject* carrier)
+void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
 {
   vtkDataArray* scalars = image ? image->GetPointData()->GetScalars() : nullptr;
   const vtkINRDataArray* handle = vtkINRDataArray::SafeDownCast(scalars);
@@ -55,18 +68,20 @@ void ModelDelivery::send(vtkImageData* image, vtkDataObject* carrier)
   if (handle->GetModel() != this->Packed) {
     const std::string bytes = ModelToBytes(*handle->GetModel());
     this->Bytes = vtkSmartPointer<vtkUnsignedCharArray>::New();
-    this->Bytes->SetNumberOfValues(static_cast<vtkIdType>(bytes.size()));
+    this->Bytes->SetNumberOfComponents(static_cast<int>(bytes.size()));
+    this->Bytes->SetNumberOfTuples(1);
     std::copy(bytes.begin(), bytes.end(), this->Bytes->GetPointer(0));
     this->Packed = handle->GetModel();
   }
   this->Bytes->SetName(scalars->GetName());
-  carrier->GetFieldData()->AddArray(this->Bytes);
+  AddPoint(carrier);
+  carrier->GetPointData()->AddArray(this->Bytes);
 }
 
-vtkImageData* ModelDelivery::receive(vtkDataObject* carrier)
+vtkImageData* ModelDelivery::receive(vtkPolyData* carrier)
 {
   auto* bytes =
-      carrier ? vtkUnsignedCharArray::SafeDownCast(carrier->GetFieldData()->GetArray(0)) : nullptr;
+      carrier ? vtkUnsignedCharArray::SafeDownCast(carrier->GetPointData()->GetArray(0)) : nullptr;
   if (bytes != this->Bytes) {
     this->Bytes = bytes;
     this->Image = nullptr;

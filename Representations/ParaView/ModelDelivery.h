@@ -4,24 +4,26 @@
 #include "Core/Model/Model.h"
 #include "vtkSmartPointer.h"
 
-class vtkDataObject;
 class vtkImageData;
+class vtkPolyData;
 class vtkUnsignedCharArray;
 
 namespace inr {
 
 /// Takes models from the process that has them to the one that draws, within data that ParaView
-/// delivers: the model's file is a field array under the name of the point array it stands for.
+/// delivers: the model's file is the one tuple of a point array under the name of the array that it
+/// stands for. That is what is left where ParaView puts the data of several processes together, of
+/// which a single one may send.
 class ModelDelivery
 {
 public:
-  /// Puts the model of `image`, if it has one, into `carrier`. Packed once per model. Throws Error
-  /// for a model that no file can hold.
-  void send(vtkImageData* image, vtkDataObject* carrier);
+  /// Puts the model of `image`, if it has one, into `carrier`, which is empty. Packed once per
+  /// model. Throws Error for a model that no file can hold.
+  void send(vtkImageData* image, vtkPolyData* carrier);
 
   /// An image of the model in `carrier`, over the model's bounds with as few points as can be; null
   /// when there is none. Unpacked once per delivery. Throws Error for bytes that are not a model.
-  vtkImageData* receive(vtkDataObject* carrier);
+  vtkImageData* receive(vtkPolyData* carrier);
 
 private:
   ModelPointer Packed;

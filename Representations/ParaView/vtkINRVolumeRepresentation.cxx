@@ -19,13 +19,11 @@
 #include "vtkOutlineSource.h"
 #include "vtkPVDataDeliveryManager.h"
 #include "vtkPVRenderView.h"
-#include "vtkPVSession.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProcessModule.h"
 #include "vtkRenderer.h"
-#include "vtkSMSession.h"
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
@@ -36,23 +34,23 @@ vtkStandardNewMacro(vtkINRVolumeRepresentation);
 
 namespace {
 
-/// Whether several processes have a piece of the data each: asked in a client, it is its server's.
+/// Whether several processes of a script have a piece of the data each and nobody else can draw it.
 bool HasPieces()
 {
-  auto* session = vtkSMSession::SafeDownCast(vtkProcessModule::GetProcessModule()->GetSession());
   vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
-  return (session && session->GetNumberOfProcesses(vtkPVSession::DATA_SERVER_ROOT) > 1) ||
-         (processes && processes->GetNumberOfProcesses() > 1);
+  return vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_BATCH && processes &&
+         processes->GetNumberOfProcesses() > 1;
 }
 
-/// Whether another process may have to draw. Several would each send a piece, of which ParaView
-/// puts no model together.
+/// Whether another process may have to draw what this one has; of several that have all the model,
+/// one sends it.
 bool MaySend()
 {
   const int type = vtkProcessModule::GetProcessType();
   const bool serves =
       type == vtkProcessModule::PROCESS_SERVER || type == vtkProcessModule::PROCESS_DATA_SERVER;
-  return serves && !HasPieces();
+  vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
+  return serves && (!processes || processes->GetLocalProcessId() == 0);
 }
 
 } // namespace
@@ -158,7 +156,7 @@ void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
   vtkDataObject* carrier =
       producer ? producer->GetProducer()->GetOutputDataObject(producer->GetIndex()) : nullptr;
   try {
-    vtkImageData* image = this->Model->receive(carrier);
+    vtkImageData* image = this->Model->receive(vtkPolyData::SafeDownCast(carrier));
     this->VolumeMapper->SetInputDataObject(image);
     this->Actor->SetEnableLOD(image ? 0 : 1); // the outline
   } catch (const std::exception& problem) {

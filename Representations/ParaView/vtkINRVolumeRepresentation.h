@@ -6,9 +6,9 @@
  * Takes what INRReader produces and draws it at its native resolution, whatever grid the reader
  * presents to filters. Colour, opacity and placement are those of ParaView's own volume
  * representation. The values never leave the process that has them. Where that is not the process
- * that draws, the model is sent there, from a server of a single process; that of a parallel server
- * draws itself, or if it cannot, the outline is shown. A colouring that leaves the picture blank is
- * reported once. Pictures are not refined while an animation plays or a modal dialog is open.
+ * that draws, the model is sent there, once, however many processes have it. A colouring that
+ * leaves the picture blank is reported once. Pictures are not refined while an animation plays or a
+ * modal dialog is open.
  */
 #ifndef vtkINRVolumeRepresentation_h
 #define vtkINRVolumeRepresentation_h
