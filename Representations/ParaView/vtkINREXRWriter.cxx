@@ -2,14 +2,18 @@
 #include "vtkINREXRWriter.h"
 
 #include "vtkErrorCode.h"
+#include "vtkINRLODVolume.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkImageData.h"
 #include "vtkObjectFactory.h"
 #include "vtkRenderer.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMRenderViewProxy.h"
+#include "vtkSMSaveScreenshotProxy.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkVector.h"
 #include "vtkVolume.h"
 #include "vtkVolumeCollection.h"
 
@@ -21,37 +25,42 @@ vtkStandardNewMacro(vtkINREXRWriter);
 
 namespace {
 
-using Mappers = std::vector<vtkINRVolumeMapper*>;
-
-/// Those of the visible INR volumes that this process has drawn in a view.
-Mappers MappersIn(vtkRenderer* renderer)
+/// What a view shows of INRs.
+struct ShownVolumes
 {
-  Mappers found;
-  vtkVolumeCollection* volumes = renderer->GetVolumes();
+  vtkSMViewProxy* view = nullptr;
+  std::vector<vtkINRLODVolume*> volumes;
+
+  vtkMTimeType latest() const
+  {
+    vtkMTimeType time = 0;
+    for (const vtkINRLODVolume* volume : this->volumes) {
+      time = std::max(time, volume->GetShownMTime());
+    }
+    return time;
+  }
+};
+
+ShownVolumes ShownBy(vtkSMRenderViewProxy* view)
+{
+  ShownVolumes shown;
+  shown.view = view;
+  vtkVolumeCollection* volumes = view->GetRenderer()->GetVolumes();
   vtkCollectionSimpleIterator place;
   volumes->InitTraversal(place);
-  while (vtkVolume* volume = volumes->GetNextVolume(place)) {
-    auto* mapper = vtkINRVolumeMapper::SafeDownCast(volume->GetMapper());
-    if (mapper && volume->GetVisibility() && mapper->GetImageReduction() > 0) {
-      found.push_back(mapper);
+  while (vtkVolume* next = volumes->GetNextVolume(place)) {
+    auto* volume = vtkINRLODVolume::SafeDownCast(next);
+    if (volume && volume->GetVisibility() && volume->GetShownMTime() > 0) {
+      shown.volumes.push_back(volume);
     }
   }
-  return found;
+  return shown;
 }
 
-vtkMTimeType LatestOf(const Mappers& mappers)
+/// Of the view that was drawn last: a screenshot is drawn right before it is written.
+ShownVolumes ShownInScreenshot()
 {
-  vtkMTimeType latest = 0;
-  for (const vtkINRVolumeMapper* mapper : mappers) {
-    latest = std::max(latest, mapper->GetFrameMTime());
-  }
-  return latest;
-}
-
-/// Those of the view that was drawn last: a screenshot is drawn right before it is written.
-Mappers MappersOfScreenshot()
-{
-  Mappers found;
+  ShownVolumes found;
   vtkSMSessionProxyManager* session =
       vtkSMProxyManager::IsInitialized()
           ? vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager()
@@ -63,21 +72,48 @@ Mappers MappersOfScreenshot()
   proxies->SetSessionProxyManager(session);
   for (proxies->Begin("views"); !proxies->IsAtEnd(); proxies->Next()) {
     auto* view = vtkSMRenderViewProxy::SafeDownCast(proxies->GetProxy());
-    const Mappers mappers = view ? MappersIn(view->GetRenderer()) : Mappers();
-    if (LatestOf(mappers) > LatestOf(found)) {
-      found = mappers;
+    const ShownVolumes shown = view ? ShownBy(view) : ShownVolumes();
+    if (shown.latest() > found.latest()) {
+      found = shown;
     }
   }
   return found;
 }
+
+/// While it exists, what a view shows is drawn by this process: a server hands over what is to be
+/// drawn instead of the picture, unless a representation will not have that.
+class DrawnHere
+{
+public:
+  explicit DrawnHere(vtkSMViewProxy* view) : View(view), Threshold(view, "RemoteRenderThreshold")
+  {
+    this->Before = this->Threshold.GetAsDouble();
+    this->set(AnySize);
+  }
+  ~DrawnHere() { this->set(this->Before); }
+  DrawnHere(const DrawnHere&) = delete;
+  DrawnHere& operator=(const DrawnHere&) = delete;
+
+private:
+  static constexpr double AnySize = 1e12; ///< MiB
+
+  void set(double threshold)
+  {
+    this->Threshold.Set(threshold);
+    this->View->UpdateVTKObjects();
+  }
+
+  vtkSMViewProxy* View;
+  vtkSMPropertyHelper Threshold;
+  double Before;
+};
 
 /// Why the float picture of `mapper` is not the one in `screenshot`; empty when it is.
 std::string WhyAnother(vtkINRVolumeMapper* mapper, vtkImageData* screenshot)
 {
   if (mapper->GetHasPiece()) {
     return "This process has drawn a piece of the volume, and others the rest; save an OpenEXR "
-           "file "
-           "in a single process.";
+           "file in a single process, or in a client of theirs.";
   }
   int drawn[2];
   mapper->GetFrameSize(drawn);
@@ -106,15 +142,32 @@ void vtkINREXRWriter::Write()
 {
   this->SetErrorCode(vtkErrorCode::NoError);
   vtkImageData* screenshot = this->GetInput();
-  const Mappers mappers = MappersOfScreenshot();
+  const ShownVolumes shown = ShownInScreenshot();
   if (!screenshot || !this->FileName) {
     this->Fail("An OpenEXR file takes a screenshot and a file name.");
-  } else if (mappers.size() != 1) {
-    this->Fail("The view shows " + std::to_string(mappers.size()) +
-               " INR volumes drawn by this process; an OpenEXR file takes the picture of one.");
-  } else if (const std::string problem = WhyAnother(mappers[0], screenshot); !problem.empty()) {
+  } else if (shown.volumes.size() != 1) {
+    this->Fail("The view shows " + std::to_string(shown.volumes.size()) +
+               " INR volumes; an OpenEXR file takes the picture of one.");
+  } else if (shown.volumes[0]->GetDrawnHere()) {
+    this->WriteFrom(shown.volumes[0], screenshot);
+  } else {
+    const DrawnHere here(shown.view);
+    const int* size = screenshot->GetDimensions();
+    vtkSMSaveScreenshotProxy::CaptureImage(shown.view, vtkVector2i(size[0], size[1]));
+    this->WriteFrom(shown.volumes[0], screenshot);
+  }
+}
+
+void vtkINREXRWriter::WriteFrom(vtkINRLODVolume* volume, vtkImageData* screenshot)
+{
+  auto* mapper =
+      volume->GetDrawnHere() ? vtkINRVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
+  if (!mapper || mapper->GetImageReduction() == 0) {
+    this->Fail("This process cannot draw the view, and a server's picture has 8 bits only; hide "
+               "what has to be drawn by the server, such as other volumes.");
+  } else if (const std::string problem = WhyAnother(mapper, screenshot); !problem.empty()) {
     this->Fail(problem);
-  } else if (!mappers[0]->WriteEXR(this->FileName)) {
+  } else if (!mapper->WriteEXR(this->FileName)) {
     this->SetErrorCode(vtkErrorCode::CannotOpenFileError); // the mapper has said why
   }
 }

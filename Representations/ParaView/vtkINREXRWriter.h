@@ -5,8 +5,10 @@
  *
  * ParaView hands an image writer the picture in 8 bits. This one takes of it the size, and writes
  * the floats that the volume's mapper has made of the same picture (vtkINRVolumeMapper::WriteEXR).
- * Writing fails with a message when there is not exactly one INR volume in the view that was drawn
- * last, or the picture was put together from tiles or several views.
+ * Where a server has drawn the view, this process draws it once more: the server sends it the model
+ * and the surfaces in the view, whatever their size. Writing fails with a message when there is not
+ * exactly one INR volume in the view that was drawn last, the picture was put together from tiles
+ * or several views, or something in the view can only be drawn by the server.
  */
 #ifndef vtkINREXRWriter_h
 #define vtkINREXRWriter_h
@@ -15,6 +17,8 @@
 #include "vtkImageWriter.h"
 
 #include <string> // for Fail
+
+class vtkINRLODVolume;
 
 class VTKINRREPRESENTATIONS_EXPORT vtkINREXRWriter : public vtkImageWriter
 {
@@ -32,6 +36,7 @@ private:
   vtkINREXRWriter(const vtkINREXRWriter&) = delete;
   void operator=(const vtkINREXRWriter&) = delete;
 
+  void WriteFrom(vtkINRLODVolume* volume, vtkImageData* screenshot);
   void Fail(const std::string& problem);
 };
 

@@ -35,6 +35,12 @@ int vtkINRLODVolume::RenderOverlay(vtkViewport* viewport)
   return this->Draw(viewport);
 }
 
+void vtkINRLODVolume::Show(bool here)
+{
+  this->DrawnHere = here;
+  this->Shown.Modified();
+}
+
 int vtkINRLODVolume::Draw(vtkViewport* viewport)
 {
   auto* renderer = vtkRenderer::SafeDownCast(viewport);

@@ -14,6 +14,7 @@
 
 #include "vtkINRRepresentationsModule.h" // for the export macro
 #include "vtkPVLODVolume.h"
+#include "vtkTimeStamp.h" // for Shown
 
 class VTKINRREPRESENTATIONS_EXPORT vtkINRLODVolume : public vtkPVLODVolume
 {
@@ -24,6 +25,16 @@ public:
 
   int RenderVolumetricGeometry(vtkViewport* viewport) override;
   int RenderOverlay(vtkViewport* viewport) override;
+
+  ///@{
+  /**
+   * Says that a view is about to be drawn that shows this, and whether this process has what it
+   * takes to draw it; and when that was said last, 0 before the first time.
+   */
+  void Show(bool here);
+  vtkMTimeType GetShownMTime() const { return this->Shown.GetMTime(); }
+  bool GetDrawnHere() const { return this->DrawnHere; }
+  ///@}
 
 protected:
   vtkINRLODVolume() = default;
@@ -36,6 +47,8 @@ private:
   int Draw(vtkViewport* viewport);
 
   bool DrawInOverlay = false;
+  bool DrawnHere = false;
+  vtkTimeStamp Shown;
 };
 
 #endif

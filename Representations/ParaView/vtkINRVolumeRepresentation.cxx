@@ -97,6 +97,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
   } else if (request == vtkPVView::REQUEST_RENDER()) {
     this->Client->update();
     this->TakeDelivery(in);
+    static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());
     this->GetMapper()->SetNumberOfThreads(this->NumberOfThreads > 0 ? this->NumberOfThreads
                                                                     : this->SharedThreads);
     this->UpdateMapper();
