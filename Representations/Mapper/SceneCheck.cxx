@@ -64,8 +64,8 @@ std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
            "or ray marching.";
   }
   if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D) {
-    return "An INR cannot be drawn with a 2D transfer function; set the transfer function mode "
-           "to 1D.";
+    return "An INR cannot be drawn with a 2D transfer function; turn \"Use 2D Transfer Function\" "
+           "off in the colour map editor (of a vtkVolumeProperty: SetTransferFunctionModeTo1D).";
   }
   if (UsesGradientOpacity(property)) {
     return "An INR cannot be drawn with gradient opacity; turn gradient opacity off.";
