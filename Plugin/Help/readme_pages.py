@@ -3,14 +3,21 @@
 import html
 import os
 import re
+import struct
 
 TABLE_LINE = re.compile(r"\|.*\|$")
 ITEM = re.compile(r"(?:- |\d+\. )")
+WIDEST = 700  # pixels that the help's window has room for
 
 
 def anchor(heading):
     """The anchor that Markdown viewers give a heading."""
     return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+
+
+def png_width(path):
+    with open(path, "rb") as file:
+        return struct.unpack(">I", file.read(20)[16:])[0]
 
 
 def sections(text):
@@ -35,6 +42,7 @@ class Markdown:
         self.root = root
         self.pages = pages
         self.pictures = set()
+        self.room = WIDEST
 
     def link(self, found):
         text, target = found.groups()
@@ -48,7 +56,8 @@ class Markdown:
         if not os.path.dirname(path).endswith("gallery"):
             return ""  # plots belong to the measurements, which are not in the help
         self.pictures.add(path)
-        return f'<img src="{os.path.basename(path)}">'
+        width = min(png_width(path), self.room)
+        return f'<img src="{os.path.basename(path)}" width="{width}">'
 
     def inline(self, text):
         """Of one paragraph or table cell."""
@@ -72,7 +81,9 @@ class Markdown:
             if number == 1:
                 continue  # the line below the header
             tag = "th" if number == 0 else "td"
+            self.room = WIDEST // len(cells)
             rows.append("".join(f"<{tag}>{self.inline(cell)}</{tag}>" for cell in cells))
+            self.room = WIDEST
         body = "\n".join(f"<tr>{row}</tr>" for row in rows)
         return f'<table border="1" cellspacing="0" cellpadding="4">\n{body}\n</table>'
 
