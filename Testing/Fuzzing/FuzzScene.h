@@ -4,6 +4,8 @@
 // asks for more than a moment's work.
 #pragma once
 
+#include "Core/Error.h"
+#include "Core/Render/Ray.h"
 #include "Core/Render/Renderer.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -106,6 +108,18 @@ inline void Look(const inr::VolumeInfo& volume, SceneBytes& bytes, inr::Frame& f
   frame.worldToIndex = glm::inverse(indexToWorld);
 }
 
+/// How many samples the longest ray has; not the file's spacing says so but the matrix, which far
+/// from the origin is what doubles have left of it.
+inline double MostSamples(const inr::VolumeInfo& volume, const inr::Frame& frame)
+{
+  try {
+    const inr::RayGeometry geometry(frame, volume.dims);
+    return geometry.longest() / frame.sampleDistance;
+  } catch (const inr::Error&) {
+    return 0; // refused, and quickly
+  }
+}
+
 /// The longest way through the volume in voxels of its densest axis.
 inline double LongestRay(const inr::VolumeInfo& volume)
 {
@@ -176,7 +190,6 @@ inline FuzzScene MakeFuzzScene(const inr::VolumeInfo& volume, SceneBytes& bytes)
   constexpr double mostSteps = 200;
   const double longest = fuzz_scene::LongestRay(volume);
   frame.sampleDistance = std::max(bytes.power(2), longest / mostSteps);
-  scene.quick = frame.sampleDistance <= 1e6;
   frame.adaptiveSampling = bytes.below(2) == 0;
   // Full resolution everywhere costs a brick for every few samples.
   frame.levelOfDetailScale = longest > 200 ? bytes.power(1) + 1 : bytes.below(3);
@@ -193,5 +206,7 @@ inline FuzzScene MakeFuzzScene(const inr::VolumeInfo& volume, SceneBytes& bytes)
   }
   frame.seed = bytes.next();
   frame.errorTolerance = fuzz_scene::Tolerance(bytes);
+  scene.quick =
+      frame.sampleDistance <= 1e6 && fuzz_scene::MostSamples(volume, frame) <= 2 * mostSteps;
   return scene;
 }
