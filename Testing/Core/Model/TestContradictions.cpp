@@ -60,6 +60,9 @@ TEST(Contradictions, OfNumbersThatBelongTogether)
   ExpectRefused("contradict", [](json& root) { root["inr"]["dims"]["z"] = 34; });
   ExpectRefused("dims", [](json& root) { root["macrocell"]["dims"]["y"] = 3; });
   ExpectRefused("cover", [](json& root) { root["macrocell"]["spacings"]["x"] = 0.01; });
+  for (const double spacing : {1.1e9, 1e308}) {
+    ExpectRefused("at most 1e9", [&](json& root) { root["macrocell"]["spacings"]["y"] = spacing; });
+  }
   ExpectRefused("low end", [](json& root) { root["inr"]["data_range"]["low"] = 7e23; });
   ExpectRefused("range", [](json& root) {
     root["inr"]["data_range"] = {{"low", -1e308}, {"high", 1e308}};
