@@ -4,10 +4,11 @@ import html
 import os
 import re
 import struct
+import sys
 
 TABLE_LINE = re.compile(r"\|.*\|$")
 ITEM = re.compile(r"(?:- |\d+\. )")
-WIDEST = 700  # pixels that the help's window has room for
+TABLE_WIDTH = 650  # pixels that pictures in a table share; what is shrunk becomes hard to read
 
 
 def anchor(heading):
@@ -42,7 +43,7 @@ class Markdown:
         self.root = root
         self.pages = pages
         self.pictures = set()
-        self.room = WIDEST
+        self.room = sys.maxsize  # pixels for a picture
 
     def link(self, found):
         text, target = found.groups()
@@ -81,9 +82,9 @@ class Markdown:
             if number == 1:
                 continue  # the line below the header
             tag = "th" if number == 0 else "td"
-            self.room = WIDEST // len(cells)
+            self.room = TABLE_WIDTH // len(cells)
             rows.append("".join(f"<{tag}>{self.inline(cell)}</{tag}>" for cell in cells))
-            self.room = WIDEST
+        self.room = sys.maxsize
         body = "\n".join(f"<tr>{row}</tr>" for row in rows)
         return f'<table border="1" cellspacing="0" cellpadding="4">\n{body}\n</table>'
 
