@@ -87,7 +87,9 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
       this->SharedThreads = inr::ThreadShare(controller);
       this->GetMapper()->SetLocalRank(inr::LocalRank(controller));
-      this->GetMapper()->SetController(controller);
+      if (this->GetNumberOfInputConnections(0) > 0) { // or there is one that draws it all
+        this->GetMapper()->SetController(controller);
+      }
     }
     this->Deliver(in, out);
   } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
@@ -160,8 +162,22 @@ void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
     vtkImageData* image = this->Model->receive(vtkPolyData::SafeDownCast(carrier));
     this->VolumeMapper->SetInputDataObject(image);
     this->Actor->SetEnableLOD(image ? 0 : 1); // the outline
+    this->ReportShared(image != nullptr);
   } catch (const std::exception& problem) {
     vtkErrorMacro(<< problem.what());
+  }
+}
+
+void vtkINRVolumeRepresentation::ReportShared(bool drawsAll)
+{
+  vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
+  const bool others = processes && processes->GetNumberOfProcesses() > 1;
+  if (drawsAll && others && !this->SharedReported) {
+    this->SharedReported = true;
+    vtkWarningMacro(
+        "Of this render server's processes, one draws all of the volume, and surfaces "
+        "that others draw may come out on its wrong side. Let the client draw (raise "
+        "the Remote Render Threshold), or use a pvserver or one render server process.");
   }
 }
 

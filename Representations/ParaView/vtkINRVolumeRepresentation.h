@@ -97,6 +97,7 @@ private:
   void ForgetOutlines();
   void Deliver(vtkInformation* in, vtkInformation* out);
   void TakeDelivery(vtkInformation* in);
+  void ReportShared(bool drawsAll);
   void UpdateMapper();
   std::string WhyBlank();
   void ReportColouring();
@@ -110,6 +111,7 @@ private:
   std::string LastProblem;
   vtkNew<vtkINRStatusActor> Status;
   bool ShowStatus = false;
+  bool SharedReported = false;
 };
 
 #endif

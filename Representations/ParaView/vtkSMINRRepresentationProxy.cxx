@@ -12,8 +12,9 @@ void vtkSMINRRepresentationProxy::UpdatePropertyInformationInternal(vtkSMPropert
   // A session without a server answers itself wherever it is told to ask.
   const vtkTypeUInt32 everywhere = this->Location;
   auto* here = vtkINRVolumeRepresentation::SafeDownCast(this->GetClientSideObject());
-  this->Location = here && here->DrawsHere() ? vtkTypeUInt32{vtkPVSession::CLIENT}
-                                             : everywhere & ~vtkTypeUInt32{vtkPVSession::CLIENT};
+  const vtkTypeUInt32 drawing = vtkPVSession::RENDER_SERVER | vtkPVSession::RENDER_SERVER_ROOT;
+  this->Location =
+      here && here->DrawsHere() ? vtkTypeUInt32{vtkPVSession::CLIENT} : everywhere & drawing;
   this->Superclass::UpdatePropertyInformationInternal(property);
   this->Location = everywhere;
 }
