@@ -2,6 +2,7 @@
 #include "SharedDrawing.h"
 
 #include "vtkCameraPass.h"
+#include "vtkCommunicator.h"
 #include "vtkIceTCompositePass.h"
 #include "vtkImageProcessingPass.h"
 #include "vtkMultiProcessController.h"
@@ -46,7 +47,7 @@ void DrawEverywhere(vtkRenderer* renderer)
   }
 }
 
-int FrontProcess(vtkRenderer* renderer)
+int FrontProcess(vtkRenderer* renderer, bool hasSomething)
 {
   vtkIceTCompositePass* pass = CompositePassOf(renderer);
   if (!pass || !pass->GetUseOrderedCompositing() || !pass->GetOrderedCompositingHelper() ||
@@ -58,7 +59,13 @@ int FrontProcess(vtkRenderer* renderer)
   vtkMultiProcessController* processes = pass->GetController();
   const bool isOfAll =
       processes && static_cast<int>(order.size()) == processes->GetNumberOfProcesses();
-  return isOfAll ? order.front() : -1;
+  if (!isOfAll) {
+    return -1;
+  }
+  const int mine = hasSomething ? 1 : 0;
+  int least = 0;
+  processes->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
+  return least > 0 ? order.front() : -1;
 }
 
 } // namespace inr

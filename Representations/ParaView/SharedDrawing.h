@@ -10,7 +10,8 @@ namespace inr {
 void DrawEverywhere(vtkRenderer* renderer);
 
 /// Which of the processes whose pictures are being composed in order of depth is the one whose lies
-/// over the others; negative where none are, or not as one picture, or not by all of them.
-int FrontProcess(vtkRenderer* renderer);
+/// over the others; negative where none are, or not as one picture, or one of them has nothing to
+/// draw. All must ask.
+int FrontProcess(vtkRenderer* renderer, bool hasSomething);
 
 } // namespace inr
