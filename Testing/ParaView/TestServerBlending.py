@@ -7,11 +7,13 @@ import sys
 
 import numpy as np
 from paraview import simple
-from pvtest import ARRAY, MODEL, Messages, check, load_plugin, look_at, picture, show_view
+from pvtest import ARRAY, MODEL, Messages, check, load_plugin, look_at, output_file, picture
+from pvtest import show_view
 
 PORT = int(sys.argv[1])
 ALONE = ["Maximum Intensity", "Minimum Intensity", "Average Intensity", "Additive", "side 0", "side 1"]
-ALONE += ["side 2", "cropped", "inside", "two projections", "alone"]
+ALONE += ["side 2", "cropped", "inside", "two projections", "alone", "of one process"]
+FEW = output_file("few-voxels.inr")
 
 
 def show_scene():
@@ -80,10 +82,20 @@ def pictures(where):
     take("shaded isosurfaces")
     display.LevelOfDetailScale = 3
     take("coarse isosurfaces")
+    display.Visibility = 0
+    few = simple.Show(simple.INRReader(FileName=FEW), view)
+    few.SetScalarBarVisibility(view, False)
+    few.INRBlendMode = "Maximum Intensity"
+    view.ResetCamera()
+    take("of one process")
+    few.Visibility, display.Visibility = 0, 1
+    look_at(view)
     return view, display, result
 
 
 load_plugin()
+# Too few voxels for every process to have some.
+simple.SaveData(FEW, proxy=simple.Wavelet(WholeExtent=[0, 1, 0, 1, 0, 1]), MaximumSteps=50)
 expected = pictures("here")[2]
 check(all(image.std() > 0.03 for image in expected.values()), "nothing is shown")
 
