@@ -42,7 +42,7 @@ def box():
 
 def watch():
     """Yields between two looks at the window."""
-    deadline = time.time() + 60
+    deadline = time.time() + 120
     while not display.UseCropping or abs(box() - WANTED).max() > 0.02 * height:
         check(time.time() < deadline, "cropping", display.UseCropping, "to", box(), "not", WANTED)
         yield

@@ -49,7 +49,7 @@ def readers():
 
 def watch():
     """Yields between two looks at the window."""
-    deadline = time.time() + 60
+    deadline = time.time() + 120
     while not readers() or not readers()[0].GetDataInformation().GetNumberOfPoints():
         check(time.time() < deadline, "nothing is opened; there are", os.listdir(folder))
         yield

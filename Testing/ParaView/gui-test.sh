@@ -9,7 +9,7 @@ home=$(mktemp -d)
 trap 'rm -rf "$home"' EXIT
 wanted=${INR_WANTED-}
 [ -z "$wanted" ] || rm -f "$wanted"
-HOME=$home XDG_RUNTIME_DIR=$home timeout --kill-after=10 120 "$paraview" \
+HOME=$home XDG_RUNTIME_DIR=$home timeout --kill-after=10 240 "$paraview" \
   --plugin-search-paths="$plugins" --plugins=INRVolume --dr --data-directory="$data" \
   --test-directory="$output" --test-script="$script" "$@"
 status=$?
