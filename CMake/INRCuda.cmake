@@ -12,6 +12,7 @@ set(INR_CUDA_ARCHITECTURES "80" CACHE STRING
 set(INR_CUDA_TARGETS "")
 if (NOT INR_CUDA)
   message(STATUS "CUDA: switched off; INRVolume computes on the CPU")
+  unset(CMAKE_CUDA_COMPILER CACHE) # of a time when it was on
   return ()
 endif ()
 
