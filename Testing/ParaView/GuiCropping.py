@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 from paraview import simple
+from guisteps import follow
 from pvtest import MODEL, check, load_plugin, output_file, read_png
 
 # Not to the window's Python shell.
@@ -58,20 +59,4 @@ def watch():
     check(shown[170:290].min() > 0.3, "the volume is gone", shown[170:290].min())
 
 
-steps = watch()
-
-
-def look(*_):
-    if steps.gi_running:
-        return
-    try:
-        next(steps)
-    except StopIteration:
-        os._exit(0)
-    except BaseException as problem:
-        check(False, problem)
-
-
-interactor = view.GetRenderWindow().GetInteractor()
-interactor.AddObserver("TimerEvent", look)
-interactor.CreateRepeatingTimer(50)
+follow(watch(), view.GetRenderWindow().GetInteractor())

@@ -8,6 +8,7 @@ import time
 
 import numpy as np
 from paraview import simple
+from guisteps import follow
 from pvtest import MODEL, Messages, check, load_plugin, output_file, psnr, read_png
 
 # Not to the window's Python shell.
@@ -79,19 +80,4 @@ def watch():
     check(messages.errors() == 0, "reported:", messages.text)
 
 
-steps = watch()
-
-
-def look(*_):
-    if steps.gi_running:
-        return
-    try:
-        next(steps)
-    except StopIteration:
-        os._exit(0)
-    except BaseException as problem:
-        check(False, problem)
-
-
-interactor.AddObserver("TimerEvent", look)
-interactor.CreateRepeatingTimer(50)
+follow(watch(), interactor)

@@ -8,6 +8,7 @@ import sys
 import time
 
 from paraview import simple
+from guisteps import follow
 from pvtest import MODEL, check, load_plugin
 
 # Not to the window's Python shell.
@@ -121,19 +122,4 @@ display.StillTimeLimit = 0.05
 display.SampleDistance = 4
 display.MaximumBounces = 1
 show_endless()
-steps = watch()
-
-
-def look(*_):
-    if steps.gi_running:
-        return  # an animation plays, in which timers go on
-    try:
-        next(steps)
-    except StopIteration:
-        os._exit(0)
-    except BaseException as problem:
-        check(False, problem)
-
-
-interactor.AddObserver("TimerEvent", look)
-interactor.CreateRepeatingTimer(50)
+follow(watch(), interactor)

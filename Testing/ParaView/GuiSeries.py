@@ -8,6 +8,7 @@ import sys
 import time
 
 from paraview import simple
+from guisteps import follow
 from pvtest import check, load_plugin, output_file
 
 # Not to the window's Python shell.
@@ -66,20 +67,4 @@ def watch():
     print("saved and opened", names)
 
 
-steps = watch()
-
-
-def look(*_):
-    if steps.gi_running:
-        return
-    try:
-        next(steps)
-    except StopIteration:
-        os._exit(0)
-    except BaseException as problem:
-        check(False, problem)
-
-
-interactor = view.GetRenderWindow().GetInteractor()
-interactor.AddObserver("TimerEvent", look)
-interactor.CreateRepeatingTimer(50)
+follow(watch(), view.GetRenderWindow().GetInteractor())

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A test's own steps while ParaView's window goes on."""
+import os
+
+from pvtest import check
+
+
+def follow(steps, interactor):
+    """Goes on with the generator `steps` by a timer of the window, every 50 ms, and ends the program
+    with them: well where they end, badly where one raises."""
+
+    def look(*_):
+        if steps.gi_running:
+            return  # a step waits for the window (an animation plays), in which timers go on
+        try:
+            next(steps)
+        except StopIteration:
+            os._exit(0)
+        except BaseException as problem:
+            check(False, problem)
+
+    interactor.AddObserver("TimerEvent", look)
+    interactor.CreateRepeatingTimer(50)
