@@ -47,7 +47,7 @@ void DrawEverywhere(vtkRenderer* renderer)
   }
 }
 
-int FrontProcess(vtkRenderer* renderer, bool hasSomething)
+int FrontProcess(vtkRenderer* renderer)
 {
   vtkIceTCompositePass* pass = CompositePassOf(renderer);
   if (!pass || !pass->GetUseOrderedCompositing() || !pass->GetOrderedCompositingHelper() ||
@@ -59,13 +59,17 @@ int FrontProcess(vtkRenderer* renderer, bool hasSomething)
   vtkMultiProcessController* processes = pass->GetController();
   const bool isOfAll =
       processes && static_cast<int>(order.size()) == processes->GetNumberOfProcesses();
-  if (!isOfAll) {
-    return -1;
+  return isOfAll ? order.front() : -1;
+}
+
+bool AllHave(vtkMultiProcessController* processes, bool something)
+{
+  const int mine = something ? 1 : 0;
+  int least = mine;
+  if (processes && processes->GetNumberOfProcesses() > 1) {
+    processes->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
   }
-  const int mine = hasSomething ? 1 : 0;
-  int least = 0;
-  processes->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
-  return least > 0 ? order.front() : -1;
+  return least > 0;
 }
 
 } // namespace inr

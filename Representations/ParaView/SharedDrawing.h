@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+class vtkMultiProcessController;
 class vtkRenderer;
 
 namespace inr {
@@ -10,8 +11,11 @@ namespace inr {
 void DrawEverywhere(vtkRenderer* renderer);
 
 /// Which of the processes whose pictures are being composed in order of depth is the one whose lies
-/// over the others; negative where none are, or not as one picture, or one of them has nothing to
-/// draw. All must ask.
-int FrontProcess(vtkRenderer* renderer, bool hasSomething);
+/// over the others; negative where none are, or not as one picture. They need not ask each other.
+int FrontProcess(vtkRenderer* renderer);
+
+/// Whether each of the processes has something to draw. All of them must ask, outside of drawing:
+/// there one without anything does not know its turn among several volumes.
+bool AllHave(vtkMultiProcessController* processes, bool something);
 
 } // namespace inr

@@ -87,10 +87,8 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
       this->SharedThreads = inr::ThreadShare(controller);
       this->GetMapper()->SetLocalRank(inr::LocalRank(controller));
-      if (this->GetNumberOfInputConnections(0) > 0) { // or there is one that draws it all
-        this->GetMapper()->SetController(controller);
-      }
     }
+    this->FindOthers();
     this->Deliver(in, out);
   } else if (request == vtkPVView::REQUEST_UPDATE_LOD()) {
     if (HasPieces()) {
@@ -110,6 +108,17 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
   }
   return 1;
+}
+
+void vtkINRVolumeRepresentation::FindOthers()
+{
+  if (this->GetNumberOfInputConnections(0) == 0) {
+    return; // one process draws it all
+  }
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  vtkDataSet* data = this->VolumeMapper->GetDataSetInput();
+  const bool hasSome = data && data->GetNumberOfPoints() > 0;
+  this->GetMapper()->SetController(inr::AllHave(controller, hasSome) ? controller : nullptr);
 }
 
 void vtkINRVolumeRepresentation::ForgetOutlines()

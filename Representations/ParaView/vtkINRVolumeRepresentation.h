@@ -94,6 +94,7 @@ private:
 
   vtkINRVolumeMapper* GetMapper();
   void UpdateStatus();
+  void FindOthers();
   void ForgetOutlines();
   void Deliver(vtkInformation* in, vtkInformation* out);
   void TakeDelivery(vtkInformation* in);

@@ -88,7 +88,14 @@ def pictures(where):
     few.INRBlendMode = "Maximum Intensity"
     view.ResetCamera()
     take("of one process")
-    few.Visibility, display.Visibility = 0, 1
+    display.Visibility, display.INRBlendMode = 1, "Maximum Intensity"
+    few.Scale, few.Position = [40, 40, 40], [120, 20, 20]
+    look_at(view)
+    for side in range(2):  # in front of what all draw together, and behind it
+        camera.Azimuth(100)
+        take(f"of one process beside it {side}")
+        camera.Azimuth(80)
+    few.Visibility = 0
     look_at(view)
     return view, display, result
 
