@@ -6,6 +6,7 @@
 #include "SharedDrawing.h"
 #include "ThreadShare.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkBoundingBox.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
@@ -29,6 +30,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <utility>
 
 vtkStandardNewMacro(vtkINRVolumeRepresentation);
 
@@ -105,7 +107,8 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       inr::DrawEverywhere(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
     }
     this->ReportColouring();
-    this->OutlineMapper->SetInputConnection(vtkPVRenderView::GetPieceProducer(in, this, 1));
+    this->OutlineMapper->SetInputConnection(
+        vtkPVRenderView::GetPieceProducer(in, this, this->OutlinePort));
   }
   return 1;
 }
@@ -149,14 +152,45 @@ int vtkINRVolumeRepresentation::RequestData(vtkInformation* request, vtkInformat
 void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out)
 {
   vtkPVRenderView::SetPiece(in, this, this->Carrier, 0, 0);
-  vtkPVRenderView::SetPiece(in, this, this->OutlineSource->GetOutputDataObject(0), 0, 1);
-  vtkPVRenderView::SetGeometryBounds(in, this, this->DataBounds, this->Actor->GetMatrix());
   if (HasPieces()) { // false would forbid it
     vtkPVRenderView::SetRequiresDistributedRendering(in, this, true);
   }
-  vtkPVRenderView::SetOrderedCompositingConfiguration(
-      in, this, vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION);
+  // The view sorts the processes' pieces, and shares surfaces out among them, by bounds that it
+  // takes for the world's whatever the matrix, and looks at anew with new data only, or with those
+  // of another port.
+  if (this->UpdatePlace()) {
+    std::swap(this->OutlinePort, this->BoundsPort);
+  }
+  vtkPVRenderView::SetGeometryBounds(in, this, this->PlacedBounds);
+  for (const int port : {this->OutlinePort, this->BoundsPort}) {
+    const int use =
+        port == this->BoundsPort ? int{vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION} : 0;
+    vtkPVRenderView::SetPiece(in, this, this->OutlineSource->GetOutputDataObject(0), 0, port);
+    vtkPVRenderView::SetGeometryBounds(in, this, this->PlacedBounds, nullptr, port);
+    vtkPVRenderView::SetOrderedCompositingConfiguration(in, this, use, nullptr, port);
+  }
   out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
+}
+
+/** Whether the volume has another place in the world than when this was asked last, in all
+    processes alike; PlacedBounds are those there. */
+bool vtkINRVolumeRepresentation::UpdatePlace()
+{
+  const double* matrix = this->Actor->GetMatrix()->GetData();
+  const bool moved = !std::equal(matrix, matrix + 16, this->Place);
+  std::copy_n(matrix, 16, this->Place);
+  std::copy_n(this->DataBounds, 6, this->PlacedBounds);
+  if (vtkBoundingBox(this->DataBounds).IsValid()) {
+    vtkBoundingBox box;
+    for (int corner = 0; corner < 8; ++corner) {
+      double at[4] = {this->DataBounds[corner & 1], this->DataBounds[2 + (corner >> 1 & 1)],
+                      this->DataBounds[4 + (corner >> 2)], 1};
+      this->Actor->GetMatrix()->MultiplyPoint(at, at);
+      box.AddPoint(at);
+    }
+    box.GetBounds(this->PlacedBounds);
+  }
+  return moved;
 }
 
 void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)

@@ -97,6 +97,7 @@ private:
   void FindOthers();
   void ForgetOutlines();
   void Deliver(vtkInformation* in, vtkInformation* out);
+  bool UpdatePlace();
   void TakeDelivery(vtkInformation* in);
   void ReportShared(bool drawsAll);
   void UpdateMapper();
@@ -109,6 +110,10 @@ private:
   std::unique_ptr<inr::ClientWatch> Client;
   std::unique_ptr<inr::ModelDelivery> Model;
   vtkNew<vtkPolyData> Carrier; ///< of the model to where it is drawn, if that is elsewhere
+  double Place[16] = {};       ///< of the volume in the world, a matrix
+  double PlacedBounds[6] = {}; ///< of the piece there
+  int OutlinePort = 1;         ///< of what is delivered; the model has 0
+  int BoundsPort = 2;          ///< the same, with the bounds that the view sorts by
   std::string LastProblem;
   vtkNew<vtkINRStatusActor> Status;
   bool ShowStatus = false;

@@ -72,6 +72,12 @@ def pictures(where):
     simple.GetDisplayProperties(balls[0], view).Opacity = 0.5  # which one process peels
     take("over glass")
     second.Visibility = 0
+    display.INRBlendMode = "Composite"
+    take("composite over glass")
+    display.Position, display.Scale = [0, 40, 20], [1, 0.7, 1.2]  # the surfaces are in other pieces then
+    take("moved")
+    display.Position, display.Scale = [0, 0, 0], [1, 1, 1]
+    display.INRBlendMode = "Maximum Intensity"
     for ball in balls:
         simple.Hide(ball, view)
     take("alone")
