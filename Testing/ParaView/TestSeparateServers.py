@@ -5,19 +5,12 @@ import os
 import sys
 
 import numpy as np
-from paraview import simple
-from pvtest import MODEL, Messages, check, load_plugin, look_at, picture, show_view
+from pvtest import Messages, check, connect, load_plugin, picture, show_ball, show_model
 
 
 def show_scene():
-    view = show_view((160, 120))
-    view.UseFXAA = 0
-    view.RemoteRenderThreshold = 0
-    display = simple.Show(simple.OpenDataFile(MODEL), view)
-    display.SetScalarBarVisibility(view, False)
-    look_at(view)
-    ball = simple.Sphere(Center=[20, 30, 70], Radius=16, ThetaResolution=40, PhiResolution=40)
-    simple.Show(ball, view)
+    view, display = show_model((160, 120))
+    show_ball(view, [20, 30, 70], 16)
     return view, display
 
 
@@ -33,9 +26,7 @@ load_plugin()
 expected = pictures(*show_scene(), "here")
 check(all(image.std() > 0.03 for image in expected.values()), "nothing is shown")
 
-simple.Connect("localhost", int(sys.argv[1]), "localhost", int(sys.argv[2]))
-simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=True, ns=vars(simple))
-load_plugin()
+connect(*sys.argv[1:])
 view, display = show_scene()
 for where, threshold in ("server", 0), ("client", 1000):
     view.RemoteRenderThreshold = threshold

@@ -6,15 +6,10 @@ import sys
 
 from inrvolume import vtkINRContour, vtkINRReader
 from paraview import simple
-from pvtest import MODEL, check, load_plugin, look_at, picture, show_view
+from pvtest import MODEL, check, connect, picture, show_model
 
-simple.Connect("localhost", int(sys.argv[1]))
-simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=True, ns=vars(simple))
-load_plugin()
-view = show_view()
-view.RemoteRenderThreshold = 0
-display = simple.Show(simple.OpenDataFile(MODEL), view)
-look_at(view)
+connect(sys.argv[1])
+view, display = show_model()
 
 
 def value(name):

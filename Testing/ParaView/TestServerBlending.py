@@ -7,8 +7,8 @@ import sys
 
 import numpy as np
 from paraview import simple
-from pvtest import ARRAY, MODEL, Messages, check, load_plugin, look_at, output_file, picture
-from pvtest import show_view
+from pvtest import ARRAY, MODEL, Messages, check, connect, load_plugin, look_at, output_file, picture
+from pvtest import show_ball, show_model
 
 PORT = int(sys.argv[1])
 ALONE = ["Maximum Intensity", "Minimum Intensity", "Average Intensity", "Additive", "side 0", "side 1"]
@@ -18,17 +18,11 @@ FEW = output_file("few-voxels.inr")
 
 def show_scene():
     """The model between opaque balls, some of each in one piece and some in another."""
-    view = show_view((160, 130))
-    view.UseFXAA = 0
-    view.RemoteRenderThreshold = 0
-    display = simple.Show(simple.OpenDataFile(MODEL), view)
-    display.SetScalarBarVisibility(view, False)
-    look_at(view)
+    view, display = show_model((160, 130))
     balls = []
     for center, radius in (([20, 30, 70], 16), ([45, 45, 20], 12), ([75, 60, 50], 20)):
-        ball = simple.Sphere(Center=center, Radius=radius, ThetaResolution=40, PhiResolution=40)
-        simple.Show(ball, view).DiffuseColor = [0.2, 0.6, 0.9]
-        balls.append(ball)
+        balls.append(show_ball(view, center, radius))
+        balls[-1].DiffuseColor = [0.2, 0.6, 0.9]
     return view, display, balls
 
 
@@ -69,7 +63,7 @@ def pictures(where):
     take("composite beside it")
     second.INRBlendMode = "Minimum Intensity"
     take("two projections")
-    simple.GetDisplayProperties(balls[0], view).Opacity = 0.5  # which one process peels
+    balls[0].Opacity = 0.5  # which one process peels
     take("over glass")
     second.Visibility = 0
     display.INRBlendMode = "Composite"
@@ -79,7 +73,7 @@ def pictures(where):
     display.Position, display.Scale = [0, 0, 0], [1, 1, 1]
     display.INRBlendMode = "Maximum Intensity"
     for ball in balls:
-        simple.Hide(ball, view)
+        ball.Visibility = 0
     take("alone")
     display.INRBlendMode = "Isosurface"
     display.INRIsosurfaceValues = [20, 45, 80, 120]
@@ -112,9 +106,7 @@ simple.SaveData(FEW, proxy=simple.Wavelet(WholeExtent=[0, 1, 0, 1, 0, 1]), Maxim
 expected = pictures("here")[2]
 check(all(image.std() > 0.03 for image in expected.values()), "nothing is shown")
 
-simple.Connect("localhost", PORT)
-simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=True, ns=vars(simple))
-load_plugin()
+connect(PORT)
 with Messages() as messages:
     view, display, found = pictures("there")
 check(messages.errors() == 0, "drawing reported", messages.text)

@@ -8,19 +8,14 @@ import sys
 import numpy as np
 from exrfile import read_exr
 from paraview import simple
-from pvtest import MODEL, Messages, check, load_plugin, look_at, output_file, picture, show_view
+from pvtest import Messages, check, connect, load_plugin, output_file, picture, show_ball, show_model
 
 PORT, PROCESSES = int(sys.argv[1]), int(sys.argv[2])
 
 
 def show_scene():
-    view = show_view((160, 120))
-    view.RemoteRenderThreshold = 0
-    display = simple.Show(simple.OpenDataFile(MODEL), view)
-    display.SetScalarBarVisibility(view, False)
-    look_at(view)
-    ball = simple.Sphere(Center=[30, 45, 60], Radius=25, ThetaResolution=64, PhiResolution=64)
-    simple.Show(ball, view)
+    view, display = show_model((160, 120))
+    show_ball(view, [30, 45, 60], 25)
     return view, display
 
 
@@ -54,9 +49,7 @@ load_plugin()
 expected = pictures(*show_scene())
 check((expected["plain"]["Z"] < 1).mean() > 0.05, "nothing is shown")
 
-simple.Connect("localhost", PORT)
-simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=True, ns=vars(simple))
-load_plugin()
+connect(PORT)
 view, display = show_scene()
 before = picture(view, f"server-{PROCESSES}-exr-before")
 found = pictures(view, display)

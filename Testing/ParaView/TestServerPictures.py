@@ -5,20 +5,15 @@ import os
 import sys
 
 import numpy as np
-from paraview import simple
-from pvtest import MODEL, check, load_plugin, look_at, picture, psnr, show_view
+from pvtest import check, connect, load_plugin, picture, psnr, show_model
 
 PORT, PROCESSES = int(sys.argv[1]), int(sys.argv[2])
 
 
-def show_model(threshold):
-    view = show_view((200, 200))
-    view.UseFXAA = 0
-    view.RemoteRenderThreshold = threshold
-    display = simple.Show(simple.OpenDataFile(MODEL), view)
+def show_scene():
+    view, display = show_model((200, 200))
     display.SamplesPerPixel = 64
     display.MaximumBounces = 2
-    look_at(view)
     return view, display
 
 
@@ -61,13 +56,11 @@ def compare(found, expected):
 
 
 load_plugin()
-expected = pictures(*show_model(0), "here")
+expected = pictures(*show_scene(), "here")
 check(expected["plain"].std() > 0.05, "nothing is shown")
 
-simple.Connect("localhost", PORT)
-simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=True, ns=vars(simple))
-load_plugin()
-view, display = show_model(0)
+connect(PORT)
+view, display = show_scene()
 compare(pictures(view, display, "there"), expected)
 display.UpdatePropertyInformation()
 print("drawn by", display.GetPropertyValue("BackendInUse"))

@@ -61,6 +61,31 @@ def without_decoration(view, size=(300, 300)):
     view.Background = [1, 1, 1]
 
 
+def show_model(size=(300, 300)):
+    """The trained model alone in a view that smooths no edges, seen by look_at(): view and display. A
+    connected server draws it."""
+    view = show_view(size)
+    view.UseFXAA = 0
+    view.RemoteRenderThreshold = 0
+    display = simple.Show(simple.OpenDataFile(MODEL), view)
+    display.SetScalarBarVisibility(view, False)
+    look_at(view)
+    return view, display
+
+
+def show_ball(view, center, radius):
+    """A smooth one, opaque; its display."""
+    ball = simple.Sphere(Center=center, Radius=radius, ThetaResolution=40, PhiResolution=40)
+    return simple.Show(ball, view)
+
+
+def connect(*place):
+    """To the servers at port `place`, or of data and of rendering at two, with the plugin there, too."""
+    simple.Connect(*(item for port in place for item in ("localhost", int(port))))
+    simple.LoadPlugin(os.environ["INR_PLUGIN"], remote=True, ns=vars(simple))
+    load_plugin()
+
+
 def look_at(view):
     """One slanted camera for all pictures."""
     view.ResetActiveCameraToPositiveX()
