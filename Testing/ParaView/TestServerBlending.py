@@ -54,9 +54,15 @@ def pictures(where):
     display.INRCroppingOrigin = [10, 0, 5]
     take("cropped")
     display.INRUseCropping = 0
-    camera.Dolly(5)  # into the volume
-    simple.Render(view)
+    opacity.Points = [usual[0], 0, 0.5, 0, usual[-4] / 2, 1, 0.5, 0]
+    camera.SetPosition(10, 70, 30)  # in the volume, which is before, between and behind the balls
+    camera.SetFocalPoint(80, 20, 70)
+    camera.SetViewUp(0, 1, 0)
+    camera.SetViewAngle(70)
+    view.GetRenderer().ResetCameraClippingRange()
     take("inside")
+    opacity.Points = usual
+    camera.SetViewAngle(30)
     look_at(view)
     second = simple.Show(simple.INRReader(FileName=MODEL), view)
     second.Position = [60, 0, 0]
