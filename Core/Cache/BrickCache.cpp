@@ -35,8 +35,9 @@ std::string SizeOf(const glm::ivec3& voxels)
 
 std::int64_t BrickCache::bytesPerBrick(const Hierarchy& hierarchy, CachePrecision precision)
 {
-  return BrickPool::bytesPerSlot(precision, hierarchy.voxelsPerBrick()) + PageTable::bytesFor(1) -
-         PageTable::bytesFor(0) + 2 * Word; // owner, last use
+  return BrickPool::bytesPerSlot(precision, hierarchy.voxelsPerBrick()) +
+         BrickBlocks::bytesPerSlot(hierarchy.brickDims()) + PageTable::bytesFor(1) -
+         PageTable::bytesFor(0) + 3 * Word; // owner, arrival, last use
 }
 
 std::int64_t BrickCache::bytesFor(std::int64_t bricks) const
@@ -71,8 +72,9 @@ std::int64_t BrickCache::capacityFor(const Hierarchy& hierarchy, CachePrecision 
 
 BrickCache::BrickCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes)
     : Levels(hierarchy), Capacity(capacityFor(hierarchy, precision, bytes)),
-      Pool(precision, hierarchy.voxelsPerBrick(), this->Capacity), Table(this->Capacity),
-      Owners(this->Capacity), LastUse(this->Capacity)
+      Pool(precision, hierarchy.voxelsPerBrick(), this->Capacity),
+      Blocks(precision, hierarchy.brickDims(), this->Capacity), Table(this->Capacity),
+      Owners(this->Capacity), Arrivals(this->Capacity), LastUse(this->Capacity)
 {
   this->Candidates.reserve(static_cast<std::size_t>(this->Capacity)); // within the budget
 }
@@ -163,7 +165,9 @@ void BrickCache::unmap(std::int32_t slot)
 void BrickCache::fill(std::int32_t slot, BrickKey key, const float* values)
 {
   this->Owners[slot] = key;
+  this->Arrivals[slot] = ++this->Arrived;
   this->Pool.store(slot, values);
+  this->Blocks.store(slot, this->Pool.view(slot));
   this->Table.map(key, slot);
   this->LastUse[slot].store(this->Frame, std::memory_order_relaxed);
   this->NoneBefore = std::min(this->NoneBefore, this->Frame);
@@ -207,6 +211,8 @@ void BrickCache::move(std::int32_t from, std::int32_t to)
 {
   const std::uint64_t before = this->candidate(from);
   this->Pool.copy(from, to);
+  this->Blocks.copy(from, to);
+  this->Arrivals[to] = ++this->Arrived;
   this->Owners[to] = this->Owners[from];
   this->LastUse[to].store(this->lastUse(from), std::memory_order_relaxed);
   this->Table.move(this->Owners[to], to);
@@ -224,7 +230,9 @@ void BrickCache::move(std::int32_t from, std::int32_t to)
 void BrickCache::resize(std::int64_t slots)
 {
   this->Pool.resize(slots);
+  this->Blocks.resize(slots);
   this->Owners.resize(slots);
+  this->Arrivals.resize(slots);
   this->LastUse.resize(slots);
 }
 

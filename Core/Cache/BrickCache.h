@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/BrickBlocks.h"
 #include "Core/Cache/BrickPool.h"
 #include "Core/Cache/PageTable.h"
 
@@ -37,6 +38,10 @@ public:
   /// Slot of a brick, or PageTable::Unmapped.
   std::int32_t find(BrickKey key) const { return this->Table.find(key); }
   BrickView view(std::int32_t slot) const { return this->Pool.view(slot); }
+  /// What is known of the voxels of a slot's brick, block by block.
+  const BrickBlocks& blocks() const { return this->Blocks; }
+  /// A number above 0 that a slot has with its present brick only.
+  std::uint64_t arrival(std::int32_t slot) const { return this->Arrivals[slot]; }
   /// Marks a brick as used in this frame.
   void touch(std::int32_t slot) const
   {
@@ -99,10 +104,13 @@ private:
   Hierarchy Levels;
   std::int64_t Capacity;
   BrickPool Pool;
+  BrickBlocks Blocks;
   PageTable Table;
   std::uint64_t Frame = 1;
   std::uint64_t LostUse = 0;
+  std::uint64_t Arrived = 0;                         ///< bricks so far, and moves of bricks
   ReservedArray<BrickKey> Owners;                    ///< of each slot
+  ReservedArray<std::uint64_t> Arrivals;             ///< of each slot
   ReservedArray<std::atomic<std::uint64_t>> LastUse; ///< frame in which each slot was last used
   /// The first slots in that order, the very first at the end. Uses only get later, so one not used
   /// since it came in here is still before all others, and all slots are looked at only when the

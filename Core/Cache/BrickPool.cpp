@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/BrickPool.h"
 
+#include "Core/Cache/RangeOfValues.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,36 +14,8 @@ namespace {
 
 constexpr std::int64_t RoomBehind = 64;
 
-struct Range
-{
-  float low, high;
-};
-
-/// The least and the greatest of at least one value.
-Range RangeOf(const float* values, std::int64_t count)
-{
-  constexpr std::int64_t lanes = 16; // side by side, for the compiler to make vectors of
-  float low[lanes];
-  float high[lanes];
-  std::fill_n(low, lanes, values[0]);
-  std::fill_n(high, lanes, values[0]);
-  const std::int64_t whole = count - count % lanes;
-  for (std::int64_t k = 0; k < whole; k += lanes) {
-    for (std::int64_t lane = 0; lane < lanes; ++lane) {
-      const float value = values[k + lane];
-      low[lane] = value < low[lane] ? value : low[lane];
-      high[lane] = value > high[lane] ? value : high[lane];
-    }
-  }
-  for (std::int64_t k = whole; k < count; ++k) {
-    low[0] = std::min(low[0], values[k]);
-    high[0] = std::max(high[0], values[k]);
-  }
-  return {*std::min_element(low, low + lanes), *std::max_element(high, high + lanes)};
-}
-
 /// Zero for a constant brick, else at least the smallest step whose inverse is finite.
-float StepOf(const Range& range, float steps)
+float StepOf(const ValueRange& range, float steps)
 {
   const float width = range.high - range.low;
   return width > 0 ? std::max(width / steps, std::numeric_limits<float>::min()) : 0.0f;
@@ -93,7 +67,7 @@ void BrickPool::store(std::int32_t slot, const float* values)
     std::memcpy(this->brick(slot), values, static_cast<std::size_t>(this->BytesPerBrick));
     return;
   }
-  const Range range = RangeOf(values, this->VoxelsPerBrick);
+  const ValueRange range = RangeOfValues(values, this->VoxelsPerBrick);
   const bool wide = this->Precision == CachePrecision::Bits16;
   scale = {range.low, StepOf(range, wide ? 65535.0f : 255.0f)};
   const auto quantise = wide ? Quantise<std::uint16_t> : Quantise<std::uint8_t>;

@@ -29,7 +29,7 @@ private:
 };
 
 /// An array that never moves and takes memory for the elements that it has, and some kilobytes that
-/// it had. New ones have no value.
+/// it had. New ones have no value; the very first ones of their places are of zeros.
 template <typename Element> class ReservedArray
 {
   static_assert(std::is_trivially_destructible_v<Element>);

@@ -4,6 +4,7 @@
 #include "Core/Render/BrickKernel.h"
 
 #include "Core/Inference/Lanes.h"
+#include "Core/Render/SampleLayout.h"
 
 namespace inr {
 namespace INR_ISA {
@@ -23,170 +24,6 @@ AxisLocation Locate(const float* places, int lastCell)
   const Ints last = lastCell - Ints{};
   cell = cell < last ? cell : last;
   return {cell, place - __builtin_convertvector(cell, Floats)};
-}
-
-void StoreInts(std::int32_t* to, Ints value) { std::memcpy(to, &value, sizeof(value)); }
-
-/// Where samples are in their bricks.
-struct Located
-{
-  float place[3][SampleBatch::Room];
-  float base[SampleBatch::Room];
-  float quantum[SampleBatch::Room];
-};
-
-/// A path, or in each lane one of two.
-struct Way
-{
-  Floats origin[3];
-  Floats direction[3];
-  Floats last[3];
-  Floats base;
-  Floats quantum;
-};
-
-Way SpreadWay(const BrickPath& path)
-{
-  Way way;
-  for (int axis = 0; axis < 3; ++axis) {
-    way.origin[axis] = Spread(path.origin[axis]);
-    way.direction[axis] = Spread(path.direction[axis]);
-    way.last[axis] = Spread(path.last[axis]);
-  }
-  way.base = Spread(path.base);
-  way.quantum = Spread(path.quantum);
-  return way;
-}
-
-Way ChooseWay(Ints second, const BrickPath& a, const BrickPath& b)
-{
-  const auto choose = [second](float one, float other) {
-    return second ? Spread(other) : Spread(one);
-  };
-  Way way;
-  for (int axis = 0; axis < 3; ++axis) {
-    way.origin[axis] = choose(a.origin[axis], b.origin[axis]);
-    way.direction[axis] = choose(a.direction[axis], b.direction[axis]);
-    way.last[axis] = choose(a.last[axis], b.last[axis]);
-  }
-  way.base = choose(a.base, b.base);
-  way.quantum = choose(a.quantum, b.quantum);
-  return way;
-}
-
-/// LaneCount places from `at` on, but for their voxels.
-void PutPlaces(const Way& way, Floats along, int at, Located& out)
-{
-  for (int axis = 0; axis < 3; ++axis) {
-    const Floats place = MultiplyAdd(along, way.direction[axis], way.origin[axis]);
-    Store(out.place[axis] + at, Minimum(Maximum(place, Floats{}), way.last[axis]));
-  }
-  Store(out.base + at, way.base);
-  Store(out.quantum + at, way.quantum);
-}
-
-/// Samples [first, end) of one path; may write up to LaneCount - 1 places past the end.
-void Follow(const BrickPath& path, const float* along, int first, int end, Located& out)
-{
-  const Way way = SpreadWay(path);
-  for (int k = first; k < end; k += LaneCount) {
-    PutPlaces(way, Load(along + k), k, out);
-  }
-}
-
-/// Whatever can be read, behind the last sample up to a whole vector.
-void PadPlaces(int count, SampleBatch& batch, Located& out)
-{
-  for (int lane = count; lane % LaneCount != 0; ++lane) {
-    batch.path[lane] = batch.path[count - 1];
-    out.place[0][lane] = out.place[1][lane] = out.place[2][lane] = 0.0f;
-  }
-}
-
-void LocateAll(SampleBatch& batch, int count, Located& out)
-{
-  int first = 0;
-  while (first < count) {
-    int end = first + 1;
-    while (end < count && batch.path[end] == batch.path[first]) {
-      ++end;
-    }
-    Follow(batch.paths[batch.path[first]], batch.along, first, end, out);
-    first = end;
-  }
-  PadPlaces(count, batch, out);
-}
-
-/// LaneCount samples of a run, from number `first` of it on, at `at` in the batch.
-struct Lanes
-{
-  Ints number; ///< of the samples in their run
-  int at;
-};
-
-Floats AlongOf(const SampleRun& run, int path, const Lanes& lanes)
-{
-  const Floats number = __builtin_convertvector(lanes.number, Floats);
-  return (number * run.spacing + run.start[path]) + run.offset;
-}
-
-void PutOnPath(const SampleRun& run, const Way& way, const Lanes& lanes, SampleBatch& batch,
-               Located& out)
-{
-  const Floats along = AlongOf(run, 0, lanes);
-  PutPlaces(way, along, lanes.at, out);
-  Store(batch.along + lanes.at, along);
-  StoreInts(batch.path + lanes.at, run.path[0] - Ints{});
-}
-
-/// RandomUnit32 of the samples.
-Floats RandomUnits(const SampleRun& run, const Lanes& lanes)
-{
-  UInts x = ((UInts)lanes.number * run.stride + run.counter) ^ run.seed;
-  x = (x ^ (x >> 16)) * 0x7FEB352Du;
-  x = (x ^ (x >> 15)) * 0x846CA68Bu;
-  return __builtin_convertvector((Ints)((x ^ (x >> 16)) >> 8), Floats) * 0x1p-24f;
-}
-
-void PutOnTwoPaths(const SampleRun& run, const Lanes& lanes, SampleBatch& batch, Located& out)
-{
-  const BrickPath& a = batch.paths[run.path[0]];
-  const BrickPath& b = batch.paths[run.path[1]];
-  const Floats fine = AlongOf(run, 0, lanes);
-  const Floats fraction = MultiplyAdd(fine, Spread(run.growth), Spread(run.fraction));
-  const Ints coarser = RandomUnits(run, lanes) < fraction;
-  const Floats along = coarser ? AlongOf(run, 1, lanes) : fine;
-  PutPlaces(ChooseWay(coarser, a, b), along, lanes.at, out);
-  Store(batch.along + lanes.at, along);
-  StoreInts(batch.path + lanes.at, coarser ? run.path[1] - Ints{} : run.path[0] - Ints{});
-}
-
-void PutCommon(const SampleRun& run, int at, SampleBatch& batch)
-{
-  Store(batch.low + at, Spread(run.low));
-  Store(batch.high + at, Spread(run.high));
-  StoreInts(batch.length + at, run.length - Ints{});
-}
-
-/// Lays out a run from `at` on; may write up to LaneCount - 1 samples past its end.
-void LayOut(const SampleRun& run, int at, SampleBatch& batch, Located& out)
-{
-  Lanes lanes{{}, at};
-  for (int lane = 0; lane < LaneCount; ++lane) {
-    lanes.number[lane] = lane;
-  }
-  const Way way = SpreadWay(batch.paths[run.path[0]]);
-  const int end = at + run.count;
-  while (lanes.at < end) {
-    if (run.ways > 1) {
-      PutOnTwoPaths(run, lanes, batch, out);
-    } else {
-      PutOnPath(run, way, lanes, batch, out);
-    }
-    PutCommon(run, lanes.at, batch);
-    lanes.at += LaneCount;
-    lanes.number += LaneCount;
-  }
 }
 
 /// Voxels as they are stored: of each lane one and its neighbour along x.
@@ -309,6 +146,57 @@ void SampleRuns(const BrickFormat& format, SampleBatch& batch, int runs)
   SampleLocated(format, batch, located, count);
 }
 
+/// A bit for each lane: whether its block of a brick is shown.
+std::uint32_t LookUp(const ShownBlocks& blocks, Ints block)
+{
+#if defined(__AVX512F__)
+  const __m512i words = _mm512_loadu_si512(blocks.words);
+  const __m512i word = _mm512_maskz_permutexvar_epi32(0xffff, (__m512i)(block >> 5), words);
+  return _mm512_test_epi32_mask(word, (__m512i)(1 << (block & 31)));
+#elif defined(__AVX2__)
+  const __m256i word =
+      _mm256_i32gather_epi32(reinterpret_cast<const int*>(blocks.words), (__m256i)(block >> 5), 4);
+  const Ints sign = (Ints)word << (31 - (block & 31));
+  return static_cast<std::uint32_t>(_mm256_movemask_ps((__m256)sign));
+#else
+  std::uint32_t bits = 0;
+  for (int lane = 0; lane < LaneCount; ++lane) {
+    const std::uint64_t bit = blocks.words[block[lane] >> 6] >> (block[lane] & 63) & 1;
+    bits |= static_cast<std::uint32_t>(bit) << lane;
+  }
+  return bits;
+#endif
+}
+
+std::uint64_t FindShown(const BrickFormat& format, const ShownBlocks& blocks, const BrickPath& path,
+                        const SampleRow& row, int count)
+{
+  constexpr int most = 8; // blocks per axis
+  Ints number;
+  for (int lane = 0; lane < LaneCount; ++lane) {
+    number[lane] = lane;
+  }
+  const Way way = SpreadWay(path);
+  std::uint64_t shown = 0;
+  for (int k = 0; k < count; k += LaneCount) {
+    const Floats along =
+        (__builtin_convertvector(number, Floats) * row.spacing + row.start) + row.offset;
+    Floats places[3];
+    FindPlaces(way, along, places);
+    Ints block{};
+    for (int axis = 2; axis >= 0; --axis) {
+      Ints at = __builtin_convertvector(places[axis] * format.blocksPerVoxel, Ints);
+      const Ints last = format.lastBlock[axis] - Ints{};
+      at = at < last ? at : last;
+      block = block * most + at;
+    }
+    shown |= static_cast<std::uint64_t>(LookUp(blocks, block)) << k;
+    number += LaneCount;
+  }
+  // Not LowestBits: nothing inline comes from elsewhere.
+  return count < 64 ? shown & ((std::uint64_t{1} << count) - 1) : shown;
+}
+
 /// Table positions of a batch.
 struct Classified
 {
@@ -402,7 +290,7 @@ int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opa
 
 } // namespace
 
-const BrickKernel Bricks = {SampleRuns, Sample, Composite};
+const BrickKernel Bricks = {FindShown, SampleRuns, Sample, Composite};
 
 } // namespace INR_ISA
 } // namespace inr

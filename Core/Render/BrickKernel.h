@@ -19,7 +19,19 @@ struct BrickFormat
   VoxelBytes bytes;
   int strideY; ///< in voxels
   int strideZ;
-  int lastCell[3]; ///< largest first corner of an interpolation cell
+  int lastCell[3];      ///< largest first corner of an interpolation cell
+  float blocksPerVoxel; ///< see BlockLattice
+  int lastBlock[3];
+};
+
+/// Which blocks of a brick may be seen; see BlockLattice. Plain data.
+struct ShownBlocks
+{
+  enum class Kind : std::uint8_t { None, Some, All };
+  static constexpr int Words = 8;
+
+  Kind kind = Kind::All;
+  std::uint64_t words[Words] = {}; ///< of Some: bit x + 8 y of word z is of block (x, y, z)
 };
 
 /// Colours and opacities for the sample lengths of one frame: table + length * rows holds, for
@@ -46,6 +58,14 @@ struct BrickPath
   float last[3];
 };
 
+/// Samples on a ray's way through a brick: sample k is (start + k * spacing) + offset along it.
+struct SampleRow
+{
+  float start;
+  float spacing; ///< in steps
+  float offset;
+};
+
 /// Samples of a ray that differ in nothing but their place, in a brick or, chosen at random as
 /// LevelOfDetail does, in one of two of neighbouring levels: sample k is
 /// (start + k * spacing) + offset along its path, exactly that wherever the run begins.
@@ -62,8 +82,9 @@ struct SampleRun
   std::uint32_t counter; ///< of the first sample
   std::uint32_t stride;  ///< of the counters
   int count;
-  int length; ///< what each stands for, see StepLookup
-  float low;  ///< range of their macro-cell, to which values are clamped
+  std::uint64_t shown; ///< bit k: whether sample k of them is taken, as `count` are
+  int length;          ///< what each stands for, see StepLookup
+  float low;           ///< range of their macro-cell, to which values are clamped
   float high;
 };
 
@@ -96,6 +117,11 @@ constexpr double ManySamples = 1 << 14;
 /// The inner loops of cached ray marching, for one instruction set.
 struct BrickKernel
 {
+  /// Which samples of a ray may show something: bit k is of the one at (start + k * spacing) +
+  /// offset along its path, for k below `count`, at most 64; others are 0.
+  std::uint64_t (*findShown)(const BrickFormat& format, const ShownBlocks& blocks,
+                             const BrickPath& path, const SampleRow& row, int count);
+
   /// Lays out the samples of the first `runs` runs, at most Capacity in all, and finds their
   /// values.
   void (*sampleRuns)(const BrickFormat& format, SampleBatch& batch, int runs);

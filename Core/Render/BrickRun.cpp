@@ -14,7 +14,13 @@ BrickFormat FormatOf(const BrickCache& cache)
 {
   const glm::ivec3& dims = cache.hierarchy().brickDims();
   const auto bytes = static_cast<VoxelBytes>(BytesPerVoxel(cache.precision()));
-  return {bytes, dims.x, dims.x * dims.y, {dims.x - 2, dims.y - 2, dims.z - 2}};
+  const BlockLattice& blocks = cache.blocks().lattice();
+  return {bytes,
+          dims.x,
+          dims.x * dims.y,
+          {dims.x - 2, dims.y - 2, dims.z - 2},
+          1.0f / static_cast<float>(blocks.edge),
+          {blocks.count.x - 1, blocks.count.y - 1, blocks.count.z - 1}};
 }
 
 BrickWay::BrickWay(const Hierarchy& hierarchy, int level, const Ray& ray)
@@ -27,19 +33,20 @@ BrickWay::BrickWay(const Hierarchy& hierarchy, int level, const Ray& ray)
       LatticeWalker(hierarchy.bricks(level), start, ray.direction * scale, ray.inverse / scale);
 }
 
-BrickPath BrickWay::path(const BrickView& view, double t, double step) const
+void BrickWay::findPath(const BrickView& view, double t, double step, BrickPath& path) const
 {
   const glm::dvec3 cell(this->Bricks.cell());
   const glm::dvec3 origin = (this->Bricks.at(t) - cell) * this->Stride;
   const glm::dvec3 direction = this->Bricks.slope() * (this->Stride * step);
   const glm::dvec3 last = glm::min(this->Stride, this->LastVoxel - cell * this->Stride);
-  BrickPath path{view.voxels, view.low, view.step, {}, {}, {}};
+  path.voxels = view.voxels;
+  path.base = view.low;
+  path.quantum = view.step;
   for (int axis = 0; axis < 3; ++axis) {
     path.origin[axis] = static_cast<float>(origin[axis]);
     path.direction[axis] = static_cast<float>(direction[axis]);
     path.last[axis] = static_cast<float>(last[axis]);
   }
-  return path;
 }
 
 void BrickRun::open(const BrickWay& wanted, const BrickWay& served, const BrickView& view,
@@ -54,7 +61,9 @@ void BrickRun::open(const BrickWay& wanted, const BrickWay& served, const BrickV
   this->ServedLevel = served.level();
   this->Wish = wanted.brick();
   this->Count = 0;
-  this->Path = served.path(view, this->Reference * step, step);
+  served.findPath(view, this->Reference * step, step, this->Path);
+  this->Place = -1;
+  this->Shown.kind = ShownBlocks::Kind::All;
 }
 
 } // namespace inr

@@ -26,7 +26,7 @@ public:
   double enter() const { return this->Bricks.enter(); }
   double exit() const { return this->Bricks.exit(); }
   /// The way through the brick, stored in `view`, from t on; `along` in units of `step`.
-  BrickPath path(const BrickView& view, double t, double step) const;
+  void findPath(const BrickView& view, double t, double step, BrickPath& path) const;
 
 private:
   int Level = -1;
@@ -48,6 +48,9 @@ public:
   /// which `served` is, the same or one of a coarser level, which is mapped and in `view`. `step`
   /// is the t between places.
   void open(const BrickWay& wanted, const BrickWay& served, const BrickView& view, double step);
+  /// Which blocks of the brick may be seen: all, unless something else is said.
+  const ShownBlocks& shown() const { return this->Shown; }
+  ShownBlocks& shown() { return this->Shown; }
   void close()
   {
     this->Level = -1;
@@ -62,7 +65,7 @@ public:
   void count(int samples) { this->Count += samples; }
 
   const BrickPath& path() const { return this->Path; }
-  /// The path's number in the batch being filled.
+  /// The path's number in the batch being filled, -1 where it is not in there yet.
   int place() const { return this->Place; }
   void setPlace(int place) { this->Place = place; }
 
@@ -81,7 +84,8 @@ private:
   double Exit = 0;
   double Reference = 0; ///< place of the path's origin, a whole number
   BrickPath Path{};
-  int Place = 0;
+  int Place = -1;
+  ShownBlocks Shown;
   int ServedLevel = -1;
   BrickKey Served = 0;
   BrickKey Wish = 0;

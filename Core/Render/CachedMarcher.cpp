@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/CachedMarcher.h"
 
-#include "Core/Render/StepTable.h"
+#include "Core/Render/SampleBits.h"
 
 #include <algorithm>
 
@@ -133,117 +133,6 @@ bool CachedMarcher::marchPart(CachedRay& state)
   return this->Ended;
 }
 
-void CachedMarcher::place(CachedRay& state)
-{
-  this->Count = 0;
-  this->RunCount = 0;
-  this->Paths = 0;
-  this->LastLength = 0;
-  for (BrickRun& run : this->Runs) {
-    if (run.level() >= 0) {
-      this->enlist(run);
-    }
-  }
-  const MarchSettings& settings = this->Scene.settings;
-  while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
-    if (!state.samples.moveToVisible(settings)) {
-      this->Ended = true;
-      return;
-    }
-    AlikeSamples alike = state.samples.alike();
-    if (settings.projector.canSkip(state.projection, state.samples.stretch().range) ||
-        (this->Cropped && this->isCropped(state, alike))) {
-      state.samples.pass(alike, alike.count);
-      continue;
-    }
-    const int count = this->add(state, alike);
-    if (alike.last && count > 0) {
-      this->LastLength =
-          static_cast<float>(state.samples.rest() * settings.step * settings.unitsPerT);
-      this->Ended = true;
-    }
-    state.samples.pass(alike, count);
-  }
-}
-
-bool CachedMarcher::isCropped(const CachedRay& state, AlikeSamples& alike) const
-{
-  const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
-  const double end = this->Cropped->end(place);
-  alike.count = CountBelow((end - place) / static_cast<double>(alike.steps()), alike.count);
-  return !this->Cropped->shows(place);
-}
-
-// Inline: called once per run of samples, and there are as many of them as of bricks.
-inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
-                                  const BrickRun& fine, const BrickRun& coarse)
-{
-  const SampleWalker& samples = state.samples;
-  const SampleStretch& stretch = samples.stretch();
-  // A coarser brick than the one wanted may hold anything.
-  const bool exact = fine.exact() && coarse.exact();
-  const ValueRange range = exact ? stretch.range : ValueRange{0.0f, 1.0f};
-  const double offset = samples.offset(alike);
-  const auto begin = static_cast<double>(samples.next());
-  const double growth = samples.detail().fractionGrowth() * this->Scene.settings.step;
-  const double fraction = samples.detail().fractionAtEntry() + growth * fine.reference();
-  SampleRun& run = this->Batch.runs[this->RunCount];
-  run.start[0] = fine.along(begin);
-  run.start[1] = coarse.along(begin);
-  run.spacing = static_cast<float>(alike.steps());
-  run.offset = static_cast<float>(offset);
-  run.ways = samples.detail().isDithered() ? 2 : 1;
-  run.path[0] = fine.place();
-  run.path[1] = coarse.place();
-  run.fraction = static_cast<float>(fraction);
-  run.growth = static_cast<float>(growth);
-  run.seed = DitherSeed(state.stream);
-  run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
-  run.stride = static_cast<std::uint32_t>(this->ditherOf(alike.steps()));
-  run.count = count;
-  run.length = LengthOf(alike.joined, alike.power);
-  run.low = range.low;
-  run.high = range.high;
-  this->Origins[this->RunCount++] = {this->Count,   offset,  samples.next(),
-                                     alike.steps(), stretch, fine.servedLevel()};
-  this->Count += count;
-}
-
-inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike, int count,
-                                    BrickRun& fine, BrickRun& coarse) const
-{
-  if (fine.exact() && coarse.exact()) { // nobody asks which it was
-    fine.count(count);
-    return;
-  }
-  const LevelOfDetail& detail = state.samples.detail();
-  for (int k = 0; k < count; ++k) {
-    const std::int64_t interval = state.samples.next() + k * alike.steps();
-    const bool isFine = detail.dithered(state.stream, this->ditherOf(interval)) == fine.level();
-    (isFine ? fine : coarse).count(1);
-  }
-}
-
-int CachedMarcher::add(const CachedRay& state, const AlikeSamples& alike)
-{
-  const LevelOfDetail& detail = state.samples.detail();
-  const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
-  BrickRun* fine = this->runFor(state, detail.level(), place);
-  BrickRun* coarse = detail.isDithered() ? this->runFor(state, detail.level() + 1, place) : fine;
-  if (fine == nullptr || coarse == nullptr) {
-    this->Waiting = true;
-    return 0;
-  }
-  int count = std::min(alike.count, SampleBatch::Capacity - this->Count);
-  if (count > 1) {
-    const double room = std::min(fine->exit(), coarse->exit()) - place;
-    count = CountBelow(room / static_cast<double>(alike.steps()), count);
-  }
-  this->addRun(state, alike, count, *fine, *coarse);
-  this->countUse(state, alike, count, *fine, *coarse);
-  return count;
-}
-
 const CachedMarcher::Origin& CachedMarcher::originOf(int sample) const
 {
   int run = this->RunCount - 1;
@@ -253,75 +142,17 @@ const CachedMarcher::Origin& CachedMarcher::originOf(int sample) const
   return this->Origins[run];
 }
 
+std::int64_t CachedMarcher::intervalOf(const Origin& origin, int sample)
+{
+  return origin.interval + PlaceOfBit(origin.shown, sample - origin.sample) * origin.steps;
+}
+
 double CachedMarcher::timeOf(const CachedRay& state, int sample) const
 {
   const Origin& origin = this->originOf(sample);
-  const std::int64_t interval = origin.interval + (sample - origin.sample) * origin.steps;
+  const std::int64_t interval = intervalOf(origin, sample);
   const double t = (static_cast<double>(interval) + origin.offset) * this->Scene.settings.step;
   return std::min(t, state.ray.length);
-}
-
-BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double place)
-{
-  BrickRun& run = this->Runs[level & 1];
-  if (run.covers(level, place)) {
-    return &run;
-  }
-  this->close(run, state.color.transmittance);
-  return this->open(run, state.ray, level, place) ? &run : nullptr;
-}
-
-bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
-{
-  const BrickCache& cache = this->Scene.cache;
-  const Hierarchy& hierarchy = cache.hierarchy();
-  const double t = place * this->Scene.settings.step;
-  BrickWay& wanted = this->Ways[level & 1];
-  if (wanted.level() != level) {
-    wanted = BrickWay(hierarchy, level, ray);
-  }
-  wanted.moveTo(t);
-  const BrickKey key = wanted.brick();
-  std::int32_t slot = cache.find(key);
-  if (slot >= 0) {
-    run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
-  } else if (this->Missing == OnMiss::Stop) {
-    this->Awaited = key;
-    return false;
-  } else {
-    slot = this->openCoarser(run, ray, wanted, t);
-  }
-  cache.touch(slot);
-  this->enlist(run);
-  return true;
-}
-
-std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted,
-                                        double t)
-{
-  const BrickCache& cache = this->Scene.cache;
-  const Hierarchy& hierarchy = cache.hierarchy();
-  BrickKey wish = wanted.brick();
-  for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
-    BrickWay served(hierarchy, level, ray);
-    served.moveTo(t);
-    const std::int32_t slot = cache.find(served.brick());
-    if (slot >= 0) {
-      run.open(wanted, served, cache.view(slot), this->Scene.settings.step);
-      if (this->Missing == OnMiss::Approach) {
-        run.wishFor(wish);
-      }
-      return slot;
-    }
-    wish = served.brick();
-  }
-}
-
-void CachedMarcher::enlist(BrickRun& run)
-{
-  run.setPlace(this->Paths);
-  this->Bricks[this->Paths] = run.served();
-  this->Batch.paths[this->Paths++] = run.path();
 }
 
 void CachedMarcher::close(BrickRun& run, float transmittance)
@@ -375,9 +206,10 @@ void CachedMarcher::goBackTo(int sample, const CachedRay& before, CachedRay& sta
   const Origin& origin = this->originOf(sample);
   this->Statistics.work.cells += state.samples.visited() - before.samples.visited();
   state.samples = before.samples;
-  state.samples.resume(origin.interval + (sample - origin.sample) * origin.steps, origin.stretch,
-                       this->Scene.settings);
+  state.samples.resume(intervalOf(origin, sample), origin.stretch, this->Scene.settings);
   this->Statistics.samples -= this->Count - sample; // they will be counted again
+  const int taken = sample - origin.sample;
+  this->Statistics.hidden = origin.hidden + PlaceOfBit(origin.shown, taken) - taken;
   for (int k = sample; k < this->Count; ++k) {
     this->LevelSum -= this->originOf(k).level;
   }

@@ -73,8 +73,10 @@ private:
     double offset;         ///< from a sample's interval to its place
     std::int64_t interval; ///< at which the first one begins
     std::int64_t steps;    ///< that each stands for
-    SampleStretch stretch;
-    int level; ///< that they came from
+    std::uint64_t shown;   ///< see SampleRun
+    std::int64_t hidden;   ///< samples left out before
+    SampleStretch stretch; ///< where the ray may go back
+    int level;             ///< that they came from
   };
 
   /// A part of a ray at whose ends the field is on different sides of surfaces.
@@ -95,10 +97,26 @@ private:
   void place(CachedRay& state);
   /// Whether the first of such samples is; leaves those in `alike` of which the same is true.
   bool isCropped(const CachedRay& state, AlikeSamples& alike) const;
-  /// Adds such samples as far as they share bricks and the batch has room; how many.
-  int add(const CachedRay& state, const AlikeSamples& alike);
-  void addRun(const CachedRay& state, const AlikeSamples& alike, int count, const BrickRun& fine,
-              const BrickRun& coarse);
+  /// The bricks that such samples are read from, of the finer level and of the coarser one, which
+  /// may be the same; null where the ray has to wait.
+  struct RunPair
+  {
+    BrickRun* fine;
+    BrickRun* coarse;
+  };
+  RunPair runsFor(const CachedRay& state, double place);
+  /// Whether samples in these would make the batch longer than what one knows of the ray is good
+  /// for.
+  bool looksTooFar(const RunPair& runs) const;
+  /// Adds such samples, the first of them at `place`, but for those that show nothing, as far as
+  /// they share bricks and the batch has room. Leaves in `alike` those that it has come past, of
+  /// which there are some.
+  void add(const CachedRay& state, AlikeSamples& alike, const RunPair& runs, double place);
+  /// Which of the first of them may show something.
+  std::uint64_t findShown(const CachedRay& state, const AlikeSamples& alike, int count,
+                          const BrickRun& run) const;
+  void addRun(const CachedRay& state, const AlikeSamples& alike, int count, std::uint64_t shown,
+              const BrickRun& fine, const BrickRun& coarse);
   BrickRun* runFor(const CachedRay& state, int level, double place);
   void countUse(const CachedRay& state, const AlikeSamples& alike, int count, BrickRun& fine,
                 BrickRun& coarse) const;
@@ -111,6 +129,7 @@ private:
   void close(BrickRun& run, float transmittance);
   void enlist(BrickRun& run);
   const Origin& originOf(int sample) const;
+  static std::int64_t intervalOf(const Origin& origin, int sample);
   double timeOf(const CachedRay& state, int sample) const;
   void composite(CachedRay& state);
   void compositeLast(CachedRay& state);
@@ -130,6 +149,8 @@ private:
   bool findSurface(const CachedRay& state, const SurfaceInterval& interval, float value,
                    double& place);
   void clampToRanges();
+  /// Whether what is found at samples may want bricks that are not there.
+  bool mayGoBack() const { return this->Shader || this->Probe; }
   /// Puts the ray back to before a sample of the batch, which began at `before`.
   void goBackTo(int sample, const CachedRay& before, CachedRay& state);
   void takeLogarithms();
@@ -147,6 +168,7 @@ private:
   Origin Origins[SampleBatch::Capacity];          ///< of its runs
   BrickKey Bricks[2 * SampleBatch::Capacity + 2]; ///< of the batch's paths
   int Count = 0;
+  int Ahead = 0;                   ///< samples, those left out included, that the batch reaches
   std::optional<BrickKey> Awaited; ///< by the next sample
   int RunCount = 0;                ///< in Batch
   int Paths = 0;                   ///< in Batch

@@ -7,6 +7,11 @@
 
 namespace inr {
 
+std::int64_t CamePast(const FrameStatistics& statistics)
+{
+  return statistics.samples + statistics.hidden;
+}
+
 namespace {
 
 double HalfOpaqueDepth(const CachedScene& scene, const CachedRay& ray)
@@ -117,7 +122,7 @@ WorkDone CompletePass::advance(const Arena& arena, const std::function<bool()>& 
   }
   const std::size_t most = this->Alone ? 1 : this->Window;
   const auto count = static_cast<std::int64_t>(std::min(this->Active.size(), most));
-  const std::int64_t before = this->Statistics.samples;
+  const std::int64_t before = CamePast(this->Statistics);
   std::vector<FrameStatistics> statistics(static_cast<std::size_t>(count));
   std::vector<RequestList> lists(static_cast<std::size_t>(count));
   ForEachTile(arena, count, keepGoing, [&](std::int64_t k) {
@@ -138,7 +143,7 @@ WorkDone CompletePass::advance(const Arena& arena, const std::function<bool()>& 
     this->Statistics.add(statistics[k]);
     requests.add(lists[k]);
   }
-  this->Alone = this->Alone && this->Statistics.samples == before && !requests.empty();
+  this->Alone = this->Alone && CamePast(this->Statistics) == before && !requests.empty();
   const auto finished = [](const ActiveTile& tile) { return tile.waiting.empty(); };
   this->Active.erase(std::remove_if(this->Active.begin(), this->Active.end(), finished),
                      this->Active.end());

@@ -21,6 +21,9 @@ struct PassOutput
   Image* samples = nullptr;
 };
 
+/// How far a picture's rays have come, in samples, whether those were taken or left out.
+std::int64_t CamePast(const FrameStatistics& statistics);
+
 /// Marches the whole picture once with what is in the cache and notes what was missing. Throws
 /// Error(Cancelled) when `keepGoing` says so; see ForEachTile.
 FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& arena,

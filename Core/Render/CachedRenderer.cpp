@@ -82,14 +82,27 @@ const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double ste
   return this->Steps->lookup();
 }
 
+const BlockVisibility* CachedRenderer::blocksFor(const ColorTable& colors,
+                                                 const MarchSettings& settings)
+{
+  if (settings.projector.projects() || settings.projector.findsSurfaces() || !colors.hidesAny()) {
+    return nullptr; // all values matter
+  }
+  if (!this->Blocks) {
+    this->Blocks.emplace(this->Store->cache(), colors);
+  }
+  return &*this->Blocks;
+}
+
 void CachedRenderer::forgetColors()
 {
   this->Unfinished.reset();
   this->Steps.reset();
+  this->Blocks.reset();
 }
 
 FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& geometry,
-                                       const Majorants& majorants, const ColorLookup& colors,
+                                       const Majorants& majorants, const ColorTable& colors,
                                        const MarchSettings& settings, const Shading* shading,
                                        const WorkLimit& limit, const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
@@ -104,10 +117,20 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
     }
   }
   this->Unfinished.reset(); // before the table that it reads may change
-  const StepLookup& steps = this->stepsFor(colors, settings.step * settings.unitsPerT);
+  const ColorLookup& lookup = colors.lookup();
+  const StepLookup& steps = this->stepsFor(lookup, settings.step * settings.unitsPerT);
   const BrickCache& cache = this->Store->cache();
-  const CachedScene scene{frame, geometry,     majorants,       colors,   steps,
-                          cache, this->Kernel, FormatOf(cache), settings, shading};
+  const CachedScene scene{frame,
+                          geometry,
+                          majorants,
+                          lookup,
+                          steps,
+                          cache,
+                          this->Kernel,
+                          FormatOf(cache),
+                          settings,
+                          shading,
+                          this->blocksFor(colors, settings)};
   FrameStatistics statistics = this->renderFrame(scene, limit, output, keepGoing);
   statistics.work = this->Work;
   return statistics;
@@ -246,7 +269,7 @@ FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput&
                                             : std::int64_t{this->Options.maximumRequests};
   double marching = 0;
   // What is loaded here may be gone at the next call, so each one brings some ray further.
-  const std::int64_t before = this->Unfinished->statistics().samples;
+  const std::int64_t before = CamePast(this->Unfinished->statistics());
   const auto inTime = [&] { return !limit.endsWithin(0); };
   const std::function<bool()>& mayLoad =
       limit.isTimed() ? std::function<bool()>(inTime) : keepGoing;
@@ -257,7 +280,7 @@ FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput&
     this->Work.add(this->Unfinished->advance(this->Threads, keepGoing, requests));
     marching += march.seconds();
     if (this->Unfinished->done() ||
-        (!inTime() && this->Unfinished->statistics().samples > before)) {
+        (!inTime() && CamePast(this->Unfinished->statistics()) > before)) {
       break;
     }
     this->loadForPass(this->Unfinished->pass(), requests, most, mayLoad);

@@ -21,7 +21,8 @@ class WorkLimit;
 struct CacheOptions
 {
   /// Of the whole cache; 0 = DefaultCacheBytes(). The caches of all renderers of a process stay
-  /// within the largest of these.
+  /// within the largest of these. Renderers note 72 bytes more for each brick that they look at:
+  /// which of its blocks their colours show.
   std::int64_t bytes = 0;
   CachePrecision precision = CachePrecision::Bits16;
   int brickSize = 40;       ///< voxels per side, 4 to 1024
@@ -62,7 +63,7 @@ public:
 
   /// Within a call; see Renderer::render. The references are for this only.
   FrameStatistics render(const Frame& frame, const RayGeometry& geometry,
-                         const Majorants& majorants, const ColorLookup& colors,
+                         const Majorants& majorants, const ColorTable& colors,
                          const MarchSettings& settings, const Shading* shading,
                          const WorkLimit& limit, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
@@ -85,6 +86,7 @@ private:
                               const PassOutput& output, const std::function<bool()>& keepGoing);
   void beginFrame();
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
+  const BlockVisibility* blocksFor(const ColorTable& colors, const MarchSettings& settings);
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
                                  const std::function<bool()>& keepGoing);
   FrameStatistics renderInTime(const CachedScene& scene, const WorkLimit& limit,
@@ -115,6 +117,7 @@ private:
   std::uint64_t Latest = BrickCache::Pinned; ///< of this renderer's frames in the store
   WorkDone Work;                             ///< of rays, in the present call
   std::optional<StepTable> Steps;
+  std::optional<BlockVisibility> Blocks;
   /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
   std::optional<Refinement> Unfinished;
   /// Of the latest path-traced picture: it wants more than the cache can hold, or keep for it.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Cache/Requests.h"
+#include "Core/Render/BlockVisibility.h"
 #include "Core/Render/BrickRun.h"
 #include "Core/Render/Frame.h"
 #include "Core/Render/SampleShader.h"
@@ -21,7 +22,8 @@ struct CachedScene
   const BrickKernel& kernel;
   BrickFormat format; ///< of the cache's bricks
   MarchSettings settings;
-  const Shading* shading; ///< null: colours as the transfer function gives them
+  const Shading* shading;        ///< null: colours as the transfer function gives them
+  const BlockVisibility* blocks; ///< null: of all blocks samples are taken
 };
 
 /// What a ray does where the brick it wants is not there.

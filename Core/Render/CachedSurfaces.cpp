@@ -22,7 +22,7 @@ void CachedMarcher::advanceSurfaces(CachedRay& state)
 bool CachedMarcher::crossSurfaces(CachedRay& state, int sample)
 {
   const Origin& origin = this->originOf(sample);
-  const std::int64_t interval = origin.interval + (sample - origin.sample) * origin.steps;
+  const std::int64_t interval = intervalOf(origin, sample);
   const auto begin = static_cast<double>(interval);
   const int level = IdOf(this->Bricks[this->Batch.path[sample]]).level;
   SurfaceInterval passed{level, begin, begin + origin.offset, state.known.value,

@@ -84,6 +84,13 @@ float ColorTable::maximumOverNodes(int first, int last) const
   return std::max(row[static_cast<std::size_t>(first)], row[static_cast<std::size_t>(lastSpan)]);
 }
 
+bool ColorTable::hidesAny() const
+{
+  const std::vector<float>& extinctions = this->Maxima.front();
+  return this->Below <= 0.0f || this->Above <= 0.0f ||
+         *std::min_element(extinctions.begin(), extinctions.end()) <= 0.0f;
+}
+
 float ColorTable::maximumExtinction(const ValueRange& range) const
 {
   if (range.empty()) {

@@ -62,6 +62,8 @@ public:
 
   const ColorLookup& lookup() const { return this->Lookup; }
 
+  /// Whether there are values that are transparent.
+  bool hidesAny() const;
   /// Largest extinction, -ln(1 - opacity), over the normalised values [low, high]; 0 for an empty
   /// range.
   float maximumExtinction(const ValueRange& range) const;

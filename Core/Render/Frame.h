@@ -143,8 +143,9 @@ struct FrameStatistics
   std::int64_t rays = 0;    ///< that met the volume
   std::int64_t samples = 0; ///< values of the field that were looked up or inferred
   std::int64_t missed = 0;  ///< of these, read from a coarser level than wanted
+  std::int64_t hidden = 0;  ///< samples besides, left out as the voxels around them show nothing
   std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
-  /// All samples were taken, and each came from the level it asked for or, if the options are to
+  /// All samples that may show something were taken, and each came from the level it asked for or, if the options are to
   /// make do with that, the best that a full cache has.
   bool complete = true;
   std::int64_t paths = 0;  ///< of path tracing: through each pixel, in the picture shown
@@ -153,12 +154,20 @@ struct FrameStatistics
   double marchSeconds = 0; ///< of these, without what was loaded into the cache in between
   WorkDone work;           ///< of the call
 
+  /// Which part of the samples is not missed, those that are left out included; 1 of none.
+  double hitRate() const
+  {
+    const std::int64_t all = this->samples + this->hidden;
+    return all > 0 ? 1.0 - static_cast<double>(this->missed) / static_cast<double>(all) : 1.0;
+  }
+
   /// Adds what was counted in another part of the picture; times are not counts.
   void add(const FrameStatistics& part)
   {
     this->rays += part.rays;
     this->samples += part.samples;
     this->missed += part.missed;
+    this->hidden += part.hidden;
     this->clamped += part.clamped;
     this->levels.add(part.levels);
     this->work.add(part.work);

@@ -20,7 +20,8 @@ Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
             scene.majorants, scene.colors,
             scene.steps,     scene.cache,
             scene.kernel,    scene.format,
-            scene.settings,  this->Lighting ? &*this->Lighting : nullptr},
+            scene.settings,  this->Lighting ? &*this->Lighting : nullptr,
+            scene.blocks},
       Pass(this->Scene), Rgba(soFar.rgba),
       Depth(soFar.depth != nullptr ? *soFar.depth : Image(soFar.rgba.width, soFar.rgba.height, 1)),
       Samples(soFar.samples != nullptr ? *soFar.samples

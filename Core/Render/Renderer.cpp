@@ -291,7 +291,7 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   Frame meanwhile = frame; // until all is measured, the picture is as by distance
   meanwhile.levelOfDetailScale = final ? frame.levelOfDetailScale : 1.0;
   FrameStatistics statistics =
-      this->Cached->render(meanwhile, geometry, this->Cells, this->Colors->lookup(), settings, lit,
+      this->Cached->render(meanwhile, geometry, this->Cells, *this->Colors, settings, lit,
                            limit, output, keepGoing);
   statistics.complete = statistics.complete && final;
   statistics.work.bricks = call.done();

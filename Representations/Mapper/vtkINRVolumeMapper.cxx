@@ -216,9 +216,7 @@ double vtkINRVolumeMapper::GetCacheHitRate() const
   if (last.rgba.pixels.empty()) {
     return 0;
   }
-  const inr::FrameStatistics& frame = last.statistics;
-  return 1.0 - static_cast<double>(frame.missed) /
-                   static_cast<double>(std::max<std::int64_t>(frame.samples, 1));
+  return last.statistics.hitRate();
 }
 
 double vtkINRVolumeMapper::GetCacheUsed() const

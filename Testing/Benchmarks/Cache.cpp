@@ -150,8 +150,7 @@ void Ranking(const inr::ModelPointer& model, const Look& look, const std::string
       for (int k = 0; k < 40; ++k) {
         inr::Image picture;
         const inr::FrameStatistics statistics = renderer.render(frame, picture);
-        rates[ranked ? 1 : 0].push_back(1 - static_cast<double>(statistics.missed) /
-                                                static_cast<double>(statistics.samples));
+        rates[ranked ? 1 : 0].push_back(statistics.hitRate());
       }
     }
     for (std::size_t k = 0; k < rates[0].size(); ++k) {
@@ -187,7 +186,7 @@ void Interaction(const inr::ModelPointer& model, const Look& look, const std::st
     frame.timeLimit = 1.0 / 30;
     const inr::FrameStatistics statistics = renderer.render(frame, picture);
     times.push_back(statistics.seconds);
-    hits += 1 - static_cast<double>(statistics.missed) / static_cast<double>(statistics.samples);
+    hits += statistics.hitRate();
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   std::sort(times.begin(), times.end());

@@ -57,13 +57,6 @@ std::int64_t Holes(const inr::Image& picture, const inr::FrameStatistics& statis
   return statistics.rays - seen;
 }
 
-/// Share of the samples that came from the level they asked for.
-double HitRate(const inr::FrameStatistics& statistics)
-{
-  const auto samples = static_cast<double>(std::max<std::int64_t>(statistics.samples, 1));
-  return 1 - static_cast<double>(statistics.missed) / samples;
-}
-
 void Fly(const inr::ModelPointer& large, const std::string& name, int frames)
 {
   inr::RendererOptions options = Cached();
@@ -81,7 +74,7 @@ void Fly(const inr::ModelPointer& large, const std::string& name, int frames)
         renderer.render(Waypoint(large->volume, static_cast<double>(k) / frames), picture);
     seconds.push_back(statistics.seconds);
     holes += Holes(picture, statistics) > 0 ? 1 : 0;
-    hits += HitRate(statistics) / frames;
+    hits += statistics.hitRate() / frames;
     const double memory = ResidentMebibytes();
     warm = k < frames / 4 ? std::max(warm, memory) : warm;
     most = std::max(most, memory);
@@ -125,7 +118,7 @@ void Watch(const inr::ModelPointer& model, const Look& look, const std::string& 
     inr::Image picture;
     const inr::FrameStatistics statistics = renderer.render(frame, picture);
     march.push_back(1000 * statistics.marchSeconds);
-    hits.push_back(HitRate(statistics));
+    hits.push_back(statistics.hitRate());
     last += k >= frames - counted ? march.back() / counted : 0.0;
   }
   const std::string where = ", " + what + ", " + look.name + " x4, " + name;

@@ -113,8 +113,7 @@ private:
     do {
       statistics = renderer.render(frame, picture);
     } while (!statistics.complete && ProcessorSeconds() - start < this->UsualFilling / 2);
-    record.add("early_hit_rate", 1 - static_cast<double>(statistics.missed) /
-                                         static_cast<double>(statistics.samples));
+    record.add("early_hit_rate", statistics.hitRate());
     record.add("early_psnr_a", std::min(EqualPictures, inr::ImagePsnr(this->Compared.a, picture)));
   }
 
@@ -138,8 +137,7 @@ private:
                            static_cast<double>(std::max<std::int64_t>(1, statistics.paths));
     record.add("cpu_ms", 1000 * seconds).add("default_cpu_ms", 1000 * Fastest(usual));
     record.add("samples", samples).add("samples_per_cpu_s", samples / seconds);
-    record.add("hit_rate", 1 - static_cast<double>(statistics.missed) /
-                                   static_cast<double>(statistics.samples));
+    record.add("hit_rate", statistics.hitRate());
     record.compare("a", this->Compared.a, picture).compare("b", this->Compared.b, picture);
     record.compare("c", this->Compared.c, picture);
     const double changed = inr::ImagePsnr(this->UsualPicture, picture);

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int Dims[3] = {7, 6, 5};
 constexpr int Bricks = 4;
+constexpr int BlockEdge = 2; // of 3 x 3 x 2 blocks
 
 struct Voxels
 {
@@ -31,7 +32,12 @@ struct Voxels
 Voxels MakeVoxels(inr::VoxelBytes bytes)
 {
   Voxels voxels;
-  voxels.format = {bytes, Dims[0], Dims[0] * Dims[1], {Dims[0] - 2, Dims[1] - 2, Dims[2] - 2}};
+  voxels.format = {bytes,
+                   Dims[0],
+                   Dims[0] * Dims[1],
+                   {Dims[0] - 2, Dims[1] - 2, Dims[2] - 2},
+                   1.0f / BlockEdge,
+                   {2, 2, 1}};
   const auto size = static_cast<std::size_t>(bytes);
   voxels.bytes.resize(static_cast<std::size_t>(Bricks * voxels.perBrick) * size + 64);
   for (int k = 0; k < Bricks * voxels.perBrick; ++k) {
@@ -77,6 +83,30 @@ inr::BrickPath RandomPath(const Voxels& voxels)
   return path;
 }
 
+/// Of 64, so many that are set.
+std::uint64_t RandomBits(int count)
+{
+  std::uint64_t bits = 0;
+  while (count > 0) {
+    const std::uint64_t bit = std::uint64_t{1} << RandomInt(0, 63);
+    count -= (bits & bit) == 0 ? 1 : 0;
+    bits |= bit;
+  }
+  return bits;
+}
+
+/// The place of the first, second ... that is set.
+std::vector<int> PlacesOf(std::uint64_t bits)
+{
+  std::vector<int> places;
+  for (int k = 0; k < 64; ++k) {
+    if ((bits >> k & 1) != 0) {
+      places.push_back(k);
+    }
+  }
+  return places;
+}
+
 inr::SampleRun RandomRun(int count, int paths)
 {
   inr::SampleRun run;
@@ -93,6 +123,7 @@ inr::SampleRun RandomRun(int count, int paths)
   run.seed = static_cast<std::uint32_t>(inr::RandomBits(3, static_cast<std::uint64_t>(count)));
   run.counter = static_cast<std::uint32_t>(RandomInt(0, 100000));
   run.count = count;
+  run.shown = RandomInt(0, 1) == 0 ? (std::uint64_t{1} << count) - 1 : RandomBits(count);
   run.length = RandomInt(0, 9);
   run.low = Random(-1, 0);
   run.high = Random(0, 1);
@@ -130,8 +161,10 @@ double Trilinear(const Voxels& voxels, const inr::BrickPath& path, double along)
 int Check(const Voxels& voxels, const inr::SampleBatch& batch, const inr::SampleRun& run, int at)
 {
   int second = 0;
-  for (int k = 0; k < run.count; ++k) {
-    const int sample = at + k;
+  const std::vector<int> numbers = PlacesOf(run.shown);
+  EXPECT_EQ(static_cast<int>(numbers.size()), run.count);
+  for (const int k : numbers) {
+    const int sample = at++;
     const double fine = static_cast<double>(run.start[0]) + k * run.spacing + run.offset;
     const float random =
         inr::RandomUnit32(run.seed, run.counter + static_cast<std::uint32_t>(k) * run.stride);
@@ -189,6 +222,52 @@ TEST_P(BrickKernels, LayOutRuns)
     }
   }
   EXPECT_GT(second, 1000);
+}
+
+TEST_P(BrickKernels, FindWhichSamplesMayShowSomething)
+{
+  const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
+  const Voxels voxels = MakeVoxels(inr::VoxelBytes::Two);
+  int hidden = 0;
+  int seen = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const inr::BrickPath path = RandomPath(voxels);
+    inr::ShownBlocks blocks;
+    blocks.kind = inr::ShownBlocks::Kind::Some;
+    for (std::uint64_t& word : blocks.words) {
+      word = RandomBits(RandomInt(0, 64));
+    }
+    const inr::SampleRow row{std::floor(Random(0, 9)), static_cast<float>(RandomInt(1, 2)),
+                             Random(0, 1)};
+    const int count = RandomInt(1, 64);
+    const std::uint64_t shown = kernel.findShown(voxels.format, blocks, path, row, count);
+    for (int k = 0; k < 64; ++k) {
+      const bool isShown = (shown >> k & 1) != 0;
+      if (k >= count) {
+        EXPECT_FALSE(isShown);
+        continue;
+      }
+      const double along = static_cast<double>(row.start) + k * row.spacing + row.offset;
+      int block[3];
+      bool isBetween = false; // and may be taken for in either
+      for (int axis = 0; axis < 3; ++axis) {
+        const double place = std::clamp<double>(path.origin[axis] + along * path.direction[axis], 0,
+                                                path.last[axis]) /
+                             BlockEdge;
+        block[axis] = std::min(static_cast<int>(place), voxels.format.lastBlock[axis]);
+        const double face = std::round(place);
+        isBetween = isBetween || (std::abs(place - face) < 1e-5 && face > 0 &&
+                                  face <= voxels.format.lastBlock[axis]);
+      }
+      const bool truth = (blocks.words[block[2]] >> (block[0] + 8 * block[1]) & 1) != 0;
+      if (!isBetween) {
+        EXPECT_EQ(isShown, truth);
+      }
+      (isShown ? seen : hidden) += 1;
+    }
+  }
+  EXPECT_GT(seen, 10000);
+  EXPECT_GT(hidden, 10000);
 }
 
 // A million samples of an even medium, of several lengths: in float as good as is said, in double

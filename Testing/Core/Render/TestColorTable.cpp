@@ -104,4 +104,21 @@ TEST(ColorTable, RefusesNonsense)
   refused([](auto& function) { function.logarithmic = true; });
 }
 
+TEST(ColorTable, KnowsWhetherAnyValueIsTransparent)
+{
+  const auto hides = [](float inside, float below, float above) {
+    inr::TransferFunction function;
+    function.table.assign(3, glm::vec4(1, 1, 1, 0.5f));
+    function.table[1].w = inside;
+    function.below.w = below;
+    function.above.w = above;
+    return inr::ColorTable(function, Range(0, 1)).hidesAny();
+  };
+  EXPECT_FALSE(hides(0.1f, 0.1f, 0.1f));
+  EXPECT_FALSE(hides(1e-30f, 1, 1));
+  EXPECT_TRUE(hides(0, 0.1f, 0.1f));
+  EXPECT_TRUE(hides(0.1f, 0, 0.1f));
+  EXPECT_TRUE(hides(0.1f, 0.1f, 0));
+}
+
 } // namespace

@@ -138,7 +138,7 @@ TEST(Shading, ThePictureDoesNotDependOnTheSizeOfTheCacheOrOnThreads)
   EXPECT_EQ(picture(frame, 400000, 2), truth); // a few hundred bricks of thousands
 
   frame = Lit(glm::dvec3(dims), 16);
-  for (const std::int64_t bytes : {12000, 14000, 16000}) { // from the fewest bricks on
+  for (const std::int64_t bytes : {13000, 15000, 17000}) { // from the fewest bricks on
     EXPECT_EQ(picture(frame, bytes, 1), picture(frame, 64 << 20, 1));
   }
 }

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How CachedMarcher fills a batch with samples, and finds the bricks that they are read from.
+#include "Core/Render/CachedMarcher.h"
+#include "Core/Render/SampleBits.h"
+#include "Core/Render/StepTable.h"
+
+#include <algorithm>
+
+namespace inr {
+
+// Flat: what it calls it calls for every brick and macro-cell of every ray.
+__attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
+{
+  this->Count = 0;
+  this->RunCount = 0;
+  this->Paths = 0;
+  this->LastLength = 0;
+  this->Ahead = 0;
+  this->Runs[0].setPlace(-1);
+  this->Runs[1].setPlace(-1);
+  const MarchSettings& settings = this->Scene.settings;
+  while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
+    if (!state.samples.moveToVisible(settings)) {
+      this->Ended = true;
+      return;
+    }
+    AlikeSamples alike = state.samples.alike();
+    if (settings.projector.canSkip(state.projection, state.samples.stretch().range) ||
+        (this->Cropped && this->isCropped(state, alike))) {
+      state.samples.pass(alike, alike.count);
+      continue;
+    }
+    const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
+    const RunPair runs = this->runsFor(state, place);
+    if (runs.fine == nullptr || runs.coarse == nullptr) {
+      this->Waiting = true;
+      return;
+    }
+    if (this->looksTooFar(runs)) {
+      return;
+    }
+    const int before = this->Count;
+    this->add(state, alike, runs, place);
+    this->Ahead += alike.count;
+    if (alike.last && this->Count > before) {
+      this->LastLength =
+          static_cast<float>(state.samples.rest() * settings.step * settings.unitsPerT);
+      this->Ended = true;
+    }
+    state.samples.pass(alike, alike.count);
+  }
+}
+
+bool CachedMarcher::isCropped(const CachedRay& state, AlikeSamples& alike) const
+{
+  const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
+  const double end = this->Cropped->end(place);
+  alike.count = CountBelow((end - place) / static_cast<double>(alike.steps()), alike.count);
+  return !this->Cropped->shows(place);
+}
+
+// Inline: called once per run of samples, and there are as many of them as of bricks.
+inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
+                                  std::uint64_t shown, const BrickRun& fine, const BrickRun& coarse)
+{
+  const SampleWalker& samples = state.samples;
+  const SampleStretch& stretch = samples.stretch();
+  // A coarser brick than the one wanted may hold anything.
+  const bool exact = fine.exact() && coarse.exact();
+  const ValueRange range = exact ? stretch.range : ValueRange{0.0f, 1.0f};
+  const double offset = samples.offset(alike);
+  const auto begin = static_cast<double>(samples.next());
+  const double growth = samples.detail().fractionGrowth() * this->Scene.settings.step;
+  const double fraction = samples.detail().fractionAtEntry() + growth * fine.reference();
+  SampleRun& run = this->Batch.runs[this->RunCount];
+  run.start[0] = fine.along(begin);
+  run.start[1] = coarse.along(begin);
+  run.spacing = static_cast<float>(alike.steps());
+  run.offset = static_cast<float>(offset);
+  run.ways = samples.detail().isDithered() ? 2 : 1;
+  run.path[0] = fine.place();
+  run.path[1] = coarse.place();
+  run.fraction = static_cast<float>(fraction);
+  run.growth = static_cast<float>(growth);
+  run.seed = DitherSeed(state.stream);
+  run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
+  run.stride = static_cast<std::uint32_t>(this->ditherOf(alike.steps()));
+  run.count = count;
+  run.shown = shown;
+  run.length = LengthOf(alike.joined, alike.power);
+  run.low = range.low;
+  run.high = range.high;
+  // One by one: a whole one made elsewhere would be waited for until it can be read.
+  Origin& origin = this->Origins[this->RunCount++];
+  origin.sample = this->Count;
+  origin.offset = offset;
+  origin.interval = samples.next();
+  origin.steps = alike.steps();
+  origin.shown = shown;
+  origin.hidden = this->Statistics.hidden;
+  if (this->mayGoBack()) {
+    origin.stretch = stretch;
+  }
+  origin.level = fine.servedLevel();
+  this->Count += count;
+}
+
+inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike, int count,
+                                    BrickRun& fine, BrickRun& coarse) const
+{
+  if (fine.exact() && coarse.exact()) { // nobody asks which it was; of others none is left out
+    fine.count(count);
+    return;
+  }
+  const LevelOfDetail& detail = state.samples.detail();
+  for (int k = 0; k < count; ++k) {
+    const std::int64_t interval = state.samples.next() + k * alike.steps();
+    const bool isFine = detail.dithered(state.stream, this->ditherOf(interval)) == fine.level();
+    (isFine ? fine : coarse).count(1);
+  }
+}
+
+CachedMarcher::RunPair CachedMarcher::runsFor(const CachedRay& state, double place)
+{
+  const LevelOfDetail& detail = state.samples.detail();
+  BrickRun* fine = this->runFor(state, detail.level(), place);
+  return {fine, detail.isDithered() ? this->runFor(state, detail.level() + 1, place) : fine};
+}
+
+bool CachedMarcher::looksTooFar(const RunPair& runs) const
+{
+  // So many samples behind the first one it may turn out that the ray is opaque.
+  constexpr int inUse = 4 * SampleBatch::Capacity;
+  constexpr int toBeLoaded = SampleBatch::Capacity;
+  if (this->Count == 0 || this->Ahead < toBeLoaded) {
+    return false;
+  }
+  const bool exact = runs.fine->exact() && runs.coarse->exact();
+  return !exact || this->Ahead >= inUse;
+}
+
+std::uint64_t CachedMarcher::findShown(const CachedRay& state, const AlikeSamples& alike, int count,
+                                       const BrickRun& run) const
+{
+  switch (run.shown().kind) {
+  case ShownBlocks::Kind::All:
+    return LowestBits(count);
+  case ShownBlocks::Kind::None:
+    return 0;
+  case ShownBlocks::Kind::Some:
+    break;
+  }
+  const SampleRow row{run.along(static_cast<double>(state.samples.next())),
+                      static_cast<float>(alike.steps()),
+                      static_cast<float>(state.samples.offset(alike))};
+  return this->Scene.kernel.findShown(this->Scene.format, run.shown(), run.path(), row, count);
+}
+
+void CachedMarcher::add(const CachedRay& state, AlikeSamples& alike, const RunPair& runs,
+                        double place)
+{
+  constexpr int atOnce = 64;
+  const SampleStretch& stretch = state.samples.stretch();
+  // Closed stretches take values for others than those that ranges bound.
+  const bool all = (stretch.closed && stretch.level > 0) ||
+                   (runs.fine->shown().kind == ShownBlocks::Kind::All &&
+                    runs.coarse->shown().kind == ShownBlocks::Kind::All);
+  const int room = SampleBatch::Capacity - this->Count;
+  int count = std::min(alike.count, all ? room : atOnce);
+  if (count > 1) {
+    const double length = std::min(runs.fine->exit(), runs.coarse->exit()) - place;
+    count = CountBelow(length / static_cast<double>(alike.steps()), count);
+  }
+  std::uint64_t shown = LowestBits(count);
+  int taken = count;
+  if (!all) { // what is seen in neither is left out, whichever a sample would be from
+    shown = this->findShown(state, alike, count, *runs.fine) |
+            (runs.coarse != runs.fine ? this->findShown(state, alike, count, *runs.coarse) : 0);
+    taken = CountBits(shown);
+    if (taken > room) {
+      count = PlaceOfBit(shown, room);
+      shown &= LowestBits(count);
+      taken = room;
+    }
+  }
+  alike.count = count;
+  if (taken == 0) {
+    this->Statistics.hidden += count;
+    return;
+  }
+  for (BrickRun* run : {runs.fine, runs.coarse}) {
+    if (run->place() < 0) {
+      this->enlist(*run);
+    }
+  }
+  this->addRun(state, alike, taken, shown, *runs.fine, *runs.coarse);
+  this->Statistics.hidden += count - taken;
+  this->countUse(state, alike, taken, *runs.fine, *runs.coarse);
+}
+
+BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double place)
+{
+  BrickRun& run = this->Runs[level & 1];
+  if (run.covers(level, place)) {
+    return &run;
+  }
+  this->close(run, state.color.transmittance);
+  return this->open(run, state.ray, level, place) ? &run : nullptr;
+}
+
+bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
+{
+  const BrickCache& cache = this->Scene.cache;
+  const Hierarchy& hierarchy = cache.hierarchy();
+  const double t = place * this->Scene.settings.step;
+  BrickWay& wanted = this->Ways[level & 1];
+  if (wanted.level() != level) {
+    wanted = BrickWay(hierarchy, level, ray);
+  }
+  wanted.moveTo(t);
+  const BrickKey key = wanted.brick();
+  std::int32_t slot = cache.find(key);
+  if (slot >= 0) {
+    run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
+  } else if (this->Missing == OnMiss::Stop) {
+    this->Awaited = key;
+    return false;
+  } else {
+    slot = this->openCoarser(run, ray, wanted, t);
+  }
+  cache.touch(slot);
+  if (this->Scene.blocks != nullptr && run.exact()) { // a coarser brick may hide what is there
+    this->Scene.blocks->find(slot, run.shown());
+  }
+  return true;
+}
+
+std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted,
+                                        double t)
+{
+  const BrickCache& cache = this->Scene.cache;
+  const Hierarchy& hierarchy = cache.hierarchy();
+  BrickKey wish = wanted.brick();
+  for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
+    BrickWay served(hierarchy, level, ray);
+    served.moveTo(t);
+    const std::int32_t slot = cache.find(served.brick());
+    if (slot >= 0) {
+      run.open(wanted, served, cache.view(slot), this->Scene.settings.step);
+      if (this->Missing == OnMiss::Approach) {
+        run.wishFor(wish);
+      }
+      return slot;
+    }
+    wish = served.brick();
+  }
+}
+
+void CachedMarcher::enlist(BrickRun& run)
+{
+  run.setPlace(this->Paths);
+  this->Bricks[this->Paths] = run.served();
+  this->Batch.paths[this->Paths++] = run.path();
+}
+
+} // namespace inr
