@@ -19,6 +19,8 @@ public:
   BrickWay(const Hierarchy& hierarchy, int level, const Ray& ray);
 
   int level() const { return this->Level; }
+  /// As if made anew, of no level.
+  void forget() { this->Level = -1; }
   /// To the brick at t, which does not fall from call to call.
   void moveTo(double t) { this->Bricks.moveTo(t); }
   BrickKey brick() const { return KeyOf({this->Level, this->Bricks.cell()}); }

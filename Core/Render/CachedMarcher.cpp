@@ -102,7 +102,8 @@ bool CachedMarcher::marchPart(CachedRay& state)
   this->Ended = false;
   this->Waiting = false;
   this->Awaited.reset();
-  this->Ways[0] = this->Ways[1] = {};
+  this->Ways[0].forget();
+  this->Ways[1].forget();
   if (this->Probe) {
     this->Probe->leave();
   }
