@@ -14,8 +14,8 @@ namespace inr {
 /// channel, which changes by (c A)' - A' B per value: something between the slopes for B = 0 and
 /// for the brightest B, and, by the mean value theorem, between the smallest and the largest slope
 /// in a range of values, if nothing leaves that. So what n steps through a range add to a pixel is
-/// off by no more than |middle| times the sum of what their values are off by, plus `half` times the
-/// sum of its magnitudes, as long as what lies in front hides as much of each of them.
+/// off by no more than |middle| times the sum of what their values are off by, plus `half` times
+/// the sum of its magnitudes, as long as what lies in front hides as much of each of them.
 class ColorSensitivity
 {
 public:

@@ -36,8 +36,8 @@ public:
     return this->isLimited() && (this->Counted || this->Clock.left() < seconds);
   }
   /// Where it is timed: what is left, but at least a quarter of the limit and of what the frame has
-  /// taken so far. However long rendering itself takes, a fifth of all the time is for what it waits
-  /// for.
+  /// taken so far. However long rendering itself takes, a fifth of all the time is for what it
+  /// waits for.
   double secondsForLoading() const
   {
     return std::max(this->Clock.left(), 0.25 * std::max(this->Seconds, this->Clock.seconds()));
