@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/BrickBlocks.h"
 
+#include "Core/Cache/Hierarchy.h"
 #include "Core/Cache/RangeOfValues.h"
 
 #include <glm/common.hpp>
@@ -25,7 +26,7 @@ int EdgeOf(const glm::ivec3& brickDims)
 /// Extremes of the voxels of all columns along y and z through a row of blocks.
 template <typename Stored> struct RowExtremes
 {
-  static constexpr int MostVoxels = 1024; // of a brick's side
+  static constexpr int MostVoxels = Hierarchy::LargestBrick;
   Stored low[MostVoxels];
   Stored high[MostVoxels];
 

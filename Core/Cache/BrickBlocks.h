@@ -44,8 +44,8 @@ public:
   void copy(std::int32_t from, std::int32_t to);
   /// From the voxels as they are stored.
   void store(std::int32_t slot, const BrickView& brick);
-  /// A 256th of the brick's range wider than need be at most, and by what interpolating rounds: of
-  /// all blocks, x fastest.
+  /// Of all blocks, x fastest. Wider than need be by a 256th of the brick's range at most, by half
+  /// a quantum of integers, and by what interpolating rounds.
   void ranges(std::int32_t slot, ValueRange* ranges) const;
 
 private:

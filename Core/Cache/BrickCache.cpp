@@ -212,7 +212,7 @@ void BrickCache::move(std::int32_t from, std::int32_t to)
   const std::uint64_t before = this->candidate(from);
   this->Pool.copy(from, to);
   this->Blocks.copy(from, to);
-  this->Arrivals[to] = ++this->Arrived;
+  this->Arrivals[to] = this->Arrivals[from];
   this->Owners[to] = this->Owners[from];
   this->LastUse[to].store(this->lastUse(from), std::memory_order_relaxed);
   this->Table.move(this->Owners[to], to);

@@ -40,7 +40,7 @@ public:
   BrickView view(std::int32_t slot) const { return this->Pool.view(slot); }
   /// What is known of the voxels of a slot's brick, block by block.
   const BrickBlocks& blocks() const { return this->Blocks; }
-  /// A number above 0 that a slot has with its present brick only.
+  /// A number above 0 that no other brick has or had, nor the same one when it was here before.
   std::uint64_t arrival(std::int32_t slot) const { return this->Arrivals[slot]; }
   /// Marks a brick as used in this frame.
   void touch(std::int32_t slot) const
@@ -108,7 +108,7 @@ private:
   PageTable Table;
   std::uint64_t Frame = 1;
   std::uint64_t LostUse = 0;
-  std::uint64_t Arrived = 0;                         ///< bricks so far, and moves of bricks
+  std::uint64_t Arrived = 0;                         ///< bricks so far
   ReservedArray<BrickKey> Owners;                    ///< of each slot
   ReservedArray<std::uint64_t> Arrivals;             ///< of each slot
   ReservedArray<std::atomic<std::uint64_t>> LastUse; ///< frame in which each slot was last used

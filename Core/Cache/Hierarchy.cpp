@@ -13,8 +13,6 @@ namespace inr {
 namespace {
 
 constexpr std::int64_t MostBricks = (std::int64_t{1} << BrickAxisBits) - 1; // along an axis
-constexpr int SmallestBrick = 4;
-constexpr int LargestBrick = 1024;
 
 std::int64_t BricksAlong(std::int64_t voxels, std::int64_t stride)
 {
@@ -23,7 +21,7 @@ std::int64_t BricksAlong(std::int64_t voxels, std::int64_t stride)
 
 void RequireSizes(const glm::i64vec3& dims, int brickSize)
 {
-  if (brickSize < SmallestBrick || brickSize > LargestBrick) {
+  if (brickSize < Hierarchy::SmallestBrick || brickSize > Hierarchy::LargestBrick) {
     throw Error(ErrorCode::InvalidArgument,
                 "bricks of " + std::to_string(brickSize) + " voxels a side; use 4 to 1024");
   }

@@ -53,7 +53,10 @@ inline std::int64_t VoxelsAtLevel(std::int64_t voxels, int level)
 class Hierarchy
 {
 public:
-  /// `brickSize`: voxels per side, 4 to 1024. Throws Error(InvalidArgument) for sizes out of range
+  static constexpr int SmallestBrick = 4; ///< voxels per side
+  static constexpr int LargestBrick = 1024;
+
+  /// `brickSize`: voxels per side, as said. Throws Error(InvalidArgument) for sizes out of range
   /// and Error(TooLarge) for more than 2^19 bricks along an axis.
   Hierarchy(const glm::i64vec3& dims, int brickSize);
 

@@ -43,6 +43,9 @@ struct MacroCells
   std::vector<ValueRange> ranges; ///< x fastest
 
   bool empty() const { return this->ranges.empty(); }
+  /// Whether nothing of the field lies outside its cell's range, as far as this program knows: of
+  /// others' files that is only hoped.
+  bool rangesHold() const { return this->empty() || this->provenance != MacroCellProvenance::File; }
   std::int64_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
   {
     return x + this->dims.x * (y + this->dims.y * z);

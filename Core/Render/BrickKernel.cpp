@@ -171,7 +171,6 @@ std::uint32_t LookUp(const ShownBlocks& blocks, Ints block)
 std::uint64_t FindShown(const BrickFormat& format, const ShownBlocks& blocks, const BrickPath& path,
                         const SampleRow& row, int count)
 {
-  constexpr int most = 8; // blocks per axis
   Ints number;
   for (int lane = 0; lane < LaneCount; ++lane) {
     number[lane] = lane;
@@ -188,7 +187,7 @@ std::uint64_t FindShown(const BrickFormat& format, const ShownBlocks& blocks, co
       Ints at = __builtin_convertvector(places[axis] * format.blocksPerVoxel, Ints);
       const Ints last = format.lastBlock[axis] - Ints{};
       at = at < last ? at : last;
-      block = block * most + at;
+      block = block * ShownBlocks::Words + at;
     }
     shown |= static_cast<std::uint64_t>(LookUp(blocks, block)) << k;
     number += LaneCount;

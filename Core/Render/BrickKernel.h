@@ -61,6 +61,8 @@ struct BrickPath
 /// Samples on a ray's way through a brick: sample k is (start + k * spacing) + offset along it.
 struct SampleRow
 {
+  static constexpr int Most = 64; ///< samples, a bit for each
+
   float start;
   float spacing; ///< in steps
   float offset;
@@ -118,7 +120,7 @@ constexpr double ManySamples = 1 << 14;
 struct BrickKernel
 {
   /// Which samples of a ray may show something: bit k is of the one at (start + k * spacing) +
-  /// offset along its path, for k below `count`, at most 64; others are 0.
+  /// offset along its path, for k below `count`, at most SampleRow::Most; others are 0.
   std::uint64_t (*findShown)(const BrickFormat& format, const ShownBlocks& blocks,
                              const BrickPath& path, const SampleRow& row, int count);
 

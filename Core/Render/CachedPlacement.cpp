@@ -42,7 +42,7 @@ __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
     }
     const int before = this->Count;
     this->add(state, alike, runs, place);
-    this->Ahead += alike.count;
+    this->Ahead += this->Count > 0 ? alike.count : 0;
     if (alike.last && this->Count > before) {
       this->LastLength =
           static_cast<float>(state.samples.rest() * settings.step * settings.unitsPerT);
@@ -160,14 +160,13 @@ std::uint64_t CachedMarcher::findShown(const CachedRay& state, const AlikeSample
 void CachedMarcher::add(const CachedRay& state, AlikeSamples& alike, const RunPair& runs,
                         double place)
 {
-  constexpr int atOnce = 64;
   const SampleStretch& stretch = state.samples.stretch();
   // Closed stretches take values for others than those that ranges bound.
   const bool all = (stretch.closed && stretch.level > 0) ||
                    (runs.fine->shown().kind == ShownBlocks::Kind::All &&
                     runs.coarse->shown().kind == ShownBlocks::Kind::All);
   const int room = SampleBatch::Capacity - this->Count;
-  int count = std::min(alike.count, all ? room : atOnce);
+  int count = std::min(alike.count, all ? room : SampleRow::Most);
   if (count > 1) {
     const double length = std::min(runs.fine->exit(), runs.coarse->exit()) - place;
     count = CountBelow(length / static_cast<double>(alike.steps()), count);

@@ -83,8 +83,11 @@ const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double ste
 }
 
 const BlockVisibility* CachedRenderer::blocksFor(const ColorTable& colors,
-                                                 const MarchSettings& settings)
+                                                 const MarchSettings& settings, bool rangesHold)
 {
+  if (!rangesHold) { // what is moved into them may show what its block does not
+    return nullptr;
+  }
   if (settings.projector.projects() || settings.projector.findsSurfaces() || !colors.hidesAny()) {
     return nullptr; // all values matter
   }
@@ -130,7 +133,7 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
                           FormatOf(cache),
                           settings,
                           shading,
-                          this->blocksFor(colors, settings)};
+                          this->blocksFor(colors, settings, majorants.rangesHold())};
   FrameStatistics statistics = this->renderFrame(scene, limit, output, keepGoing);
   statistics.work = this->Work;
   return statistics;

@@ -86,7 +86,8 @@ private:
                               const PassOutput& output, const std::function<bool()>& keepGoing);
   void beginFrame();
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
-  const BlockVisibility* blocksFor(const ColorTable& colors, const MarchSettings& settings);
+  const BlockVisibility* blocksFor(const ColorTable& colors, const MarchSettings& settings,
+                                   bool rangesHold);
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
                                  const std::function<bool()>& keepGoing);
   FrameStatistics renderInTime(const CachedScene& scene, const WorkLimit& limit,

@@ -145,8 +145,8 @@ struct FrameStatistics
   std::int64_t missed = 0;  ///< of these, read from a coarser level than wanted
   std::int64_t hidden = 0;  ///< samples besides, left out as the voxels around them show nothing
   std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
-  /// All samples that may show something were taken, and each came from the level it asked for or, if the options are to
-  /// make do with that, the best that a full cache has.
+  /// All samples that may show something were taken, and each came from the level it asked for or,
+  /// if the options are to make do with that, the best that a full cache has.
   bool complete = true;
   std::int64_t paths = 0;  ///< of path tracing: through each pixel, in the picture shown
   LevelSpan levels;        ///< of the cache, that samples came from

@@ -36,7 +36,7 @@ int CoarsestLevelWithin(const glm::dvec3& distance, const MacroCells& cells,
 
 } // namespace
 
-Majorants::Majorants(const MacroCells& cells)
+Majorants::Majorants(const MacroCells& cells) : RangesHold(cells.rangesHold())
 {
   const MacroCells whole = WithoutHoles(cells);
   for (const ValueRange& range : whole.ranges) {

@@ -30,6 +30,7 @@ public:
 
   /// Of all values; empty when there are none.
   const ValueRange& bounds() const { return this->Bounds; }
+  bool rangesHold() const { return this->RangesHold; } ///< see MacroCells
 
   int grids() const { return static_cast<int>(this->Grids.size()); }
   const MajorantGrid& grid(int number) const { return this->at(number).cells; }
@@ -46,6 +47,7 @@ private:
 
   std::vector<Grid> Grids;
   ValueRange Bounds;
+  bool RangesHold;
 };
 
 } // namespace inr

@@ -290,9 +290,8 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
                      this->chooseLevels(frame, geometry, limit, keepGoing, settings);
   Frame meanwhile = frame; // until all is measured, the picture is as by distance
   meanwhile.levelOfDetailScale = final ? frame.levelOfDetailScale : 1.0;
-  FrameStatistics statistics =
-      this->Cached->render(meanwhile, geometry, this->Cells, *this->Colors, settings, lit,
-                           limit, output, keepGoing);
+  FrameStatistics statistics = this->Cached->render(meanwhile, geometry, this->Cells, *this->Colors,
+                                                    settings, lit, limit, output, keepGoing);
   statistics.complete = statistics.complete && final;
   statistics.work.bricks = call.done();
   statistics.work.networkSamples += this->measuredPoints() - measured;

@@ -5,6 +5,8 @@
 
 #include "Testing/Core/Render/ToleranceScene.h"
 
+#include <gtest/gtest.h>
+
 /// No picture shows it, but all samples of it are taken.
 constexpr float Invisible = 1e-30f;
 
@@ -19,4 +21,13 @@ inline inr::TransferFunction Shell(float otherwise, float opacity = 0.3f)
   }
   function.below = function.above = function.table.front();
   return function;
+}
+
+/// But for what nobody can see.
+inline void ExpectSame(const inr::Image& a, const inr::Image& b)
+{
+  ASSERT_EQ(a.pixels.size(), b.pixels.size());
+  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+    ASSERT_NEAR(a.pixels[k], b.pixels[k], 100 * Invisible) << k;
+  }
 }

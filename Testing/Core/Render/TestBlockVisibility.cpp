@@ -23,7 +23,7 @@ struct Filled
     this->values.resize(static_cast<std::size_t>(this->levels.voxelsPerBrick()));
   }
 
-  /// With the field's values in one corner, and `rest` elsewhere.
+  /// `corner` in the last voxel, and `rest` elsewhere.
   std::int32_t insert(const glm::i64vec3& at, float rest, float corner)
   {
     std::fill(this->values.begin(), this->values.end(), rest);
@@ -40,7 +40,8 @@ struct Filled
 
 TEST(BlockVisibility, SaysWhatMayBeSeen)
 {
-  const inr::ColorTable colors(Shell(0), VolumeOf(Dims));
+  constexpr float faint = 1e-12f; // is seen, in a great many samples
+  const inr::ColorTable colors(Shell(0, faint), VolumeOf(Dims));
   for (const auto precision : {inr::CachePrecision::Float32, inr::CachePrecision::Bits16}) {
     Filled filled(precision);
     const std::int32_t none = filled.insert({0, 0, 0}, 0.1f, 0.3f);
@@ -155,16 +156,7 @@ const Way Ways[] = {
 /// coarse level shows what the finer one does not.
 float Edges(const glm::vec3& u) { return Waves(u) > 0.5f ? 1.0f : 0.3f; }
 
-/// But for what nobody can see.
-void ExpectSame(const inr::Image& a, const inr::Image& b)
-{
-  ASSERT_EQ(a.pixels.size(), b.pixels.size());
-  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
-    ASSERT_NEAR(a.pixels[k], b.pixels[k], 100 * Invisible) << k;
-  }
-}
-
-// To the bit: what is left out adds nothing.
+// What is left out adds nothing.
 TEST(BlockVisibility, LeavesPicturesAsTheyAre)
 {
   for (std::size_t k = 0; k < 2 * std::size(Ways); ++k) {
@@ -246,36 +238,6 @@ TEST(BlockVisibility, CountsWhatIsLeftOut)
     EXPECT_EQ(statistics[0].samples + statistics[0].hidden, statistics[1].samples);
     EXPECT_EQ(statistics[0].hitRate(), 1.0);
   }
-}
-
-// Of a value that the cache rounds to one that is transparent, but whose cell's range says better.
-TEST(BlockVisibility, ShowsWhatRoundingHides)
-{
-  constexpr glm::i64vec3 cube(64, 64, 64);
-  int seen = 0;
-  for (int k = 0; k < 9; ++k) {
-    const float value = 0.3f + 0.0005f * static_cast<float>(k);
-    const auto field = [=](const glm::vec3& u) {
-      return u.x < 0.05f ? 0.0f : (u.x > 0.95f ? 1.0f : value); // so that quanta are large
-    };
-    inr::RendererOptions options;
-    options.cache = Options(inr::CachePrecision::Bits8, 65);
-    inr::Renderer renderer(std::make_shared<FieldEvaluator>(field), VolumeOf(cube),
-                           CellsOf(field, cube, 8), options);
-    inr::TransferFunction narrow = UniformMedium(0.5f);
-    narrow.low = double{value} - 1e-4;
-    narrow.high = double{value} + 1e-4;
-    narrow.below = narrow.above = glm::vec4(0);
-    inr::Frame frame = Oblique(glm::dvec3(cube), 32);
-    frame.unitDistance = 20;
-    renderer.setTransferFunction(narrow);
-    const inr::Image picture = Render(renderer, frame);
-    narrow.below = narrow.above = glm::vec4(0, 0, 0, Invisible);
-    renderer.setTransferFunction(narrow);
-    ExpectSame(picture, Render(renderer, frame));
-    seen += *std::max_element(picture.pixels.begin(), picture.pixels.end()) > 0.5f ? 1 : 0;
-  }
-  EXPECT_EQ(seen, 9);
 }
 
 } // namespace

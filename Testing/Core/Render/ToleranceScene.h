@@ -28,6 +28,7 @@ inline inr::MacroCells CellsOf(const FieldEvaluator::Function& field, const glm:
     }
   }
   cells.apron = 1.0 / glm::dvec3(dims);
+  cells.provenance = inr::MacroCellProvenance::Decoded;
   return cells;
 }
 
