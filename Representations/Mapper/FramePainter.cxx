@@ -262,8 +262,9 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
     return true;
   }
   Surroundings around;
-  this->Group.together(
-      [&] { around = this->surroundings(renderer, viewport, !scene.blending.projects()); });
+  // What one process knows of translucent surfaces is not what the others need.
+  const bool meetsLayers = this->Group.isAlone() && !scene.blending.projects();
+  this->Group.together([&] { around = this->surroundings(renderer, viewport, meetsLayers); });
   this->Group.share(around.depth, static_cast<std::size_t>(pixels));
   vtkRenderWindow* window = renderer->GetRenderWindow();
   const double rate = window->GetDesiredUpdateRate();

@@ -122,7 +122,7 @@ bool vtkINRVolumeMapper::GetDrawsTogether()
   const int blend = this->GetBlendMode();
   const bool projects = blend != COMPOSITE_BLEND && blend != ISOSURFACE_BLEND;
   vtkMultiProcessController* controller = this->Self->Controller;
-  return projects && this->RenderMode == RAY_MARCHING && controller &&
+  return (projects || this->AlwaysTogether) && this->RenderMode == RAY_MARCHING && controller &&
          controller->GetNumberOfProcesses() > 1;
 }
 
@@ -417,6 +417,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Backend: " << this->Backend << "\n"
      << indent << "LocalRank: " << this->LocalRank << "\n"
      << indent << "DrawingProcess: " << this->DrawingProcess << "\n"
+     << indent << "AlwaysTogether: " << this->AlwaysTogether << "\n"
      << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n"
      << indent << "ScatteringAlbedo: " << this->ScatteringAlbedo << "\n"
      << indent << "Anisotropy: " << this->Anisotropy << "\n"

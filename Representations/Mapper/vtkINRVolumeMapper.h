@@ -127,7 +127,13 @@ public:
   void SetController(vtkMultiProcessController* controller);
   void SetDrawingProcess(int process) { this->DrawingProcess = process; }
   ///@}
-  /** Whether values are projected and there is more than one such process. */
+  /**
+   * Whether such processes cast rays through the whole volume, each a band of rows, whatever is
+   * blended: pieces of several volumes in different places have no order in which the windows could
+   * be. Translucent surfaces are under the volumes then. Default off.
+   */
+  void SetAlwaysTogether(bool on) { this->AlwaysTogether = on; }
+  /** Whether they do so, and there is more than one such process. */
   bool GetDrawsTogether();
 
   ///@{
@@ -474,6 +480,7 @@ private:
   int Backend = AUTO;
   int LocalRank = 0;
   int DrawingProcess = -1;
+  bool AlwaysTogether = false;
   int SamplesPerPixel = 64;
   double ScatteringAlbedo = 1.0;
   double Anisotropy = 0.0;

@@ -3,11 +3,14 @@
 
 #include "vtkCameraPass.h"
 #include "vtkCommunicator.h"
+#include "vtkINRLODVolume.h"
 #include "vtkIceTCompositePass.h"
 #include "vtkImageProcessingPass.h"
 #include "vtkMultiProcessController.h"
 #include "vtkOrderedCompositingHelper.h"
 #include "vtkRenderer.h"
+#include "vtkVolume.h"
+#include "vtkVolumeCollection.h"
 
 #include <vector>
 
@@ -60,6 +63,20 @@ int FrontProcess(vtkRenderer* renderer)
   const bool isOfAll =
       processes && static_cast<int>(order.size()) == processes->GetNumberOfProcesses();
   return isOfAll ? order.front() : -1;
+}
+
+std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer)
+{
+  std::vector<vtkVolume*> shown;
+  vtkCollectionSimpleIterator place;
+  vtkVolumeCollection* volumes = renderer->GetVolumes();
+  volumes->InitTraversal(place);
+  while (vtkVolume* volume = volumes->GetNextVolume(place)) {
+    if (volume->GetVisibility() != 0 && vtkINRLODVolume::SafeDownCast(volume)) {
+      shown.push_back(volume);
+    }
+  }
+  return shown;
 }
 
 bool AllHave(vtkMultiProcessController* processes, bool something)

@@ -103,8 +103,10 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->GetMapper()->SetNumberOfThreads(this->NumberOfThreads > 0 ? this->NumberOfThreads
                                                                     : this->SharedThreads);
     this->UpdateMapper();
+    vtkRenderer* renderer = vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer();
+    this->GetMapper()->SetAlwaysTogether(inr::ShownVolumes(renderer).size() > 1);
     if (this->GetMapper()->GetDrawsTogether()) {
-      inr::DrawEverywhere(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
+      inr::DrawEverywhere(renderer);
     }
     this->ReportColouring();
     this->OutlineMapper->SetInputConnection(
@@ -157,14 +159,17 @@ void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out
   }
   // The view sorts the processes' pieces, and shares surfaces out among them, by bounds that it
   // takes for the world's whatever the matrix, and looks at anew with new data only, or with those
-  // of another port.
+  // of another port. Of several volumes it would take both pieces' box, which meets other ones.
+  const auto shown =
+      inr::ShownVolumes(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
+  const bool leads = !shown.empty() && shown.front() == this->Actor;
   if (this->UpdatePlace()) {
     std::swap(this->OutlinePort, this->BoundsPort);
   }
   vtkPVRenderView::SetGeometryBounds(in, this, this->PlacedBounds);
   for (const int port : {this->OutlinePort, this->BoundsPort}) {
     const int use =
-        port == this->BoundsPort ? int{vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION} : 0;
+        leads && port == this->BoundsPort ? int{vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION} : 0;
     vtkPVRenderView::SetPiece(in, this, this->OutlineSource->GetOutputDataObject(0), 0, port);
     vtkPVRenderView::SetGeometryBounds(in, this, this->PlacedBounds, nullptr, port);
     vtkPVRenderView::SetOrderedCompositingConfiguration(in, this, use, nullptr, port);

@@ -12,7 +12,7 @@ from pvtest import show_ball, show_model
 
 PORT = int(sys.argv[1])
 ALONE = ["Maximum Intensity", "Minimum Intensity", "Average Intensity", "Additive", "side 0", "side 1"]
-ALONE += ["side 2", "cropped", "inside", "two projections", "alone", "of one process"]
+ALONE += ["side 2", "cropped", "inside", "from a face", "two projections", "alone", "of one process"]
 FEW = output_file("few-voxels.inr")
 
 
@@ -61,6 +61,11 @@ def pictures(where):
     camera.SetViewAngle(70)
     view.GetRenderer().ResetCameraClippingRange()
     take("inside")
+    camera.SetPosition(45, 45, 88)  # so that some of the volume is beside the eye
+    camera.SetFocalPoint(45, 45, 0)
+    camera.SetViewAngle(110)
+    view.GetRenderer().ResetCameraClippingRange()
+    take("from a face")
     opacity.Points = usual
     camera.SetViewAngle(30)
     look_at(view)
@@ -71,8 +76,16 @@ def pictures(where):
     take("two projections")
     balls[0].Opacity = 0.5  # which one process peels
     take("over glass")
+    balls[0].Opacity = 1
+    display.INRBlendMode = second.INRBlendMode = "Composite"
+    second.Position = [20, -95, 30]  # not as the pieces are
+    take("two volumes")
+    for side in range(2):
+        camera.Azimuth(130)
+        take(f"two volumes {side}")
     second.Visibility = 0
-    display.INRBlendMode = "Composite"
+    look_at(view)
+    balls[0].Opacity = 0.5
     take("composite over glass")
     display.Position, display.Scale = [0, 40, 20], [1, 0.7, 1.2]  # the surfaces are in other pieces then
     take("moved")
@@ -110,7 +123,8 @@ load_plugin()
 # Too few voxels for every process to have some.
 simple.SaveData(FEW, proxy=simple.Wavelet(WholeExtent=[0, 1, 0, 1, 0, 1]), MaximumSteps=50)
 expected = pictures("here")[2]
-check(all(image.std() > 0.03 for image in expected.values()), "nothing is shown")
+for name, image in expected.items():
+    check(image.std() > 0.03, name, "shows nothing", image.std())
 
 connect(PORT)
 with Messages() as messages:
