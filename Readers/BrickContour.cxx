@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BrickContour.h"
 
-#include <vtkMarchingCubesTriangleCases.h>
+#include "VTKCompat.h"
 
 #include <glm/common.hpp>
 
@@ -62,8 +62,7 @@ void BrickContour::AddCell(SurfacePatch& patch, double value, const glm::i64vec3
   if (inside == 0 || inside == 255) {
     return;
   }
-  const int* edge = vtkMarchingCubesTriangleCases::GetCases()[inside].edges;
-  for (; *edge >= 0; ++edge) {
+  for (const int* edge = ContourEdges(inside); *edge >= 0; ++edge) {
     patch.triangles.push_back(this->VertexOn(patch, value, cell, *edge));
   }
 }

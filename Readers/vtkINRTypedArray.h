@@ -75,8 +75,14 @@ public:
   vtkTypeBool Allocate(vtkIdType, vtkIdType) override { return this->Refuse(Change::Size); }
   vtkTypeBool Resize(vtkIdType tuples) override
   {
-    return tuples == this->Size || this->Refuse(Change::Size);
+    return tuples == this->INR_VTK_ARRAY_CAPACITY || this->Refuse(Change::Size);
   }
+#ifdef INR_VTK_RESERVE_TUPLES
+  vtkTypeBool ReserveTuples(vtkIdType tuples) override
+  {
+    return tuples <= this->INR_VTK_ARRAY_CAPACITY || this->Refuse(Change::Size);
+  }
+#endif
   void SetNumberOfTuples(vtkIdType tuples) override { this->Resize(tuples); }
   void Squeeze() override {}
 
@@ -162,8 +168,8 @@ private:
   {
     const glm::i64vec3 size = this->Values->Cache.GetPart().size;
     this->NumberOfComponents = 1;
-    this->Size = size.x * size.y * size.z;
-    this->MaxId = this->Size - 1;
+    this->INR_VTK_ARRAY_CAPACITY = size.x * size.y * size.z;
+    this->MaxId = this->INR_VTK_ARRAY_CAPACITY - 1;
     this->DataChanged();
   }
 
@@ -211,9 +217,9 @@ template <class T> const T* vtkINRTypedArray<T>::MakeCopy()
   Shared& shared = *this->Values;
   const std::lock_guard<std::mutex> lock(shared.CopyMutex);
   if (!shared.Copy) {
-    if (this->Size > MaximumCopiedValues) {
+    if (this->INR_VTK_ARRAY_CAPACITY > MaximumCopiedValues) {
       vtkErrorMacro("A filter asks for a copy of all "
-                    << this->Size
+                    << this->INR_VTK_ARRAY_CAPACITY
                     << " values of an implicit neural representation, more than the limit of "
                     << MaximumCopiedValues
                     << ". Lower MaximumGridPoints of the reader, or use "
@@ -221,10 +227,11 @@ template <class T> const T* vtkINRTypedArray<T>::MakeCopy()
       return nullptr;
     }
     try {
-      shared.CopyStore.resize(static_cast<std::size_t>(this->Size));
+      shared.CopyStore.resize(static_cast<std::size_t>(this->INR_VTK_ARRAY_CAPACITY));
       shared.Cache.DecodeAll(shared.CopyStore.data());
     } catch (const std::bad_alloc&) {
-      vtkErrorMacro("Not enough memory for a copy of " << this->Size << " values.");
+      vtkErrorMacro("Not enough memory for a copy of " << this->INR_VTK_ARRAY_CAPACITY
+                                                       << " values.");
       return nullptr;
     }
     shared.Copy.store(shared.CopyStore.data(), std::memory_order_release);

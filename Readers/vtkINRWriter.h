@@ -25,6 +25,7 @@
 #ifndef vtkINRWriter_h
 #define vtkINRWriter_h
 
+#include "VTKCompat.h"           // for what writers override
 #include "vtkINRReadersModule.h" // for export macro
 
 #include <vtkWriter.h>
@@ -231,6 +232,14 @@ protected:
   vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**,
                              vtkInformationVector*) override;
   void WriteData() override;
+#ifdef INR_VTK_WRITERS_RETURN
+  /// The error code tells; with false, the pipeline would add a message to ours.
+  bool WriteDataAndReturn() override
+  {
+    this->WriteData();
+    return true;
+  }
+#endif
 
 private:
   vtkINRWriter(const vtkINRWriter&) = delete;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ImageBlender.h"
 
+#include "Readers/VTKCompat.h"
+
+#include INR_VTK_OPENGL_HEADER
 #include <vtkNew.h>
 #include <vtkOpenGLQuadHelper.h>
 #include <vtkOpenGLRenderWindow.h>
@@ -10,7 +13,6 @@
 #include <vtkShaderProgram.h>
 #include <vtkTextureObject.h>
 #include <vtkWeakPointer.h>
-#include <vtk_glew.h>
 
 namespace inr {
 namespace {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TranslucentPeeler.h"
 
+#include "Readers/VTKCompat.h"
+
+#include INR_VTK_OPENGL_HEADER
 #include <vtkActor2D.h>
 #include <vtkInformation.h>
 #include <vtkInformationIntegerKey.h>
@@ -18,7 +21,6 @@
 #include <vtkTextureObject.h>
 #include <vtkVolume.h>
 #include <vtkWeakPointer.h>
-#include <vtk_glew.h>
 
 #include <algorithm>
 
