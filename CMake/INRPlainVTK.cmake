@@ -19,8 +19,17 @@ endif ()
 message(STATUS "VTK ${VTK_VERSION}: ${VTK_DIR}")
 
 set(BUILD_SHARED_LIBS ON)
+if (INR_WHEEL)
+  # All in one package, which finds VTK's libraries in the package beside it that has them.
+  set(CMAKE_INSTALL_LIBDIR inrvolume)
+  set(INR_PYTHON_DIRECTORY .)
+  get_property(inr_vtk_package
+    TARGET VTK::CommonCore PROPERTY INTERFACE_vtk_module_python_package)
+  list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../${inr_vtk_package}")
+else ()
+  set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
+endif ()
 set(INR_MODULE_DIRECTORY "${CMAKE_INSTALL_LIBDIR}")
-set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
 # The modules share the host's process: nothing of our static libraries may be visible in it.
 add_link_options(LINKER:--exclude-libs,ALL)
 # RPATH instead of RUNPATH: an unpacked VTK's libraries find each other through ours only.

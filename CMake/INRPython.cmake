@@ -2,7 +2,9 @@
 # (vtkmodules), ParaView's included. Shared by the builds against ParaView and against plain VTK;
 # included after the modules are built. INR_MODULE_DIRECTORY is where their libraries are, relative
 # to the build and the installation folder.
-set(INR_PYTHON_DIRECTORY "${CMAKE_INSTALL_LIBDIR}/python")
+if (NOT INR_WHEEL)
+  set(INR_PYTHON_DIRECTORY "${CMAKE_INSTALL_LIBDIR}/python")
+endif ()
 find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
 
 file(RELATIVE_PATH inr_python_to_modules
