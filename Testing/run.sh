@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds everything on Debian 12 and runs every test but those labelled `long`; installs what is
 # missing. Ends with "N passed, N failed"; its status is 0 when nothing failed. What a machine cannot
-# run, like the kernels on a GPU, is skipped, and counts as neither: Testing/run_cuda.sh.
+# run, like the kernels on a GPU, is skipped, and counts as neither: Testing/run_cuda.sh. The wheel has
+# a test of its own, which wants Debian 13: Testing/Wheel/run.sh.
 #
 #   Testing/run.sh [CTEST-OPTION...]     e.g. Testing/run.sh -L core
 set -uo pipefail
