@@ -21,7 +21,9 @@ constexpr std::int64_t CellsPerTask = 4096;
 constexpr std::int64_t RaysPerTask = 64;
 /// A picture, at most: 48^2 rays take a hundredth of the time that those of 512x512 pixels take.
 constexpr int RaysAcross = 48;
-constexpr double Hidden = 1e-3; ///< light from behind that no longer counts: where rays end
+/// Light from behind, where rays end: what no ray meets before has its finest level, and of what
+/// others allow there, so much adds to a ray's error.
+constexpr double Hidden = 1e-3;
 static_assert(LevelErrors::Coarsest >= LargestCellPower, "what cells ask for is measured");
 
 double LargestOf(const glm::dvec3& edges) { return std::max(edges.x, std::max(edges.y, edges.z)); }

@@ -6,8 +6,9 @@
 //
 // of the volume with TIMES as many voxels along every axis, in pictures of so many PIXELS across,
 // prints one JSON object per line; tolerance.py writes the result file. The reference of all
-// pictures has every sample, from voxels of level 0 in float32 (reference A). But for first
-// pictures, everything is decoded before anything is timed.
+// pictures has every sample at the same distance, from voxels of level 0 in float32: a tolerance
+// promises nothing of the distance. (Reference A of bench_tradeoff has four times as many samples.)
+// But for first pictures, everything is decoded before anything is timed.
 #include "Core/Image/Metrics.h"
 #include "Core/Model/ModelFile.h"
 #include "Testing/Benchmarks/FrameScenes.h"

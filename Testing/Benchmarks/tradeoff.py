@@ -9,7 +9,7 @@
 
 VOLUMES is the folder of the .vti files. What was trained and measured stays in the folder WORK, and
 a PART ("knobs", "loading", ...: those whose name has it) measures anew just that; without one, all is
-measured. Times are of the processor, beside those of the default settings in turn. Where the package
+measured. What no run has measured in WORK is named, and in the result file. Times are of the processor, beside those of the default settings in turn. Where the package
 lpips of PyPI and its network's weights are on this machine, pictures are compared by that, too (see
 perceptual.py); where not, the result file says why.
 """
@@ -177,10 +177,13 @@ def main():
         if not wanted or any(name in "-".join(part) for name in wanted):
             print("-".join(part), flush=True)
             bench.measure(*part)
+    absent = ["-".join(part) for part in PARTS if not bench.file(*part).exists()]
+    if absent:
+        print("not measured yet:", *absent, file=sys.stderr)
     lines = list(bench.measured(PARTS))
     results = [*summaries(lines), *map(result_of, lines)]
     results_file.write("tradeoff", [rounded(result) for result in results],
-                       lpips=bench.about_lpips)
+                       lpips=bench.about_lpips, **({"absent": absent} if absent else {}))
 
 
 if __name__ == "__main__":
