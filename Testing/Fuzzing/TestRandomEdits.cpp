@@ -6,6 +6,7 @@
 // 40 changes each; INR_EDITS says how many. Built for preset tsan, too: run it there with 1000.
 #include "Core/Error.h"
 #include "Core/Random.h"
+#include "Testing/Core/FakeAccelerator.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
@@ -41,10 +42,18 @@ private:
   std::uint64_t Count = 0;
 };
 
+/// Computes what the CPU would, and half of them are lost some time.
+std::shared_ptr<const inr::Accelerator> SomeAccelerator(Dice& dice)
+{
+  const auto device = std::make_shared<FakeDevice>();
+  device->failsAt = dice.below(2) == 0 ? dice.below(200) : FakeDevice::Never;
+  return std::make_shared<FakeAccelerator>(device);
+}
+
 void EditOptions(inr::RendererOptions& options, Dice& dice)
 {
   inr::CacheOptions& cache = options.cache;
-  switch (dice.below(8)) {
+  switch (dice.below(9)) {
   case 0:
     cache.precision = static_cast<inr::CachePrecision>(dice.below(3));
     break;
@@ -65,6 +74,9 @@ void EditOptions(inr::RendererOptions& options, Dice& dice)
     break;
   case 6:
     cache.preloading = !cache.preloading;
+    break;
+  case 7: // the backend
+    options.accelerator = options.accelerator ? nullptr : SomeAccelerator(dice);
     break;
   default:
     cache.ranking = !cache.ranking;
@@ -128,7 +140,10 @@ void EditFrame(inr::Frame& frame, Dice& dice)
 class Host
 {
 public:
-  Host(inr::ModelPointer model, std::uint64_t seed) : Model(std::move(model)), Chance(seed) {}
+  Host(inr::ModelPointer model, std::uint64_t seed) : Model(std::move(model)), Chance(seed)
+  {
+    this->Now.options.cache.brickSize = 16; // of which every size holds enough
+  }
 
   void edit()
   {
@@ -223,6 +238,7 @@ inr::ModelPointer SomeModel()
   auto model = RandomModel(SmallDescription());
   model->volume.dims = Dims;
   model->macroCells = inr::MakeMacroCells(Dims, 8);
+  model->macroCells.provenance = inr::MacroCellProvenance::Decoded; // so that blocks are hidden
   for (std::size_t k = 0; k < model->macroCells.ranges.size(); ++k) {
     const float low = 0.1f * static_cast<float>(k % 7);
     model->macroCells.ranges[k] = {low, low + 0.4f};
