@@ -18,7 +18,10 @@ namespace {
 
 static_assert(LevelErrors::Coarsest <= 3, "LineKernel compares samples with up to 9 values");
 
-constexpr double BlockEdge = 64; ///< voxels: a picture in a limited time waits for one block
+/// Voxels. Smaller blocks would ask for much that their neighbours ask for, too: up to 16 voxels
+/// around them, so that of 64 it is 3.4 times the voxels at worst. A picture in a limited time
+/// waits for one block.
+constexpr double BlockEdge = 64;
 
 glm::i64vec3 PlaceOf(std::int64_t number, const glm::i64vec3& dims)
 {
@@ -36,8 +39,9 @@ VoxelSpan VoxelsOf(std::int64_t begin, std::int64_t end, double edge, std::int64
           static_cast<std::int64_t>(std::clamp(high, 0.0, last))};
 }
 
-bool IsKnown(const LevelErrors::Powers& powers, int wanted, std::int64_t cell,
-             const LevelErrors::Question& question)
+/// Whether so many powers are known, or that the first one that is not is too large.
+bool Answer(const LevelErrors::Powers& powers, int wanted, std::int64_t cell,
+            const LevelErrors::Question& question)
 {
   return powers.known >= wanted ||
          question.isTooLarge(cell, powers.errors[static_cast<std::size_t>(powers.known)]);
@@ -136,8 +140,8 @@ const LevelErrors::Cell& LevelErrors::of(std::int64_t cell) const
 bool LevelErrors::knows(std::int64_t cell, const Question& question) const
 {
   const Cell& known = this->of(cell);
-  return IsKnown(known.levels, question.levels, cell, question) &&
-         IsKnown(known.steps, question.steps, cell, question);
+  return Answer(known.levels, question.levels, cell, question) &&
+         Answer(known.steps, question.steps, cell, question);
 }
 
 std::int64_t LevelErrors::measuredBlocks() const
@@ -183,11 +187,12 @@ std::int64_t LevelErrors::measure(std::int64_t block, const Evaluator& field,
 void LevelErrors::measurePower(int power, const std::vector<Part>& parts, const Question& question,
                                Work& work) const
 {
+  // Whose power is the next to be known.
   const auto open = [&](Powers Cell::*which, int wanted) {
     std::vector<Part> cells;
     std::copy_if(parts.begin(), parts.end(), std::back_inserter(cells), [&](const Part& part) {
       const Powers& powers = work.cells[part.number].*which;
-      return powers.known == power - 1 && !IsKnown(powers, wanted, part.cell, question);
+      return powers.known == power - 1 && !Answer(powers, wanted, part.cell, question);
     });
     return cells;
   };

@@ -39,34 +39,39 @@ public:
   std::int64_t blockCost() const;
   std::int64_t blockOf(std::int64_t cell) const;
 
-  /// Errors of 2, 4, ... times fewer samples, in normalised values.
+  /// Errors of samples 2, 4 and 8 times further apart, powers 1, 2 and 3, in normalised values.
+  /// Only the first `known` powers are known. Of the next one there is what was found before it was
+  /// too large for whoever had it measured, so that it is known to be at least that large; of the
+  /// others, nothing.
   struct Powers
   {
-    std::array<LineErrors, Coarsest> errors; ///< of those not known: at least so much
+    std::array<LineErrors, Coarsest> errors; ///< of power p at p - 1
     int known = 0;
   };
   struct Cell
   {
-    Powers levels; ///< of samples of level l = 1, 2, ..., 2^l voxels apart
-    Powers steps;  ///< of level 0, 2, 4, ... voxels apart
+    Powers levels; ///< of samples of level 1, 2, 3, as far apart as its voxels
+    Powers steps;  ///< of samples of level 0
   };
   const Cell& of(std::int64_t cell) const;
 
-  /// What somebody wants to know: of each cell up to so many powers of levels and of steps, but
-  /// none after the first that is too large.
+  /// How far somebody wants to know the errors of cells: whoever looks for the fewest samples that
+  /// are good enough need not know how bad those are that are not. Of a cell that is answered by so
+  /// many powers, or by all before the first that is too large, and that this one is.
   struct Question
   {
-    int levels;
+    int levels; ///< powers
     int steps;
-    /// Says yes of errors that are larger, too. Called on any thread.
+    /// Whether errors of a cell are too large. If so, larger ones have to be, too. Called on any
+    /// thread.
     std::function<bool(std::int64_t cell, const LineErrors&)> isTooLarge;
   };
-  /// Whether no more has to be measured.
+  /// Whether that is answered of a cell.
   bool knows(std::int64_t cell, const Question& question) const;
 
-  /// Measures what is not known of a block's cells. Blocks may be measured on several threads at
-  /// once, each of them on one. `beforeCell` may throw, to end that with nothing changed. How many
-  /// points the field was asked for.
+  /// Measures what the question leaves open of a block's cells. Blocks may be measured on several
+  /// threads at once, each of them on one. `beforeCell` may throw, to end that with nothing
+  /// changed. How many points the field was asked for.
   std::int64_t measure(std::int64_t block, const Evaluator& field, const LineKernel& kernel,
                        const Question& question, const std::function<void()>& beforeCell);
   void forget(std::int64_t block) { this->Measured[static_cast<std::size_t>(block)] = {}; }

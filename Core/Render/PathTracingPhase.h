@@ -48,7 +48,8 @@ struct SineCosine
 /// time.
 INR_HOST_DEVICE inline SineCosine OfTurn(double turn)
 {
-  const int quarter = static_cast<int>(4.0 * turn + 0.5);       // the nearest, 0 to 4
+  // The nearest, 0 to 4; lround takes its time.
+  const int quarter = static_cast<int>(4.0 * turn + 0.5); // NOLINT(bugprone-incorrect-roundings)
   const double x = (4.0 * turn - quarter) * 1.5707963267948966; // within pi / 4
   const double y = x * x;
   // Taylor's series.

@@ -249,12 +249,12 @@ bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometr
                                             MarchSettings& settings)
 {
   if (!this->Levels) {
-    this->Levels.emplace(this->Field, this->Volume.dims, this->Cells.grid(0),
+    this->Levels.emplace(this->Field, this->Volume.dims, this->Cells,
                          this->Cached->store().cache().hierarchy().levels(),
                          LineKernelFor(ChooseInstructionSet(this->Options.kernel)));
   }
-  const LevelChooser::Wish wish{LevelChooser::Certain * *frame.errorTolerance / 255.0,
-                                settings.step, settings.step * settings.unitsPerT};
+  const LevelChooser::Wish wish{*frame.errorTolerance, settings.step,
+                                settings.step * settings.unitsPerT};
   if (!this->Levels->choose(wish, {geometry, frame.width, frame.height}, this->Cells,
                             this->Colors->lookup(), this->Threads, limit, keepGoing)) {
     return false;

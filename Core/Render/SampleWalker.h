@@ -121,7 +121,10 @@ public:
 
 private:
   static constexpr double Plenty = 1024; ///< more samples than anybody asks for at once
-  /// Steps: fewer are passed sooner one by one than in a stretch of their own.
+  /// Steps: a cell that a ray passes in fewer gets no stretch of its own between cells that have
+  /// all samples, but all samples, too. Of 256x256 pixels of fog with wires, frames took as long
+  /// with 1, 6, 12 and 24 as far as could be told (5 %), and 0, 0.2, 0.8 and 3 % more samples; 11 %
+  /// without any such stretch.
   static constexpr double WorthAStretch = 12;
   static constexpr double BlockLength = 64; ///< samples that are looked ahead for
 

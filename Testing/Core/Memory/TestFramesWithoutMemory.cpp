@@ -2,7 +2,8 @@
 //
 // Every allocation of making a renderer and a picture fails once, or that and all that follow: an
 // error, and the next picture is right to the last bit. There are thousands; some are tried, and
-// all of them with INR_ALL_ALLOCATIONS in the environment (ten minutes).
+// all of them with INR_ALL_ALLOCATIONS in the environment, or `ctest -L long` (25 minutes of two
+// busy cores).
 #include "Core/Error.h"
 #include "Testing/Core/Memory/FailingMemory.h"
 #include "Testing/Core/RandomModel.h"

@@ -18,13 +18,13 @@ public:
   explicit SmokeBeforeWaves(bool smoke)
       : Cells(CellsOf(field, Dims), Dims, inr::Arena(1)),
         Colors(colors(smoke ? Opacity : 0.0f), VolumeOf(Dims)),
-        Chooser(std::make_shared<FieldEvaluator>(field), Dims, Cells.grid(0), 4,
+        Chooser(std::make_shared<FieldEvaluator>(field), Dims, Cells, 4,
                 inr::LineKernelFor(inr::ChooseInstructionSet({})))
   {
     this->Cells.update(this->Colors, inr::Arena(1));
   }
 
-  /// Powers of the cells of the waves.
+  /// Powers of the cells of the waves when so much of a channel is made use of, 1 = white.
   std::vector<int> powers(double tolerance)
   {
     inr::Frame frame;
@@ -34,7 +34,8 @@ public:
         glm::inverse(glm::ortho(-0.5, 31.5, -0.5, 31.5, -200.0, 200.0) *
                      glm::lookAt(glm::dvec3(0, 0, 1), glm::dvec3(0), glm::dvec3(0, 1, 0)));
     const inr::RayGeometry geometry(frame, Dims);
-    EXPECT_TRUE(this->Chooser.choose({tolerance, Step, Step}, {geometry, 32, 32}, this->Cells,
+    const double wished = 255 * tolerance / inr::LevelChooser::MadeUseOf;
+    EXPECT_TRUE(this->Chooser.choose({wished, Step, Step}, {geometry, 32, 32}, this->Cells,
                                      this->Colors.lookup(), inr::Arena(1), inr::WorkLimit(0, false),
                                      {}));
     std::vector<int> powers;
