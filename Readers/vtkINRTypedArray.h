@@ -14,6 +14,7 @@
 #include "VTKCompat.h"
 #include "vtkINRDataArray.h"
 
+#include <vtkArrayIteratorTemplate.h>
 #include <vtkGenericDataArray.h>
 #include <vtkObjectFactory.h>
 
@@ -85,6 +86,15 @@ public:
 #endif
   void SetNumberOfTuples(vtkIdType tuples) override { this->Resize(tuples); }
   void Squeeze() override {}
+
+  /// Over a decoded copy of all values. Tables, statistics and writers of text go by these, without
+  /// asking whether there is one.
+  VTK_NEWINSTANCE vtkArrayIterator* NewIterator() override
+  {
+    auto* iterator = vtkArrayIteratorTemplate<T>::New();
+    iterator->Initialize(this);
+    return iterator;
+  }
 
   /// A decoded copy of all values, kept for the next call; null, with an error, for too many.
   void* GetVoidPointer(vtkIdType index) override
