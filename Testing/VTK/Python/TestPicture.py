@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import torus_scene as scene
+from similarity import ssim
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 (provides the window)
 from inrvolume import vtkINRReader, vtkINRVolumeMapper, vtkINRWriter
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -73,6 +74,6 @@ writer.Write()
 reference = vtkPNGReader()
 reference.SetFileName(baseline_file)
 reference.Update()
-similarity = scene.ssim(pixels(capture.GetOutput()), pixels(reference.GetOutput()))
+similarity = ssim(pixels(capture.GetOutput()), pixels(reference.GetOutput()))
 print(f"SSIM with {baseline_file}: {similarity:.4f}")
 assert similarity > 0.99, similarity

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scene that programs with different versions of VTK draw, in plain numbers, and what compares their
-pictures."""
+"""A scene that programs with different versions of VTK draw, in plain numbers."""
 import numpy as np
 
 SIZE = (280, 240)
@@ -37,25 +36,3 @@ def train(writer, image, path):
     writer.SetMaximumSteps(STEPS)
     assert writer.Write() == 1, "no model"
     assert writer.GetPSNR() > 35, writer.GetPSNR()
-
-
-def box_mean(image, size=7):
-    sums = np.cumsum(np.cumsum(np.pad(image, ((1, 0), (1, 0), (0, 0))), axis=0), axis=1)
-    total = sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]
-    return total / size**2
-
-
-def ssim(a, b):
-    """Mean structural similarity (Wang et al., IEEE TIP 2004) of 8-bit pictures, uniform 7x7 window."""
-    assert a.shape == b.shape and a.shape[2] == 3, (a.shape, b.shape)
-    a, b = a / 255.0, b / 255.0
-    mean_a, mean_b = box_mean(a), box_mean(b)
-    variance_a = box_mean(a * a) - mean_a**2
-    variance_b = box_mean(b * b) - mean_b**2
-    covariance = box_mean(a * b) - mean_a * mean_b
-    c1, c2 = 0.01**2, 0.03**2
-    return np.mean(
-        (2 * mean_a * mean_b + c1)
-        * (2 * covariance + c2)
-        / ((mean_a**2 + mean_b**2 + c1) * (variance_a + variance_b + c2))
-    )
