@@ -211,17 +211,21 @@ std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewpo
   return ok ? depth : std::vector<float>();
 }
 
+std::size_t PixelUnder(std::size_t pixel, int width, int height, const Viewport& viewport)
+{
+  const auto across = static_cast<std::size_t>(width);
+  const double x = static_cast<double>(pixel % across) + 0.5;
+  const double y = static_cast<double>(pixel / across) + 0.5;
+  const auto row = static_cast<std::size_t>(y * viewport.height / height);
+  return row * viewport.width + static_cast<std::size_t>(x * viewport.width / width);
+}
+
 std::vector<float> ReduceDepth(const std::vector<float>& depth, const Viewport& viewport, int width,
                                int height)
 {
-  std::vector<float> result;
-  result.reserve(static_cast<std::size_t>(width) * height);
-  for (int y = 0; y < height; ++y) {
-    const std::size_t row = static_cast<std::size_t>((y + 0.5) * viewport.height / height);
-    for (int x = 0; x < width; ++x) {
-      const std::size_t column = static_cast<std::size_t>((x + 0.5) * viewport.width / width);
-      result.push_back(depth[row * viewport.width + column]);
-    }
+  std::vector<float> result(static_cast<std::size_t>(width) * height);
+  for (std::size_t pixel = 0; pixel < result.size(); ++pixel) {
+    result[pixel] = depth[PixelUnder(pixel, width, height, viewport)];
   }
   return result;
 }

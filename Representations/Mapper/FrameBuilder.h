@@ -8,6 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -70,6 +71,10 @@ bool MayHaveOpaqueDepth(vtkRenderer* renderer);
 /// Window-space depth of the viewport, row 0 at the bottom, multisampling resolved; empty when VTK
 /// cannot read it. The render window must be current.
 std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewport);
+
+/// The pixel of the viewport in which the centre of one lies of a smaller image over it, both by
+/// number, row by row.
+std::size_t PixelUnder(std::size_t pixel, int width, int height, const Viewport& viewport);
 
 /// The depth at the centres of the pixels of a smaller image over the same viewport.
 std::vector<float> ReduceDepth(const std::vector<float>& depth, const Viewport& viewport, int width,

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FramePainter.h"
 
+#include "ComposedLight.h"
 #include "Core/Error.h"
+#include "LayerExchange.h"
+#include "MapperInput.h"
 #include "SceneCheck.h"
 #include "SceneLights.h"
 #include "vtkINRDataArray.h"
 
-#include <vtkAbstractArray.h>
-#include <vtkImageData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <thread>
 
 namespace inr {
@@ -26,25 +28,6 @@ using Clock = std::chrono::steady_clock;
 double SecondsSince(Clock::time_point start)
 {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-vtkAbstractArray* SelectedArray(vtkVolumeMapper* mapper, vtkImageData* image)
-{
-  int cellFlag = 0;
-  return vtkAbstractMapper::GetAbstractScalars(image, mapper->GetScalarMode(),
-                                               mapper->GetArrayAccessMode(), mapper->GetArrayId(),
-                                               mapper->GetArrayName(), cellFlag);
-}
-
-std::string NotAnInr(vtkAbstractArray* array)
-{
-  if (!array) {
-    return "The input has no point scalars to draw; choose the INR's array, or connect a "
-           "vtkINRReader.";
-  }
-  return std::string("The input's array '") + (array->GetName() ? array->GetName() : "") +
-         "' is not an INR (a filter may have turned it into ordinary voxels); connect a "
-         "vtkINRReader, or draw it with an ordinary volume mapper.";
 }
 
 /// Asks clock and window between tiles whether to go on. The window's observers may touch the
@@ -96,44 +79,6 @@ bool IsFinal(const FrameStatistics& statistics)
 }
 
 } // namespace
-
-PictureKey::PictureKey(const Frame& frame, bool countsSamples, std::int64_t colors)
-    : OpaqueDepth(CopyOfDepth(frame)), Picture(frame), CountsSamples(countsSamples), Colors(colors)
-{
-  this->Picture.opaqueDepth = this->OpaqueDepth.empty() ? nullptr : this->OpaqueDepth.data();
-}
-
-bool PictureKey::matches(const Frame& frame, bool countsSamples, std::int64_t colors) const
-{
-  // One made in a limited time may differ by the rounding of values outside their cells' ranges.
-  const bool asExact = this->Picture.timeLimit == 0 || frame.timeLimit > 0;
-  return asExact && this->CountsSamples == countsSamples && this->Colors == colors &&
-         (frame.mode == RenderMode::RayMarching ||
-          this->Picture.samplesPerPixel == frame.samplesPerPixel) &&
-         IsSamePicture(this->Picture, frame);
-}
-
-MapperInput FindInput(vtkVolumeMapper* mapper)
-{
-  MapperInput result;
-  result.grid.image = vtkImageData::SafeDownCast(mapper->GetDataSetInput());
-  if (!result.grid.image) {
-    result.problem = "The input is not image data; connect a vtkINRReader.";
-    return result;
-  }
-  vtkAbstractArray* array = SelectedArray(mapper, result.grid.image);
-  result.array = vtkINRDataArray::SafeDownCast(array);
-  if (!result.array || !result.array->GetModel()) {
-    result.array = nullptr;
-    result.problem = NotAnInr(array);
-    return result;
-  }
-  int presented[3];
-  result.array->GetPresentedDimensions(presented);
-  result.grid.presented = glm::ivec3(presented[0], presented[1], presented[2]);
-  result.grid.native = result.array->GetModel()->volume.dims;
-  return result;
-}
 
 std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                                 const PaintSettings& settings)
@@ -237,20 +182,6 @@ void FramePainter::refineLater(vtkRenderWindow* window, RenderMode mode)
   this->Refine.request(window, std::clamp(share * this->Last.seconds, 0.02, 0.5));
 }
 
-FramePainter::Surroundings FramePainter::surroundings(vtkRenderer* renderer,
-                                                      const Viewport& viewport, bool meetsLayers)
-{
-  Surroundings around;
-  if (MayHaveOpaqueDepth(renderer)) {
-    around.depth = ReadOpaqueDepth(renderer, viewport);
-    this->Last.depthRead = !around.depth.empty();
-  }
-  if (meetsLayers) {
-    around.layers = this->Peeler.peel(renderer, viewport, TranslucentProps(renderer), around.depth);
-  }
-  return around;
-}
-
 bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
 {
   const Viewport viewport = GetViewport(renderer);
@@ -261,45 +192,59 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   if (pixels <= 0) {
     return true;
   }
-  Surroundings around;
-  // What one process knows of translucent surfaces is not what the others need.
-  const bool meetsLayers = this->Group.isAlone() && !scene.blending.projects();
-  this->Group.together([&] { around = this->surroundings(renderer, viewport, meetsLayers); });
-  this->Group.share(around.depth, static_cast<std::size_t>(pixels));
+  TranslucentPeeler* const peeler = scene.blending.projects() ? nullptr : &this->Peeler;
+  const Surroundings around = LookAround(renderer, viewport, this->Group, peeler);
+  this->Last.depthRead = around.depthRead;
   vtkRenderWindow* window = renderer->GetRenderWindow();
   const double rate = window->GetDesiredUpdateRate();
   int reduction = this->Group.largest(this->resolution(scene.mode).factor(rate, pixels));
   Clock::time_point deadline = this->deadline(rate, reduction);
-  while (!this->renderTogether(scene, viewport, around, reduction, deadline, window)) {
+  Surroundings here = this->reduced(around, viewport, reduction);
+  while (!this->renderTogether(scene, here, reduction, deadline, window)) {
     if (this->Group.all(Clock::now() < deadline)) {
       return true; // aborted
     }
     reduction = std::min(4 * reduction, ImageReduction::Largest);
+    here = this->reduced(around, viewport, reduction);
     deadline = this->deadline(rate, reduction);
   }
-  if (!this->blend(renderer, viewport)) {
+  if (!this->blend(renderer, here)) {
     return false;
   }
   this->Last.converged = this->Group.all(this->Last.statistics.complete);
   return true;
 }
 
-bool FramePainter::renderTogether(const Frame& scene, const Viewport& viewport,
-                                  const Surroundings& around, int reduction,
+/// What is around as a picture with 1/reduction of the viewport's width and height meets it,
+/// wherever in the group it was seen.
+Surroundings FramePainter::reduced(const Surroundings& around, const Viewport& viewport,
+                                   int reduction) const
+{
+  const int width = (viewport.width + reduction - 1) / reduction;
+  const int height = (viewport.height + reduction - 1) / reduction;
+  Surroundings here;
+  this->Group.together([&] { here = around.in(viewport, width, height); });
+  here.layers = ShareLayers(this->Group, here.layers, static_cast<std::size_t>(width) * height);
+  return here;
+}
+
+bool FramePainter::renderTogether(const Frame& scene, const Surroundings& around, int reduction,
                                   Clock::time_point deadline, vtkRenderWindow* window)
 {
   bool done = false;
   this->Group.together(
-      [&] { done = this->render(scene, viewport, around, reduction, Unless(window, deadline)); });
+      [&] { done = this->render(scene, around, reduction, Unless(window, deadline)); });
   return this->Group.all(done);
 }
 
-bool FramePainter::blend(vtkRenderer* renderer, const Viewport& viewport)
+bool FramePainter::blend(vtkRenderer* renderer, const Surroundings& around)
 {
+  const Viewport viewport = GetViewport(renderer);
   if (this->Group.isAlone()) {
     return this->Blender.blend(renderer, viewport, this->Last.rgba);
   }
-  const Image picture = this->Group.whole(this->Last.rgba);
+  Image picture = this->Group.whole(this->Last.rgba);
+  LimitLight(picture, around, this->Group, renderer, viewport);
   const bool done = !this->Group.draws() || this->Blender.blend(renderer, viewport, picture);
   return this->Group.all(done);
 }
@@ -315,27 +260,22 @@ FramePainter::Clock::time_point FramePainter::deadline(double rate, int reductio
                : Clock::now() + std::chrono::duration_cast<Clock::duration>(seconds);
 }
 
-/// Renders with 1/reduction of the viewport's width and height; false, and there is no picture,
-/// when it was stopped.
-bool FramePainter::render(const Frame& scene, const Viewport& viewport, const Surroundings& around,
-                          int reduction, const std::function<bool()>& keepGoing)
+/// Renders among what is `around` the picture's pixels; false, and there is no picture, when it was
+/// stopped.
+bool FramePainter::render(const Frame& scene, const Surroundings& around, int reduction,
+                          const std::function<bool()>& keepGoing)
 {
   Frame frame = scene;
-  frame.width = (viewport.width + reduction - 1) / reduction;
-  frame.height = (viewport.height + reduction - 1) / reduction;
-  const bool reducesDepth = reduction > 1 && !around.depth.empty();
-  std::vector<float> own;
-  if (reducesDepth) {
-    own = ReduceDepth(around.depth, viewport, frame.width, frame.height);
-  } else if (!this->Group.isAlone()) {
-    own = around.depth;
+  frame.width = around.width;
+  frame.height = around.height;
+  std::vector<float> band;
+  if (!this->Group.isAlone()) {
+    band = around.depth;
+    this->Group.leaveToOthers(RowsOf(frame, this->CasterModel->volume.dims), frame, band);
   }
-  this->Group.leaveToOthers(RowsOf(frame, this->CasterModel->volume.dims), frame, own);
-  const std::vector<float>& depth = own.empty() ? around.depth : own;
+  const std::vector<float>& depth = band.empty() ? around.depth : band;
   frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
-  frame.layers = reduction > 1 && around.layers
-                     ? ReduceLayers(*around.layers, viewport, frame.width, frame.height)
-                     : around.layers;
+  frame.layers = around.layers;
   if (this->showAgain(frame)) {
     return true;
   }

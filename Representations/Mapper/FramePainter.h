@@ -7,8 +7,11 @@
 #include "FrameBuilder.h"
 #include "ImageBlender.h"
 #include "ImageReduction.h"
+#include "PaintSettings.h"
 #include "PictureGroup.h"
+#include "PictureKey.h"
 #include "RefinementTimer.h"
+#include "Surroundings.h"
 #include "TransferFunctionBuilder.h"
 #include "TranslucentPeeler.h"
 
@@ -19,7 +22,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 class vtkINRDataArray;
 class vtkRenderWindow;
@@ -29,32 +31,6 @@ class vtkVolumeMapper;
 class vtkWindow;
 
 namespace inr {
-
-/// What a mapper is asked to draw; `array` is null, and `problem` says why, when it is no INR.
-struct MapperInput
-{
-  PresentedGrid grid;
-  vtkINRDataArray* array = nullptr;
-  std::string problem;
-};
-MapperInput FindInput(vtkVolumeMapper* mapper);
-
-/// The mapper's own properties.
-struct PaintSettings
-{
-  RenderMode mode = RenderMode::RayMarching;
-  PathOptions paths;
-  int samplesPerPixel = 64;
-  double sampleDistance = 0.5; ///< voxels; interactive pictures have twice that
-  bool adaptiveSampling = true;
-  double levelOfDetailScale = 1;
-  std::optional<double> errorTolerance;
-  bool countSamples = false;  ///< into PaintedFrame::samples
-  double stillTimeLimit = -1; ///< seconds; below 0: see vtkINRVolumeMapper
-  std::uint64_t seed = 0;
-  RendererOptions renderer;
-  PictureGroup group; ///< with whom to draw, see there
-};
 
 /// The last picture made and what it took; without pixels when nothing was drawn.
 struct PaintedFrame
@@ -68,24 +44,6 @@ struct PaintedFrame
   int reduction = 0;   ///< viewport size / image size
   bool depthRead = false;
   bool converged = false; ///< shown, and complete
-};
-
-/// What a picture depends on beyond its renderer, to tell whether the next one is the same.
-class PictureKey
-{
-public:
-  /// `colors`: Renderer::majorantBuilds(), which rises whenever they change.
-  PictureKey(const Frame& frame, bool countsSamples, std::int64_t colors);
-  PictureKey(const PictureKey&) = delete;
-  PictureKey& operator=(const PictureKey&) = delete;
-
-  bool matches(const Frame& frame, bool countsSamples, std::int64_t colors) const;
-
-private:
-  std::vector<float> OpaqueDepth;
-  Frame Picture; ///< with its depth there
-  bool CountsSamples;
-  std::int64_t Colors;
 };
 
 /// Turns VTK's scene into a Frame, has it rendered and blends the picture into the window. A
@@ -129,20 +87,13 @@ private:
     return mode == RenderMode::PathTracing ? this->Paths : this->Rays;
   }
   Clock::time_point deadline(double rate, int reduction) const;
-  /// The scene's other things, as the window's pixels have them.
-  struct Surroundings
-  {
-    std::vector<float> depth; ///< of what is opaque; empty when nothing is
-    std::shared_ptr<const TranslucentLayers> layers;
-  };
-  /// Layers only where `meetsLayers`.
-  Surroundings surroundings(vtkRenderer* renderer, const Viewport& viewport, bool meetsLayers);
-  bool render(const Frame& scene, const Viewport& viewport, const Surroundings& around,
-              int reduction, const std::function<bool()>& keepGoing);
+  Surroundings reduced(const Surroundings& around, const Viewport& viewport, int reduction) const;
+  bool render(const Frame& scene, const Surroundings& around, int reduction,
+              const std::function<bool()>& keepGoing);
   /// The same of all processes, each with its part.
-  bool renderTogether(const Frame& scene, const Viewport& viewport, const Surroundings& around,
-                      int reduction, Clock::time_point deadline, vtkRenderWindow* window);
-  bool blend(vtkRenderer* renderer, const Viewport& viewport);
+  bool renderTogether(const Frame& scene, const Surroundings& around, int reduction,
+                      Clock::time_point deadline, vtkRenderWindow* window);
+  bool blend(vtkRenderer* renderer, const Surroundings& around);
   /// Shows the picture of the call before if that is the one `frame` asks for.
   bool showAgain(const Frame& frame);
   double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;

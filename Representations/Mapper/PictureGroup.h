@@ -30,12 +30,17 @@ class PictureGroup
 {
 public:
   PictureGroup() = default;
-  /// Process `drawer` gets the picture.
-  PictureGroup(vtkMultiProcessController* controller, int drawer);
+  /// `order`: of the processes as their windows are composed, the first one on top. That one gets
+  /// the picture.
+  PictureGroup(vtkMultiProcessController* controller, std::vector<int> order);
 
   bool isAlone() const { return this->Controller == nullptr; }
   /// Whether this process gets the picture.
   bool draws() const;
+  const std::vector<int>& order() const { return this->Order; }
+  /// How many they are, and which one this is.
+  int processes() const;
+  int process() const;
 
   /// Whether all say so.
   bool all(bool said) const;
@@ -47,18 +52,27 @@ public:
   /// Error(Cancelled), in all of them.
   void together(const std::function<void()>& step) const;
 
+  enum class Reduction { Least, Sum };
+  /// Makes each of `values`, as many in all processes, the least or the sum of theirs.
+  void reduce(std::vector<float>& values, Reduction how) const;
   /// Makes window depths, as many in all processes or empty for none, the nearest of all of them.
   void share(std::vector<float>& depth, std::size_t pixels) const;
   /// Puts something at the eye wherever rays are others' to cast: all rows but this process' part
   /// of `seen`. An empty `depth` is one of nothing.
   void leaveToOthers(const Rows& seen, const Frame& frame, std::vector<float>& depth) const;
-  /// What process `drawer` gets: its own picture and the bands of the others. Nobody else's is
-  /// of use.
+  /// What the process that draws gets: its own picture and the bands of the others. Nobody else's
+  /// is of use.
   Image whole(const Image& band) const;
+  /// Makes `numbers` those of the process that draws.
+  void tellAll(std::vector<int>& numbers) const;
+  /// What the process that draws gets: the bytes of all, as many each, by process.
+  std::vector<unsigned char> gather(const std::vector<unsigned char>& own) const;
 
 private:
+  int drawer() const { return this->Order.front(); }
+
   vtkMultiProcessController* Controller = nullptr;
-  int Drawer = 0;
+  std::vector<int> Order{0};
 };
 
 } // namespace inr

@@ -307,12 +307,8 @@ ReduceLayers(const TranslucentLayers& layers, const Viewport& viewport, int widt
     Layer reduced;
     reduced.depth = ReduceDepth(layer.depth, viewport, width, height);
     reduced.colors.reserve(reduced.depth.size());
-    for (int y = 0; y < height; ++y) {
-      const auto row = static_cast<std::size_t>((y + 0.5) * viewport.height / height);
-      for (int x = 0; x < width; ++x) {
-        const auto column = static_cast<std::size_t>((x + 0.5) * viewport.width / width);
-        reduced.colors.push_back(layer.colors[row * viewport.width + column]);
-      }
+    for (std::size_t pixel = 0; pixel < reduced.depth.size(); ++pixel) {
+      reduced.colors.push_back(layer.colors[PixelUnder(pixel, width, height, viewport)]);
     }
     result->layers.push_back(std::move(reduced));
   }

@@ -7,6 +7,7 @@
 #include "DeferredDrawing.h"
 #include "DrawingOrder.h"
 #include "FramePainter.h"
+#include "MapperInput.h"
 
 #include <vtkHardwareSelector.h>
 #include <vtkImageData.h>
@@ -120,9 +121,9 @@ void vtkINRVolumeMapper::SetController(vtkMultiProcessController* controller)
 bool vtkINRVolumeMapper::GetDrawsTogether()
 {
   const int blend = this->GetBlendMode();
-  const bool projects = blend != COMPOSITE_BLEND && blend != ISOSURFACE_BLEND;
+  const bool hasPieces = blend == COMPOSITE_BLEND && this->RenderMode == RAY_MARCHING;
   vtkMultiProcessController* controller = this->Self->Controller;
-  return (projects || this->AlwaysTogether) && this->RenderMode == RAY_MARCHING && controller &&
+  return (!hasPieces || this->AlwaysTogether) && controller &&
          controller->GetNumberOfProcesses() > 1;
 }
 
@@ -291,6 +292,19 @@ void vtkINRVolumeMapper::GetWholeBounds(double bounds[6])
   whole->GetBounds(bounds);
 }
 
+void vtkINRVolumeMapper::GetPartOfWhole(double part[6])
+{
+  const inr::MapperInput input = inr::FindInput(this);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = input.array ? input.grid.presented[axis] - 1 : 0;
+    for (int end = 0; end < 2; ++end) {
+      part[2 * axis + end] =
+          last > 0 ? static_cast<double>(input.grid.image->GetExtent()[2 * axis + end]) / last
+                   : end;
+    }
+  }
+}
+
 bool vtkINRVolumeMapper::GetHasPiece()
 {
   const inr::MapperInput input = inr::FindInput(this);
@@ -347,8 +361,8 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   try {
     inr::PaintSettings settings = this->Settings();
     settings.renderer.accelerator = this->WantedAccelerator();
-    if (this->GetDrawsTogether() && this->DrawingProcess >= 0) {
-      settings.group = inr::PictureGroup(this->Self->Controller, this->DrawingProcess);
+    if (this->GetDrawsTogether() && !this->DrawingOrder.empty()) {
+      settings.group = inr::PictureGroup(this->Self->Controller, this->DrawingOrder);
     }
     problem = this->Self->Painter.paint(this, renderer, volume, settings);
   } catch (const std::bad_alloc&) {
@@ -416,7 +430,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RenderMode: " << this->RenderMode << "\n"
      << indent << "Backend: " << this->Backend << "\n"
      << indent << "LocalRank: " << this->LocalRank << "\n"
-     << indent << "DrawingProcess: " << this->DrawingProcess << "\n"
+     << indent << "DrawingOrder: " << this->DrawingOrder.size() << " processes\n"
      << indent << "AlwaysTogether: " << this->AlwaysTogether << "\n"
      << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n"
      << indent << "ScatteringAlbedo: " << this->ScatteringAlbedo << "\n"

@@ -51,7 +51,7 @@
  * ScatteringAlbedo of the light. The picture is the mean of SamplesPerPixel paths through each
  * pixel. Its alpha is the opacity along the pixel's ray up to the nearest opaque geometry, which
  * hides what is behind it but throws no shadow. A process that has a piece of the grid lights that
- * piece alone.
+ * piece alone, unless SetController() says who has the others.
  */
 #ifndef vtkINRVolumeMapper_h
 #define vtkINRVolumeMapper_h
@@ -63,6 +63,7 @@
 
 #include <memory> // for std::unique_ptr
 #include <string> // for FindAccelerator
+#include <vector> // for DrawingOrder
 
 class vtkMultiProcessController;
 
@@ -116,21 +117,23 @@ public:
   ///@{
   /**
    * Processes that each have a piece of one grid and a window of the same size. What they draw is
-   * blended window by window, from the furthest piece to the nearest; as values that are projected
-   * are no such pictures, of these each process casts the rays of a band of rows, all through the
-   * whole volume and up to what is opaque in any of the windows, and they come together in the
-   * window of `DrawingProcess`, which has to be the one that lies over the others. All processes
-   * must draw the same volumes with the same settings at the same time; they wait for each other.
-   * A process that cannot draw its band says why, and nothing is drawn. Null or a negative process,
-   * the default: projections of a piece are refused.
+   * blended window by window, from the furthest piece to the nearest: composite blending, by rays.
+   * Values that are projected and paths, which leave a piece for others, are no such pictures, and
+   * isosurfaces would tear where pieces meet: of these each process draws a band of rows, of the
+   * whole volume and among the surfaces of all the windows, and the bands come together in the
+   * window that lies over the others, of the first process in the order of drawing. Light that
+   * would be more than white over a surface is limited: 8 bits overflow where windows are composed.
+   * All processes must draw the same volumes with the same settings at the same time; they wait for
+   * each other. A process that cannot draw its band says why, and nothing is drawn. Null or an
+   * empty order, the default: projections of a piece are refused.
    */
   void SetController(vtkMultiProcessController* controller);
-  void SetDrawingProcess(int process) { this->DrawingProcess = process; }
+  void SetDrawingOrder(const std::vector<int>& processes) { this->DrawingOrder = processes; }
   ///@}
   /**
-   * Whether such processes cast rays through the whole volume, each a band of rows, whatever is
-   * blended: pieces of several volumes in different places have no order in which the windows could
-   * be. Translucent surfaces are under the volumes then. Default off.
+   * Whether such processes draw bands of rows whatever is blended: pieces of several volumes in
+   * different places, or of one whose axes are not the world's, have no order in which the windows
+   * could be, and lights may make pieces too bright to be composed. Default off.
    */
   void SetAlwaysTogether(bool on) { this->AlwaysTogether = on; }
   /** Whether they do so, and there is more than one such process. */
@@ -451,6 +454,8 @@ public:
 
   /** Point bounds of the whole grid that the input has a piece of; left as they are without one. */
   void GetWholeBounds(double bounds[6]);
+  /** Where in the whole grid the input's piece begins and ends along each of its axes, 0 to 1. */
+  void GetPartOfWhole(double part[6]);
   /** Whether the input is a piece of a grid that other processes have the rest of. */
   bool GetHasPiece();
 
@@ -479,7 +484,7 @@ private:
   int RenderMode = RAY_MARCHING;
   int Backend = AUTO;
   int LocalRank = 0;
-  int DrawingProcess = -1;
+  std::vector<int> DrawingOrder;
   bool AlwaysTogether = false;
   int SamplesPerPixel = 64;
   double ScatteringAlbedo = 1.0;

@@ -5,13 +5,21 @@
 #include "vtkCommunicator.h"
 #include "vtkINRLODVolume.h"
 #include "vtkIceTCompositePass.h"
+#include "vtkImageData.h"
 #include "vtkImageProcessingPass.h"
+#include "vtkLight.h"
+#include "vtkLightCollection.h"
+#include "vtkMatrix3x3.h"
+#include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkOrderedCompositingHelper.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeCollection.h"
+#include "vtkVolumeProperty.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace inr {
@@ -50,19 +58,19 @@ void DrawEverywhere(vtkRenderer* renderer)
   }
 }
 
-int FrontProcess(vtkRenderer* renderer)
+std::vector<int> DrawingOrder(vtkRenderer* renderer)
 {
   vtkIceTCompositePass* pass = CompositePassOf(renderer);
   if (!pass || !pass->GetUseOrderedCompositing() || !pass->GetOrderedCompositingHelper() ||
       !pass->GetRenderEmptyImages() || !IsOnePicture(pass)) {
-    return -1;
+    return {};
   }
   const std::vector<int> order =
       pass->GetOrderedCompositingHelper()->ComputeSortOrder(renderer->GetActiveCamera());
   vtkMultiProcessController* processes = pass->GetController();
   const bool isOfAll =
       processes && static_cast<int>(order.size()) == processes->GetNumberOfProcesses();
-  return isOfAll ? order.front() : -1;
+  return isOfAll ? order : std::vector<int>();
 }
 
 std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer)
@@ -72,11 +80,48 @@ std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer)
   vtkVolumeCollection* volumes = renderer->GetVolumes();
   volumes->InitTraversal(place);
   while (vtkVolume* volume = volumes->GetNextVolume(place)) {
-    if (volume->GetVisibility() != 0 && vtkINRLODVolume::SafeDownCast(volume)) {
+    const bool hasSize = std::abs(volume->GetMatrix()->Determinant()) > 0; // nor is it no number
+    if (volume->GetVisibility() != 0 && hasSize && vtkINRLODVolume::SafeDownCast(volume)) {
       shown.push_back(volume);
     }
   }
   return shown;
+}
+
+bool IsTurned(vtkImageData* image, vtkMatrix4x4* matrix)
+{
+  constexpr double most = 1e-6; // of the volume's size, which no pixel shows
+  for (int axis = 0; image && axis < 3; ++axis) {
+    double way[4] = {};
+    for (int row = 0; row < 3; ++row) {
+      way[row] = image->GetDirectionMatrix()->GetElement(row, axis);
+    }
+    matrix->MultiplyPoint(way, way);
+    const double longest = std::max({std::abs(way[0]), std::abs(way[1]), std::abs(way[2])});
+    if (std::abs(way[0]) + std::abs(way[1]) + std::abs(way[2]) > (1 + most) * longest) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool MayOutshineWhite(vtkVolumeProperty* property, vtkRenderer* renderer)
+{
+  if (!property->GetShade()) {
+    return false;
+  }
+  const double perLight = property->GetDiffuse() + property->GetSpecular();
+  double sum = property->GetAmbient();
+  vtkCollectionSimpleIterator place;
+  vtkLightCollection* lights = renderer->GetLights();
+  lights->InitTraversal(place);
+  while (vtkLight* light = lights->GetNextLight(place)) {
+    const double* color = light->GetDiffuseColor();
+    const bool fades = !light->GetPositional() || light->GetAttenuationValues()[0] >= 1;
+    const double most = fades ? light->GetIntensity() : HUGE_VAL;
+    sum += light->GetSwitch() ? perLight * most * *std::max_element(color, color + 3) : 0.0;
+  }
+  return !(sum <= 1.0);
 }
 
 bool AllHave(vtkMultiProcessController* processes, bool something)

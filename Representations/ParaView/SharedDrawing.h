@@ -3,9 +3,12 @@
 
 #include <vector>
 
+class vtkImageData;
+class vtkMatrix4x4;
 class vtkMultiProcessController;
 class vtkRenderer;
 class vtkVolume;
+class vtkVolumeProperty;
 
 namespace inr {
 
@@ -13,12 +16,21 @@ namespace inr {
 /// pictures or not: where they wait for each other, none may stay away. Call before each picture.
 void DrawEverywhere(vtkRenderer* renderer);
 
-/// Which of the processes whose pictures are being composed in order of depth is the one whose lies
-/// over the others; negative where none are, or not as one picture. They need not ask each other.
-int FrontProcess(vtkRenderer* renderer);
+/// The processes whose pictures are being composed in order of depth, that first whose lies over
+/// the others; empty where none are, or not as one picture. They need not ask each other.
+std::vector<int> DrawingOrder(vtkRenderer* renderer);
 
-/// The INR volumes that `renderer` shows, in the same order in all processes.
+/// The INR volumes that `renderer` shows, in the same order in all processes; those that a scale of
+/// zero makes flat are not seen.
 std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer);
+
+/// Whether the axes of an image in a volume with that matrix are not the world's, so that boxes
+/// along these around its pieces meet. Not of no image.
+bool IsTurned(vtkImageData* image, vtkMatrix4x4* matrix);
+
+/// Whether lights may make a volume brighter than it is opaque: processes' pictures are composed in
+/// 8 bits, which overflow then where pieces lie behind each other.
+bool MayOutshineWhite(vtkVolumeProperty* property, vtkRenderer* renderer);
 
 /// Whether each of the processes has something to draw. All of them must ask, outside of drawing:
 /// there one without anything does not know its turn among several volumes.

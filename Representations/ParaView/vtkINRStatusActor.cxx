@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRStatusActor.h"
 
+#include "FrameStatus.h"
+#include "SharedDrawing.h"
 #include "vtkINRVolumeMapper.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPropCollection.h"
+#include "vtkRenderer.h"
 #include "vtkTextProperty.h"
 #include "vtkViewport.h"
 
 #include <cmath>
+#include <cstdint>
 #include <iomanip>
 #include <locale>
 #include <sstream>
+#include <vector>
 
 vtkStandardNewMacro(vtkINRStatusActor);
 
@@ -18,28 +24,27 @@ namespace {
 
 constexpr double Margin = 8; // pixels
 
-std::string LevelsOf(const vtkINRVolumeMapper* mapper)
+std::string LevelsOf(const inr::FrameStatus& status)
 {
-  const int finest = mapper->GetFinestLevel();
-  const int coarsest = mapper->GetCoarsestLevel();
-  if (finest < 0) {
-    return mapper->GetNumberOfSamples() == 0 ? "nothing visible" : "straight from the network";
+  if (status.finest < 0) {
+    return status.samples > 0 ? "straight from the network" : "nothing visible";
   }
-  const std::string first = std::to_string(finest);
-  return finest == coarsest ? "level " + first
-                            : "levels " + first + " to " + std::to_string(coarsest);
+  const std::string first = std::to_string(status.finest);
+  return status.finest == status.coarsest
+             ? "level " + first
+             : "levels " + first + " to " + std::to_string(status.coarsest);
 }
 
-std::string ProgressOf(vtkINRVolumeMapper* mapper)
+std::string ProgressOf(const inr::FrameStatus& status, vtkINRVolumeMapper* mapper)
 {
   // Rounded down: 100 % means all.
-  const int percent = static_cast<int>(std::floor(100 * mapper->GetCacheHitRate()));
+  const int percent = static_cast<int>(std::floor(100 * status.hitRate));
   std::string text = std::to_string(percent) + " % there";
   if (mapper->GetRenderMode() == vtkINRVolumeMapper::PATH_TRACING) {
-    text += ", " + std::to_string(mapper->GetNumberOfPaths()) + " of " +
+    text += ", " + std::to_string(static_cast<std::int64_t>(status.paths)) + " of " +
             std::to_string(mapper->GetSamplesPerPixel()) + " paths";
   }
-  return text + (mapper->GetConverged() ? "" : " ...");
+  return text + (status.converged ? "" : " ...");
 }
 
 } // namespace
@@ -59,17 +64,48 @@ vtkINRStatusActor::vtkINRStatusActor()
 std::string vtkINRStatusActor::GetText()
 {
   vtkINRVolumeMapper* mapper = this->StatusMapper;
-  if (!mapper || mapper->GetImageReduction() == 0) {
+  return mapper ? this->TextOf(inr::StatusOf(mapper)) : std::string();
+}
+
+std::string vtkINRStatusActor::TextOf(const inr::FrameStatus& status)
+{
+  vtkINRVolumeMapper* mapper = this->StatusMapper;
+  if (!status.drawn) {
     return {};
   }
   const char* array = mapper->GetArrayName();
   std::ostringstream text;
   text.imbue(std::locale::classic());
-  text << std::fixed << (array && *array ? array : "volume") << ": " << LevelsOf(mapper) << ", "
-       << ProgressOf(mapper) << "\n";
-  text << "cache " << std::setprecision(0) << mapper->GetCacheUsed() << " MiB, "
-       << mapper->GetBackendInUse() << ", " << 1000 * mapper->GetFrameTime() << " ms";
+  text << std::fixed << (array && *array ? array : "volume") << ": " << LevelsOf(status) << ", "
+       << ProgressOf(status, mapper) << "\n";
+  text << "cache " << std::setprecision(0) << status.cacheMiB << " MiB, ";
+  if (status.processes > 1) {
+    text << status.processes << " x ";
+  }
+  text << mapper->GetBackendInUse() << ", " << 1000 * status.seconds << " ms";
   return text.str();
+}
+
+std::string vtkINRStatusActor::TextIn(vtkViewport* viewport)
+{
+  if (!this->Processes) {
+    return this->GetText();
+  }
+  vtkRenderer* renderer = vtkRenderer::SafeDownCast(viewport);
+  const std::vector<int> order = renderer ? inr::DrawingOrder(renderer) : std::vector<int>();
+  if (order.empty() || !this->StatusMapper) { // in all processes alike
+    return {};
+  }
+  const inr::FrameStatus status =
+      inr::StatusOfAll(inr::StatusOf(this->StatusMapper), this->Processes);
+  return order.front() == this->Processes->GetLocalProcessId() ? this->TextOf(status)
+                                                               : std::string();
+}
+
+double* vtkINRStatusActor::GetBounds()
+{
+  // Of a process' picture only that part is composed which these are seen in.
+  return this->Processes ? this->Everywhere : this->Superclass::GetBounds();
 }
 
 double vtkINRStatusActor::TopIn(vtkViewport* viewport)
@@ -92,7 +128,7 @@ double vtkINRStatusActor::TopIn(vtkViewport* viewport)
 
 int vtkINRStatusActor::RenderOverlay(vtkViewport* viewport)
 {
-  const std::string text = this->GetText();
+  const std::string text = this->TextIn(viewport);
   this->Height = 0;
   if (text.empty()) {
     return 0;

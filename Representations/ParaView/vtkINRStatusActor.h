@@ -5,7 +5,8 @@
  *
  * Asks vtkINRVolumeMapper when the picture is drawn, so that the text is about the same frame. The
  * texts of several volumes in a renderer stand below each other, in the order in which they were
- * added.
+ * added. Where several processes draw, the text is about all of them, and in the picture of the one
+ * that lies over the others'.
  */
 #ifndef vtkINRStatusActor_h
 #define vtkINRStatusActor_h
@@ -16,6 +17,11 @@
 #include <string> // for return value
 
 class vtkINRVolumeMapper;
+class vtkMultiProcessController;
+
+namespace inr {
+struct FrameStatus;
+}
 
 class VTKINRREPRESENTATIONS_EXPORT vtkINRStatusActor : public vtkTextActor
 {
@@ -27,12 +33,18 @@ public:
   /// Whose picture it is about; it must outlive this.
   void SetVolumeMapper(vtkINRVolumeMapper* mapper) { this->StatusMapper = mapper; }
 
-  /// Two lines on the mapper's latest picture; empty when it has drawn none.
+  /// Those that draw a part each, and then must draw this at the same time; null when one draws it
+  /// all. Of several, the bounds are everywhere, as ParaView composes what lies within them.
+  void SetProcesses(vtkMultiProcessController* processes) { this->Processes = processes; }
+
+  /// Two lines on the mapper's latest picture in this process; empty when it has drawn none.
   std::string GetText();
 
   /// Nothing: the picture comes later in the frame.
   int RenderOpaqueGeometry(vtkViewport*) override { return 0; }
   int RenderOverlay(vtkViewport* viewport) override;
+  double* GetBounds() VTK_SIZEHINT(6) override;
+  using vtkTextActor::GetBounds;
 
 protected:
   vtkINRStatusActor();
@@ -42,9 +54,13 @@ private:
   vtkINRStatusActor(const vtkINRStatusActor&) = delete;
   void operator=(const vtkINRStatusActor&) = delete;
 
+  std::string TextOf(const inr::FrameStatus& status);
+  std::string TextIn(vtkViewport* viewport);
   double TopIn(vtkViewport* viewport);
 
   vtkINRVolumeMapper* StatusMapper = nullptr;
+  vtkMultiProcessController* Processes = nullptr;
+  double Everywhere[6] = {-1e30, 1e30, -1e30, 1e30, -1e30, 1e30};
   double Height = 0; ///< pixels, of the latest text
 };
 

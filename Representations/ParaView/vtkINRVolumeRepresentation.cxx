@@ -104,8 +104,12 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
                                                                     : this->SharedThreads);
     this->UpdateMapper();
     vtkRenderer* renderer = vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer();
-    this->GetMapper()->SetAlwaysTogether(inr::ShownVolumes(renderer).size() > 1);
-    if (this->GetMapper()->GetDrawsTogether()) {
+    this->GetMapper()->SetAlwaysTogether(inr::ShownVolumes(renderer).size() > 1 ||
+                                         this->IsTurned() ||
+                                         inr::MayOutshineWhite(this->Property, renderer));
+    this->Status->SetProcesses(this->Others);
+    const bool sharesStatus = this->Others && this->Status->GetVisibility();
+    if (sharesStatus || this->GetMapper()->GetDrawsTogether()) {
       inr::DrawEverywhere(renderer);
     }
     this->ReportColouring();
@@ -123,7 +127,10 @@ void vtkINRVolumeRepresentation::FindOthers()
   vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
   vtkDataSet* data = this->VolumeMapper->GetDataSetInput();
   const bool hasSome = data && data->GetNumberOfPoints() > 0;
-  this->GetMapper()->SetController(inr::AllHave(controller, hasSome) ? controller : nullptr);
+  const bool haveAll = inr::AllHave(controller, hasSome);
+  const bool several = controller && controller->GetNumberOfProcesses() > 1;
+  this->Others = haveAll && several ? controller : nullptr;
+  this->GetMapper()->SetController(this->Others);
 }
 
 void vtkINRVolumeRepresentation::ForgetOutlines()
@@ -177,6 +184,13 @@ void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out
   out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
 }
 
+/** Whether boxes around the volume's pieces meet. */
+bool vtkINRVolumeRepresentation::IsTurned()
+{
+  return inr::IsTurned(vtkImageData::SafeDownCast(this->VolumeMapper->GetDataSetInput()),
+                       this->Actor->GetMatrix());
+}
+
 /** Whether the volume has another place in the world than when this was asked last, in all
     processes alike; PlacedBounds are those there. */
 bool vtkINRVolumeRepresentation::UpdatePlace()
@@ -184,18 +198,37 @@ bool vtkINRVolumeRepresentation::UpdatePlace()
   const double* matrix = this->Actor->GetMatrix()->GetData();
   const bool moved = !std::equal(matrix, matrix + 16, this->Place);
   std::copy_n(matrix, 16, this->Place);
-  std::copy_n(this->DataBounds, 6, this->PlacedBounds);
-  if (vtkBoundingBox(this->DataBounds).IsValid()) {
-    vtkBoundingBox box;
-    for (int corner = 0; corner < 8; ++corner) {
-      double at[4] = {this->DataBounds[corner & 1], this->DataBounds[2 + (corner >> 1 & 1)],
-                      this->DataBounds[4 + (corner >> 2)], 1};
-      this->Actor->GetMatrix()->MultiplyPoint(at, at);
-      box.AddPoint(at);
-    }
-    box.GetBounds(this->PlacedBounds);
+  if (!this->IsTurned()) {
+    this->Placed(this->DataBounds).GetBounds(this->PlacedBounds);
+    return moved;
+  }
+  // Boxes around turned pieces would meet, and surfaces would be nobody's between them. As all
+  // processes draw such a volume together, what each has may be any part of the box around it.
+  double whole[6];
+  std::copy_n(this->DataBounds, 6, whole);
+  this->GetMapper()->GetWholeBounds(whole);
+  this->Placed(whole).GetBounds(whole);
+  double part[6];
+  this->GetMapper()->GetPartOfWhole(part);
+  for (int k = 0; k < 6; ++k) {
+    const double low = whole[k / 2 * 2];
+    const double high = whole[k / 2 * 2 + 1];
+    this->PlacedBounds[k] = (1 - part[k]) * low + part[k] * high;
   }
   return moved;
+}
+
+/** The box in the world around one of the volume. */
+vtkBoundingBox vtkINRVolumeRepresentation::Placed(const double bounds[6])
+{
+  vtkBoundingBox box;
+  for (int corner = 0; vtkBoundingBox(bounds).IsValid() && corner < 8; ++corner) {
+    double at[4] = {bounds[corner & 1], bounds[2 + (corner >> 1 & 1)], bounds[4 + (corner >> 2)],
+                    1};
+    this->Actor->GetMatrix()->MultiplyPoint(at, at);
+    box.AddPoint(at);
+  }
+  return box;
 }
 
 void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)

@@ -20,8 +20,10 @@
 #include <memory> // for Client
 #include <string> // for LastProblem
 
+class vtkBoundingBox;
 class vtkINRStatusActor;
 class vtkINRVolumeMapper;
+class vtkMultiProcessController;
 class vtkPolyData;
 
 namespace inr {
@@ -98,6 +100,8 @@ private:
   void ForgetOutlines();
   void Deliver(vtkInformation* in, vtkInformation* out);
   bool UpdatePlace();
+  bool IsTurned();
+  vtkBoundingBox Placed(const double bounds[6]);
   void TakeDelivery(vtkInformation* in);
   void ReportShared(bool drawsAll);
   void UpdateMapper();
@@ -115,6 +119,7 @@ private:
   int OutlinePort = 1;         ///< of what is delivered; the model has 0
   int BoundsPort = 2;          ///< the same, with the bounds that the view sorts by
   std::string LastProblem;
+  vtkMultiProcessController* Others = nullptr; ///< processes that draw a part each, if several do
   vtkNew<vtkINRStatusActor> Status;
   bool ShowStatus = false;
   bool SharedReported = false;

@@ -123,6 +123,13 @@ for size in ([1, 1], [1, 150], [200, 1], [3, 3]):
         view.ViewSize = [200, 150]
         simple.Render(view)
     check(messages.errors() == 0, "a window of", size, "gave", messages.text)
+with Messages() as messages:  # a view that a splitter leaves nothing of
+    for edge in ([0.5, 0.5, 0.5, 0.5], [0, 0, 0, 1], [0, 0, 1, 0]):
+        view.GetRenderer().SetViewport(edge)
+        simple.Render(view)
+        view.SMProxy.InteractiveRender()
+    view.GetRenderer().SetViewport(0, 0, 1, 1)
+check(messages.errors() == 0, "a view without pixels gave", messages.text)
 check(psnr(picture(view, "bad-use-resized"), good) > 50, "small windows leave their mark")
 
 # The file changes while its bricks load.

@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 from paraview import simple
+from similarity import ssim
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
 OUTPUT = os.environ["INR_OUTPUT"]
@@ -79,6 +80,15 @@ def show_ball(view, center, radius):
     return simple.Show(ball, view)
 
 
+def show_balls(view):
+    """Around and in the model, some of each in one process' piece and some in another's; displays."""
+    balls = []
+    for center, radius in (([20, 30, 70], 16), ([45, 45, 20], 12), ([75, 60, 50], 20)):
+        balls.append(show_ball(view, center, radius))
+        balls[-1].DiffuseColor = [0.2, 0.6, 0.9]
+    return balls
+
+
 def connect(*place):
     """To the servers at port `place`, or of data and of rendering at two, with the plugin there, too."""
     simple.Connect(*(item for port in place for item in ("localhost", int(port))))
@@ -123,32 +133,26 @@ def psnr(a, b):
     return -10 * np.log10(max(np.mean((a[seen] - b[seen]) ** 2), 1e-12))
 
 
-def box_mean(image, size=7):
-    sums = np.cumsum(np.cumsum(np.pad(image, ((1, 0), (1, 0), (0, 0))), axis=0), axis=1)
-    total = sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]
-    return total / size**2
-
-
-def ssim(a, b):
-    """Mean structural similarity (Wang et al., IEEE TIP 2004), uniform 7x7 window, range 1."""
-    mean_a, mean_b = box_mean(a), box_mean(b)
-    variance_a = box_mean(a * a) - mean_a**2
-    variance_b = box_mean(b * b) - mean_b**2
-    covariance = box_mean(a * b) - mean_a * mean_b
-    c1, c2 = 0.01**2, 0.03**2
-    return np.mean(
-        (2 * mean_a * mean_b + c1)
-        * (2 * covariance + c2)
-        / ((mean_a**2 + mean_b**2 + c1) * (variance_a + variance_b + c2))
-    )
-
-
 def check(condition, *told):
     if not condition:
         sys.stdout.flush()
         # Not to sys.stderr, which is among the messages while these are collected.
         os.write(2, ("FAILED: " + " ".join(str(item) for item in told) + "\n").encode())
         os._exit(1)  # sys.exit() crashes ParaView 5.11 once it has a window
+
+
+def check_same(found, expected, composed):
+    """What a server has drawn is what this process has, name by name. Those `composed` of pieces, each
+    in 8 bits, may be off by 4 of 255, few of them by more than 2."""
+    for name, image in expected.items():
+        difference = 255 * np.abs(found[name] - image)
+        print(f"{name}: largest {difference.max():.0f} of 255, mean {difference.mean():.3f},",
+              f"{np.sum(difference > 2.5)} above 2")
+    for name, image in expected.items():
+        difference = 255 * np.abs(found[name] - image)
+        few = 1e-3 if name in composed else 0
+        check(difference.max() < (4.5 if few else 2.5), name, "differs")
+        check(np.mean(difference > 2.5) <= few, name, "differs")
 
 
 def check_baseline(image, name, floor=0.95):

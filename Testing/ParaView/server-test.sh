@@ -1,6 +1,7 @@
 #!/bin/bash
-# server-test.sh SCRIPT PVPYTHON PVSERVER PROCESSES [LAUNCHER...]: runs SCRIPT PORT PROCESSES in
-# PVPYTHON while so many of PVSERVER, started by LAUNCHER, listen to PORT.
+# server-test.sh SCRIPT PVPYTHON PVSERVER PROCESSES [LAUNCHER...]: runs
+# SCRIPT PORT PROCESSES LAUNCHER... PVSERVER in PVPYTHON while so many of PVSERVER, started by
+# LAUNCHER, listen to PORT.
 set -u
 source "$(dirname "$0")/../stop.sh"
 script=$1 pvpython=$2 pvserver=$3 processes=$4
@@ -25,7 +26,7 @@ for _ in $(seq 600); do
   kill -0 "$server" 2> /dev/null || break
   sleep 0.1
 done
-timeout --kill-after=10 200 "$pvpython" "$script" "$port" "$processes"
+timeout --kill-after=10 200 "$pvpython" "$script" "$port" "$processes" "$@" "$pvserver"
 status=$?
 [ "$status" -eq 0 ] || cat "$log"
 exit "$status"
