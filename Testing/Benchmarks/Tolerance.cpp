@@ -5,26 +5,33 @@
 //   bench_tolerance MODEL.inr NAME TIMES PIXELS
 //
 // of the volume with TIMES as many voxels along every axis, in pictures of so many PIXELS across,
-// prints one JSON object per line; tolerance.py writes the result file. The reference of all
-// pictures has every sample at the same distance, from voxels of level 0 in float32: a tolerance
-// promises nothing of the distance. (Reference A of bench_tradeoff has four times as many samples.)
-// But for first pictures, everything is decoded before anything is timed.
+// prints one JSON object per line; tolerance.py writes the result file. Reference A of all pictures
+// has every sample at the same distance, from voxels of level 0 in float32: a tolerance promises
+// nothing of the distance. The converged reference A, as in bench_tradeoff, has samples an eighth
+// of a voxel apart; what the distance costs is the exact frame's difference from it. But for first
+// pictures, everything is decoded before anything is timed. What is said of equal times is from
+// frames in turn; see InTurn.h.
 #include "Core/Image/Metrics.h"
 #include "Core/Model/ModelFile.h"
 #include "Testing/Benchmarks/FrameScenes.h"
+#include "Testing/Benchmarks/InTurn.h"
 #include "Testing/Core/Image/PixelDifferences.h"
 
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <optional>
 
 namespace {
 
-constexpr int Frames = 4;
+constexpr int Frames = 2;       ///< for a rough idea of the time
+constexpr int Rounds = 7;       ///< in turn
+constexpr std::size_t Near = 5; ///< rivals that frames are drawn in turn with
+constexpr double ConvergedStep = 0.125;
+constexpr double EqualPictures = 200; ///< dB, that stand for infinity
 
 struct Shown
 {
+  inr::Frame frame;
   inr::Image picture;
   double psnr;
   double samples;
@@ -58,6 +65,27 @@ double PsnrAt(double cost, std::vector<Priced> pictures)
   return cheaper.psnr;
 }
 
+/// Those next to a time, of the ones that none is better than in nine tenths of their time.
+std::vector<const Shown*> Rivals(const std::vector<Shown>& all, double milliseconds)
+{
+  std::vector<const Shown*> rivals;
+  for (const Shown& one : all) {
+    const bool beaten = std::any_of(all.begin(), all.end(), [&](const Shown& other) {
+      return other.psnr >= one.psnr && other.milliseconds < 0.9 * one.milliseconds;
+    });
+    if (!beaten) {
+      rivals.push_back(&one);
+    }
+  }
+  const auto away = [&](const Shown* one) {
+    return std::abs(std::log(one->milliseconds / milliseconds));
+  };
+  std::sort(rivals.begin(), rivals.end(),
+            [&](const Shown* a, const Shown* b) { return away(a) < away(b); });
+  rivals.resize(std::min(rivals.size(), Near));
+  return rivals;
+}
+
 class Scene
 {
 public:
@@ -76,12 +104,15 @@ public:
     frame.errorTolerance = 0;
     reference.render(frame, this->Truth);
     this->Exact = this->show(frame);
+    frame.sampleDistance = ConvergedStep;
+    reference.render(frame, this->Converged);
   }
 
   void compare()
   {
     Report("exact frame, " + this->Name, this->Exact.milliseconds, "ms", "lower");
     Report("samples of the exact frame, " + this->Name, this->Exact.samples, "", "lower");
+    this->reportConverged(this->Exact.picture, ", exact frame, " + this->Name);
     this->reportFirst(0);
     this->reportFirst(1);
     this->reportDistance(1, "default");
@@ -101,15 +132,13 @@ private:
   {
     inr::Image first;
     this->Renderer.render(frame, first);
-    Shown shown{{}, 0, 0, std::numeric_limits<double>::infinity()};
+    Shown shown{frame, {}, 0, 0, std::numeric_limits<double>::infinity()};
+    shown.samples = static_cast<double>(this->Renderer.render(frame, shown.picture).samples);
     for (int k = 0; k < Frames; ++k) {
-      const std::clock_t start = std::clock();
-      const inr::FrameStatistics statistics = this->Renderer.render(frame, shown.picture);
-      const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-      shown.milliseconds = std::min(shown.milliseconds, 1000 * seconds);
-      shown.samples = static_cast<double>(statistics.samples);
+      shown.milliseconds =
+          std::min(shown.milliseconds, 1000 * ProcessorSecondsOf(this->Renderer, frame));
     }
-    shown.psnr = inr::ImagePsnr(shown.picture, this->Truth);
+    shown.psnr = std::min(EqualPictures, inr::ImagePsnr(shown.picture, this->Truth));
     return shown;
   }
 
@@ -120,10 +149,7 @@ private:
     renderer.setTransferFunction(this->Function);
     inr::Frame frame = this->Picture;
     frame.errorTolerance = tolerance;
-    inr::Image picture;
-    const std::clock_t start = std::clock();
-    renderer.render(frame, picture);
-    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const double seconds = ProcessorSecondsOf(renderer, frame);
     std::ostringstream text;
     text << "first picture, tolerance " << tolerance << ", " << this->Name;
     Report(text.str(), 1000 * seconds, "ms", "lower");
@@ -144,6 +170,13 @@ private:
     Report("frame" + where, shown.milliseconds, "ms", "lower");
     Report("samples" + where, shown.samples, "", "lower");
     Report("PSNR" + where, shown.psnr, "dB", "higher");
+    this->reportConverged(shown.picture, where);
+  }
+
+  void reportConverged(const inr::Image& picture, const std::string& where) const
+  {
+    Report("PSNR against the converged reference A" + where,
+           inr::ImagePsnr(picture, this->Converged), "dB", "higher");
   }
 
   void compareAt(double tolerance)
@@ -164,28 +197,54 @@ private:
            "lower");
     Report("frame" + where, shown.milliseconds, "ms", "lower");
     Report("PSNR" + where, shown.psnr, "dB", "higher");
-    this->compareAtEqualCost(shown, where);
+    this->reportConverged(shown.picture, where);
+    const Spread part = SpreadOf(RatiosInTurn(this->Renderer, frame, this->Exact.frame, Rounds));
+    Report("time as part of the exact frame's" + where, part.median, "", "lower",
+           part.json() + this->inTurn());
+    this->compareAtEqualSamples(shown, where);
+    this->compareAtEqualTime(shown, where);
   }
 
-  /// With what distance gives in the same time, and with as many samples.
-  void compareAtEqualCost(const Shown& shown, const std::string& where)
+  void compareAtEqualSamples(const Shown& shown, const std::string& where)
   {
-    const auto report = [&](const std::string& what, const auto& costOf,
-                            const std::string& target) {
-      std::vector<Priced> others;
-      for (const Shown& other : this->ByDistance) {
-        others.push_back({costOf(other), other.psnr});
-      }
-      const double same = PsnrAt(costOf(shown), others);
-      std::ostringstream note;
-      note << ", \"note\": \"by distance: " << same << " dB\"";
-      Report("PSNR gain vs distance LoD" + what + where, shown.psnr - same, "dB", "higher",
-             target + note.str());
-    };
-    report(
-        "", [](const Shown& picture) { return picture.milliseconds; }, Target(3));
-    report(
-        " at equal samples", [](const Shown& picture) { return picture.samples; }, "");
+    std::vector<Priced> others;
+    for (const Shown& other : this->ByDistance) {
+      others.push_back({other.samples, other.psnr});
+    }
+    const double same = PsnrAt(shown.samples, others);
+    std::ostringstream note;
+    note << ", \"note\": \"by distance: " << same << " dB\"";
+    Report("PSNR gain vs distance LoD at equal samples" + where, shown.psnr - same, "dB", "higher",
+           note.str());
+  }
+
+  /// With what distance gives in the same time: by the medians of the times of rivals whose frames
+  /// were drawn in turn with this one's, and, as far as that is sure, by their quartiles.
+  void compareAtEqualTime(const Shown& shown, const std::string& where)
+  {
+    std::vector<Priced> others[3];
+    std::ostringstream rivals;
+    for (const Shown* rival : Rivals(this->ByDistance, shown.milliseconds)) {
+      const Spread time = SpreadOf(RatiosInTurn(this->Renderer, rival->frame, shown.frame, Rounds));
+      others[0].push_back({time.low, rival->psnr});
+      others[1].push_back({time.median, rival->psnr});
+      others[2].push_back({time.high, rival->psnr});
+      rivals << (rivals.str().empty() ? "" : ", ")
+             << "{\"scale\": " << rival->frame.levelOfDetailScale
+             << ", \"adaptive\": " << (rival->frame.adaptiveSampling ? "true" : "false")
+             << ", \"psnr\": " << rival->psnr << ", \"time\": " << time.median << time.json()
+             << "}";
+    }
+    const auto gain = [&](int by) { return shown.psnr - PsnrAt(1.0, others[by]); };
+    const Spread gains{gain(0), gain(1), gain(2)};
+    Report("PSNR gain vs distance LoD" + where, gains.median, "dB", "higher",
+           Target(3) + gains.json() + ", \"rivals\": [" + rivals.str() + "]" + this->inTurn());
+  }
+
+  static std::string inTurn()
+  {
+    return ", \"note\": \"median and quartiles of " + std::to_string(Rounds) +
+           " frames in turn, processor time\"";
   }
 
   std::string Name;
@@ -193,7 +252,8 @@ private:
   inr::TransferFunction Function;
   inr::Renderer Renderer;
   inr::Frame Picture;
-  inr::Image Truth;
+  inr::Image Truth; ///< reference A
+  inr::Image Converged;
   Shown Exact;
   std::vector<Shown> ByDistance; ///< at many scales, with AdaptiveSampling and without
 };

@@ -3,7 +3,8 @@
 // What each setting buys and costs: time of a frame and error of its picture, against
 //
 //   a: the model's own voxels, decoded as float32 and interpolated linearly, by the same marcher:
-//      precision 32 bit, LevelOfDetailScale 0, constant step of an eighth of a voxel;
+//      precision 32 bit, LevelOfDetailScale 0, constant step of an eighth of a voxel (the converged
+//      reference A; that of bench_tolerance has a frame's own step);
 //   b: the network itself at that step, without a cache;
 //   c: the original voxels in place of the model's, likewise.
 //
@@ -15,7 +16,7 @@
 // cache fills (or several of these, with a "+" in between); "paths", path tracing; "model", this
 // model beside the USUAL one; "memory", which part takes how much. VIEW: the volume as a "whole",
 // from "near", where a voxel is several pixels, or as from "far": the whole in a quarter of the
-// pixels.
+// pixels; or, with other colours, as the paper shows its Richtmyer-Meshkov volume ("paper").
 #include "Core/Model/ModelFile.h"
 #include "Testing/Benchmarks/RawVolume.h"
 #include "Testing/Benchmarks/TradeoffBench.h"
@@ -148,10 +149,10 @@ int main(int argc, char* argv[])
 {
   const std::string mode = argc >= 9 ? argv[8] : "";
   const std::string view = argc >= 10 ? argv[9] : "";
-  if (view != "whole" && view != "near" && view != "far") {
-    std::cerr
-        << "usage: bench_tradeoff MODEL.inr NAME VOXELS.raw TYPE NX NY NZ "
-           "volume|memory|knobs|tolerance|grid|loading|paths|model whole|near|far [USUAL.inr]\n";
+  if (view != "whole" && view != "near" && view != "far" && view != "paper") {
+    std::cerr << "usage: bench_tradeoff MODEL.inr NAME VOXELS.raw TYPE NX NY NZ "
+                 "volume|memory|knobs|tolerance|grid|loading|paths|model whole|near|far|paper "
+                 "[USUAL.inr]\n";
     return 2;
   }
   try {

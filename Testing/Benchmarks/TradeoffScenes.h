@@ -34,10 +34,66 @@ struct Scene
   inr::Frame frame; ///< by default settings
 };
 
-/// `view`: "whole", "near" or "far".
+/// Linear between control points.
+inline glm::vec4 ColorAt(float x, const std::vector<std::pair<float, glm::vec3>>& colors,
+                         const std::vector<std::pair<float, float>>& opacities)
+{
+  const auto at = [x](const auto& points) {
+    std::size_t next = 1;
+    while (next + 1 < points.size() && points[next].first < x) {
+      ++next;
+    }
+    const auto& [x0, value0] = points[next - 1];
+    const auto& [x1, value1] = points[next];
+    return value0 + (value1 - value0) * ((x - x0) / (x1 - x0));
+  };
+  return {at(colors), at(opacities)};
+}
+
+/// The view of the Richtmyer-Meshkov volume in the cINR paper's scene files, 4096 x 4096 x 3840
+/// voxels there: the same camera about the middle of a volume that is smaller or another of that
+/// instability, the same colours and opacities over all of its values. Opacities are of a voxel of
+/// theirs.
+inline Scene PaperScene(const inr::VolumeInfo& volume, const std::string& name)
+{
+  Scene scene{name, {}, {}};
+  scene.function.low = volume.low;
+  scene.function.high = volume.high;
+  for (int k = 0; k < 1024; ++k) {
+    scene.function.table.push_back(
+        ColorAt(static_cast<float>(k) / 1023,
+                {{0.0f, {0, 0, 1}}, {0.3f, {0, 1, 1}}, {0.6f, {1, 1, 0}}, {1.0f, {1, 0, 0}}},
+                {{0.0f, 0.0f},
+                 {0.0742f, 0.0f},
+                 {0.2971f, 0.0858f},
+                 {0.495f, 0.0299f},
+                 {0.7525f, 0.1617f},
+                 {0.9212f, 0.0f},
+                 {1.0f, 0.0f}}));
+  }
+  const glm::dvec3 extent(volume.dims);
+  const double scale = extent.x / 4096;
+  const glm::dvec3 theirs(2048, 2048, 1920);
+  const auto ours = [&](const glm::dvec3& place) {
+    return 0.5 * (extent - 1.0) + scale * (place - theirs);
+  };
+  scene.frame.clipToWorld = glm::inverse(
+      glm::perspective(glm::radians(60.0), 1.0, 0.05 * extent.x, 5 * extent.x) *
+      glm::lookAt(ours({1751.41, 5195.08, -271.885}), ours({1935.66, 1963.64, 2628.78}),
+                  glm::dvec3(-0.00590256, -0.668003, -0.743803)));
+  scene.frame.unitDistance = scale;
+  scene.frame.sampleDistance = 0.5;
+  scene.frame.width = scene.frame.height = PictureSize;
+  return scene;
+}
+
+/// `view`: "whole", "near", "far" or "paper".
 inline std::vector<Scene> Scenes(const inr::VolumeInfo& volume, const std::string& name,
                                  const std::string& view)
 {
+  if (view == "paper") {
+    return {PaperScene(volume, name)};
+  }
   std::vector<Scene> scenes;
   for (const Look& look : Looks(volume)) {
     Scene scene{name + " " + look.name, look.function,

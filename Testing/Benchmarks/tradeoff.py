@@ -36,7 +36,8 @@ PARTS = ([(volume, size, "volume", "whole") for volume in VOLUMES for size in SI
             ("rm_mixing", "default", "grid", "whole"), ("les_vorticity", "default", "grid", "whole"),
             ("heptane_fire", "default", "knobs", "whole"),
             ("les_vorticity", "default", "knobs", "whole"),
-            ("rm_mixing", "default", "knobs", "near"), ("rm_mixing", "default", "knobs", "far")]
+            ("rm_mixing", "default", "knobs", "near"), ("rm_mixing", "default", "knobs", "far"),
+            ("rm_mixing", "default", "knobs", "paper"), ("rm_mixing", "default", "tolerance", "paper")]
          + [("les_vorticity", "default", "tolerance", "whole"),
             ("rm_mixing", "default", "tolerance", "far"),
             ("rm_mixing", "default", "tolerance", "whole"),
