@@ -1,9 +1,12 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds everything on Debian 12 and runs every test but those labelled `long`; installs what is
-# missing. Ends with "N passed, N failed"; its status is 0 when nothing failed. What a machine cannot
-# run, like the kernels on a GPU, is skipped, and counts as neither: Testing/run_cuda.sh. The wheel has
-# a test of its own, which wants Debian 13: Testing/Wheel/run.sh.
+# missing. Ends with the names of what failed and "N passed, N failed"; its status is 0 when nothing
+# failed. What a machine cannot run, like the kernels on a GPU, is skipped, and counts as neither:
+# Testing/run_cuda.sh. The wheel has a test of its own, which wants Debian 13: Testing/Wheel/run.sh.
+#
+# Tests of windows and servers wait for other programs, which a busy machine can hold up for longer
+# than they do: those that fail run again by themselves, and the end names those that passed only then.
 #
 #   Testing/run.sh [CTEST-OPTION...]     e.g. Testing/run.sh -L core
 set -uo pipefail
@@ -14,6 +17,8 @@ bash CMake/install-debian-packages.sh test || exit 1
 passed=0
 failed=0
 skipped=0
+failures=() # a line each
+seconds=()  # what passed at the second attempt
 
 # build PRESET: configures and builds; a failure counts as one failed test.
 build() {
@@ -24,25 +29,50 @@ build() {
     return 0
   fi
   tail -n 60 "build-$1.log"
-  echo "== Preset $1 does not build (build-$1.log)"
-  failed=$((failed + 1))
+  fail "preset $1 does not build (build-$1.log)"
   return 1
+}
+
+# fail WHAT: counts and remembers a failure.
+fail() {
+  failed=$((failed + 1))
+  failures+=("$1")
 }
 
 # run_tests FOLDER [CTEST-OPTION...]: adds the folder's tests to the sums.
 run_tests() {
-  local folder=$1 summary missed
+  local folder=$1 summary missed names name
   shift
   ctest --test-dir "$folder" -j "$(nproc)" -LE long --output-on-failure "$@" | tee "$folder/ctest.log"
   summary=$(grep -E 'tests passed, .* failed out of' "$folder/ctest.log")
   if [[ $summary =~ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]; then
     missed=$(grep -c '\*\*\*Skipped' "$folder/ctest.log")
-    failed=$((failed + BASH_REMATCH[1]))
     passed=$((passed + BASH_REMATCH[2] - BASH_REMATCH[1] - missed))
     skipped=$((skipped + missed))
+    mapfile -t names < <(sed -nE '/^The following tests FAILED/,$s/^\s*[0-9]+ - (\S+) .*/\1/p' \
+      "$folder/ctest.log")
+    [ ${#names[@]} -eq 0 ] || run_again "$folder" "${names[@]}"
+    for name in "${names[@]}"; do
+      if grep -F " $name " "$folder/again.log" | grep -q ' Passed '; then
+        passed=$((passed + 1))
+        seconds+=("$folder: $name")
+      else
+        fail "$folder: $name"
+      fi
+    done
   elif ! grep -q 'No tests were found' "$folder/ctest.log"; then
-    failed=$((failed + 1))
+    fail "$folder: no sum of tests"
   fi
+}
+
+# run_again FOLDER NAME...: those of these tests that are of windows and servers, one at a time.
+run_again() {
+  local folder=$1 names
+  shift
+  names=$(printf '%s\n' "$@" | sed 's/[].*+?^$()|\[]/\\&/g' | paste -sd '|')
+  echo "== Once more, by themselves:"
+  ctest --test-dir "$folder" -R "^($names)\$" -L 'paraview|gui|mpi' --output-on-failure |
+    tee "$folder/again.log"
 }
 
 # Everything: Core, the VTK modules, the plugin in ParaView's own tools and window.
@@ -53,8 +83,7 @@ build release && run_tests build "$@"
 if [ -d build-vtk/vtk/usr ] || Testing/fetch-vtk.sh build-vtk/vtk; then
   build vtk && run_tests build-vtk -L 'vtk|image' "$@"
 else
-  echo "== Plain VTK is not to be had"
-  failed=$((failed + 1))
+  fail "plain VTK is not to be had"
 fi
 
 # Core alone, as on a machine without VTK, under the sanitizers; without the long training runs and all
@@ -65,5 +94,7 @@ repeated+='|HardToKeepTo\.ATolerance/[^N]'
 build asan && run_tests build-asan -L 'core|fuzz' -E "$repeated" "$@"
 
 [ "$skipped" -eq 0 ] || echo "== $skipped skipped, as their output says why"
+[ ${#seconds[@]} -eq 0 ] || printf '== passed only at the second attempt: %s\n' "${seconds[@]}"
+[ "$failed" -eq 0 ] || printf '== FAILED: %s\n' "${failures[@]}"
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
