@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """In ParaView's window: the box that GuiCropping.xml moves by the mouse crops the volume, in the panel's
 properties, in those of scripts and in the picture."""
-import os
-import sys
 import time
 
 import numpy as np
 from paraview import simple
-from guisteps import follow
-from pvtest import MODEL, check, load_plugin, output_file, read_png
+from guisteps import begin, follow, shot
+from pvtest import MODEL, check, check_baseline
 
-# Not to the window's Python shell.
-sys.stdout = os.fdopen(1, "w", buffering=1, closefd=False)
-sys.stderr = os.fdopen(2, "w", closefd=False)
-load_plugin()
-view = simple.GetActiveViewOrCreate("RenderView")
+view = begin()
 view.OrientationAxesVisibility = 0
 view.UseColorPaletteForBackground = 0
 view.Background = [1, 1, 1]
@@ -50,13 +44,13 @@ def watch():
     check(display.INRUseCropping == 1, "not in the panel")
     check(list(display.INRCroppingScale) == list(display.CroppingScale), "another scale in the panel")
     check(list(display.INRCroppingOrigin) == list(display.CroppingOrigin), "another origin")
-    path = output_file("gui-cropping.png")
-    simple.SaveScreenshot(path, view, ImageResolution=[400, 400])
-    shown = (read_png(path)[::-1] < 0.95).any(axis=2).mean(axis=1)  # part of each row, from above
+    image = shot(view, "gui-cropping", (400, 400))
+    shown = (image[::-1] < 0.95).any(axis=2).mean(axis=1)  # part of each row, from above
     print("box", box().tolist(), "rows from", np.flatnonzero(shown > 0.2)[[0, -1]])
     # Of the box, whose handles stay, no more than one stands out.
     check(shown[:150].max() < 0.05, "there is something above the box", shown[:150].max())
     check(shown[170:290].min() > 0.3, "the volume is gone", shown[170:290].min())
+    check_baseline(image, "GuiCropping")
 
 
 follow(watch(), view.GetRenderWindow().GetInteractor())

@@ -2,20 +2,14 @@
 """In ParaView's window, while GuiDrag.xml turns the volume by the mouse, edits, undoes and redoes,
 and opens and deletes a second volume before its picture is complete: interactive pictures follow the
 mouse, nothing is reported, and what is left is the turned volume, complete."""
-import os
-import sys
 import time
 
 import numpy as np
 from paraview import simple
-from guisteps import follow
-from pvtest import MODEL, Messages, check, load_plugin, output_file, psnr, read_png
+from guisteps import begin, follow, shot
+from pvtest import MODEL, Messages, check, check_baseline, psnr
 
-# Not to the window's Python shell.
-sys.stdout = os.fdopen(1, "w", buffering=1, closefd=False)
-sys.stderr = os.fdopen(2, "w", closefd=False)
-load_plugin()
-view = simple.GetActiveViewOrCreate("RenderView")
+view = begin()
 reader = simple.OpenDataFile(MODEL)
 display = simple.Show(reader, view)
 display.ScalarOpacityUnitDistance = 1
@@ -52,12 +46,6 @@ def turned():
     return np.linalg.norm(np.array(view.GetActiveCamera().GetPosition()) - start) > 20
 
 
-def shot(name):
-    path = output_file(name + ".png")
-    simple.SaveScreenshot(path, view, ImageResolution=[300, 300])
-    return read_png(path)
-
-
 def watch():
     """Yields between two looks at the window."""
     yield from until(turned, "the mouse turns the volume")
@@ -67,15 +55,16 @@ def watch():
     yield from until(lambda: sources() == 1, "the second volume is deleted")
     check(display.Representation == "INR Volume", "undone to", display.Representation)
     yield from until(is_converged, "the picture is complete")
-    left = shot("gui-drag")
+    left = shot(view, "gui-drag")
     camera = view.GetActiveCamera()
     camera.Azimuth(90)
-    other = shot("gui-drag-elsewhere")
+    other = shot(view, "gui-drag-elsewhere")
     camera.Azimuth(-90)
-    again = shot("gui-drag-again")
+    again = shot(view, "gui-drag-again")
     check(left.std() > 0.05, "the volume is gone:", left.std())
     check(psnr(left, again) > 60, "the complete picture was not complete:", psnr(left, again))
     check(psnr(left, other) < 40, "pictures cannot be told apart:", psnr(left, other))
+    check_baseline(left, "GuiDrag")
     messages.__exit__()
     check(messages.errors() == 0, "reported:", messages.text)
 

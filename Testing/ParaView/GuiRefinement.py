@@ -3,24 +3,18 @@
 while an animation plays, a modal dialog is open or a mouse button is down. GuiRefinement.xml opens
 the dialog."""
 import ctypes
-import os
-import sys
 import time
 
 from paraview import simple
-from guisteps import follow
-from pvtest import MODEL, check, load_plugin
+from guisteps import begin, follow, shot
+from pvtest import MODEL, check, check_baseline
 
-# Not to the window's Python shell.
-sys.stdout = os.fdopen(1, "w", buffering=1, closefd=False)
-sys.stderr = os.fdopen(2, "w", closefd=False)
-load_plugin()
+view = begin()
 process = ctypes.CDLL(None)
 modal_window = process._ZN15QGuiApplication11modalWindowEv
 modal_window.restype = ctypes.c_void_p
 close = process._ZN7QWindow5closeEv
 close.argtypes = [ctypes.c_void_p]
-view = simple.GetActiveViewOrCreate("RenderView")
 display = simple.Show(simple.OpenDataFile(MODEL), view)
 simple.ResetCamera(view)
 window = view.GetRenderWindow()
@@ -94,6 +88,7 @@ def converges_and_stops():
     while time.time() < converged + 1.5:
         yield
     check(pictures_since(converged) == 0, "refined what has converged")
+    check_baseline(shot(view, "gui-refinement"), "GuiRefinement")
 
 
 def pauses_while_an_animation_plays():

@@ -4,23 +4,18 @@ steps, and what it opens by the file dialog's group of them are the same steps a
 import glob
 import os
 import shutil
-import sys
 import time
 
 from paraview import simple
-from guisteps import follow
-from pvtest import check, load_plugin, output_file
+from guisteps import begin, follow, shot
+from pvtest import check, check_baseline, output_file
 
-# Not to the window's Python shell.
-sys.stdout = os.fdopen(1, "w", buffering=1, closefd=False)
-sys.stderr = os.fdopen(2, "w", closefd=False)
-load_plugin()
+view = begin()
 TIMES = [0.5, 2.0, 3.0]
 folder = output_file("gui-series")
 shutil.rmtree(folder, ignore_errors=True)
 os.makedirs(folder)
 os.chdir(folder)  # where the file dialog begins
-view = simple.GetActiveViewOrCreate("RenderView")
 wave = simple.ProgrammableSource(OutputDataSetType="vtkImageData")
 wave.ScriptRequestInformation = f"""
 executive = self.GetExecutive()
@@ -64,6 +59,13 @@ def watch():
         reader.UpdatePipeline(now)
         low, high = reader.PointData["wave"].GetRange()
         check((low, high) == (now, now + 2), "at", now, "values from", low, "to", high)
+    simple.Hide(wave, view)
+    view.ViewTime = TIMES[-1]
+    simple.GetDisplayProperties(reader, view).RescaleTransferFunctionToDataRange(False, True)
+    simple.ResetCamera(view)
+    view.GetActiveCamera().Azimuth(30)
+    view.GetActiveCamera().Elevation(20)
+    check_baseline(shot(view, "gui-series"), "GuiSeries")
     print("saved and opened", names)
 
 

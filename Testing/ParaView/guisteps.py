@@ -1,8 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A test's own steps while ParaView's window goes on."""
 import os
+import sys
 
-from pvtest import check
+from paraview import simple
+from pvtest import check, load_plugin, output_file, read_png
+
+
+def begin():
+    """The window's view, with the plugin; what is printed goes to the terminal, not to the window's
+    Python shell."""
+    sys.stdout = os.fdopen(1, "w", buffering=1, closefd=False)
+    sys.stderr = os.fdopen(2, "w", closefd=False)
+    load_plugin()
+    return simple.GetActiveViewOrCreate("RenderView")
+
+
+def shot(view, name, size=(300, 300)):
+    """What the view shows, whatever the window's size; saved as `name`.png beside the other outputs. RGB
+    in [0, 1], (h, w, 3)."""
+    path = output_file(name + ".png")
+    simple.SaveScreenshot(path, view, ImageResolution=list(size))
+    return read_png(path)
 
 
 def follow(steps, interactor):
