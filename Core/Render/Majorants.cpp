@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Majorants.h"
 
+#include "Core/Error.h"
 #include "Core/Model/RangeGrids.h"
 
+#include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 namespace inr {
@@ -16,6 +19,16 @@ MacroCells WithoutHoles(const MacroCells& cells)
 {
   return cells.empty() ? MacroCells{glm::i64vec3(1), glm::dvec3(1.0), {}, {}, {{0.0f, 1.0f}}}
                        : cells;
+}
+
+void RequireFinite(const ValueRange& range, std::size_t cell)
+{
+  if (!std::isfinite(range.low) || !std::isfinite(range.high)) {
+    throw Error(ErrorCode::InvalidArgument, "macro-cell " + std::to_string(cell) +
+                                                " has values from " + std::to_string(range.low) +
+                                                " to " + std::to_string(range.high) +
+                                                "; both have to be finite numbers");
+  }
 }
 
 /// The coarsest level whose samples in a cell show nothing that is further than `distance` (in the
@@ -39,7 +52,9 @@ int CoarsestLevelWithin(const glm::dvec3& distance, const MacroCells& cells,
 Majorants::Majorants(const MacroCells& cells) : RangesHold(cells.rangesHold())
 {
   const MacroCells whole = WithoutHoles(cells);
-  for (const ValueRange& range : whole.ranges) {
+  for (std::size_t cell = 0; cell < whole.ranges.size(); ++cell) {
+    const ValueRange& range = whole.ranges[cell];
+    RequireFinite(range, cell);
     if (!range.empty()) {
       this->Bounds.extend(range.low);
       this->Bounds.extend(range.high);

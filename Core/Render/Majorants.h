@@ -19,7 +19,7 @@ class Majorants
 {
 public:
   /// For samples of level 0 only. Space without a range table (files that lack one) is one cell
-  /// that may hold anything.
+  /// that may hold anything. Throws Error(InvalidArgument) where a range is not finite.
   explicit Majorants(const MacroCells& cells);
   /// For all levels, in time proportional to the cells.
   Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, const Arena& arena);

@@ -2,6 +2,7 @@
 //
 // What majorants say of samples of every level, against all that these samples can be made of.
 #include "Core/Cache/BrickSource.h"
+#include "Core/Error.h"
 #include "Core/Model/ScaledModel.h"
 #include "Core/Render/CellWalker.h"
 #include "Core/Render/LevelOfDetail.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -159,6 +161,18 @@ bool Holds(const inr::ValueRange& range, float value)
 {
   constexpr float rounding = 1e-6f;
   return value >= range.low - rounding && value <= range.high + rounding;
+}
+
+TEST(Majorants, HaveFiniteRanges)
+{
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  for (const inr::ValueRange range :
+       {inr::ValueRange{nan, 1}, {0, nan}, {-infinite, 1}, {0, infinite}}) {
+    inr::MacroCells cells = inr::MakeMacroCells(glm::i64vec3(64), 16);
+    cells.ranges[7] = range;
+    EXPECT_THROW(inr::Majorants{cells}, inr::Error) << range.low << " " << range.high;
+  }
 }
 
 TEST(Majorants, BoundSamplesOfEveryLevel)
