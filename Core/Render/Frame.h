@@ -99,7 +99,8 @@ struct Frame
   /// resolution, for 99.9 % of the pixels that show something. 0: not at all; finite, not negative.
   /// Where nothing is lit, cropped (but to a box) or projected, and samples are a voxel apart or
   /// less, they come from coarser levels and are further apart wherever that stays within it; see
-  /// LevelChooser. Everything else, and paths, is drawn as with 0. What the precision of the cache
+  /// LevelChooser. Everything else, paths, and volumes whose values may leave the ranges of their
+  /// macro-cells (MacroCells::rangesHold) are drawn as with 0. What the precision of the cache
   /// rounds comes on top, and up to 0.26 in opaque media, as rays end at 0.999 of opacity; and
   /// between voxels of the full resolution the field is taken to be linear. Of pieces, all together
   /// keep to it. Ignored without a cache.

@@ -26,10 +26,9 @@ public:
   /// Voxels: where samples are further apart than that, what they leave out is not known.
   static constexpr double LongestStep = 1.0;
 
-  /// Of a tolerance, what is made use of. The rest is for what the bound leaves out, first of all
-  /// lines between the directions that are looked at: see ErrorTolerance.md, which says how the
-  /// worst of many pictures that are hard to keep to was found.
-  static constexpr double MadeUseOf = 0.8;
+  /// Of a tolerance, what is made use of. The rest is for pixels between the rays that look ahead;
+  /// for lines between those that are looked at there is PixelErrors::Unseen.
+  static constexpr double MadeUseOf = 0.9;
 
   /// `levels`: of the cache. `cells` is kept.
   LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,

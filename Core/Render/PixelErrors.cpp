@@ -116,7 +116,7 @@ PixelErrors::Error PixelErrors::errorOf(std::int64_t cell, const LineErrors& lin
 {
   const ColorSensitivity::Slopes& slopes = this->slopes(cell);
   Error error;
-  error.all = slopes.middle * lines.sum + slopes.half * lines.magnitude;
+  error.all = Unseen * (slopes.middle * lines.sum + slopes.half * lines.magnitude);
   error.step = std::min(most, double{(slopes.middle + slopes.half) * lines.largest});
   error.perStep = std::min(error.step, error.all / this->LongestEdge);
   return error;

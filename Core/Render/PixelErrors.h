@@ -21,6 +21,11 @@ class Arena;
 class PixelErrors
 {
 public:
+  /// What lines of voxels add, times that, is taken to be the most that rays add, which may go
+  /// where no line that is looked at does: see ErrorTolerance.md, which says how the worst of many
+  /// pictures that are hard to keep to was found. Errors of single steps are looked at all.
+  static constexpr double Unseen = 1.8;
+
   struct Error
   {
     double all = 0;     ///< steps times their length in voxels: of a ray that goes all through it

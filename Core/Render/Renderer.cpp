@@ -93,7 +93,7 @@ struct Renderer::Implementation
   /// Whether what comes from coarser levels can be chosen for such a frame.
   bool choosesLevels(const Frame& frame, const MarchSettings& settings) const;
   /// Puts the choice into `settings`; whether it is final.
-  bool chooseLevels(const Frame& frame, const RayGeometry& geometry, const WorkLimit& limit,
+  bool chooseLevels(const Frame& frame, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing, MarchSettings& settings);
 
   FrameStatistics march(const Frame& frame, const PassOutput& output,
@@ -239,12 +239,14 @@ FrameStatistics Renderer::Implementation::renderUncached(
 bool Renderer::Implementation::choosesLevels(const Frame& frame,
                                              const MarchSettings& settings) const
 {
-  return frame.errorTolerance.value_or(0) > 0 && frame.blending.mode == BlendMode::Composite &&
-         !frame.shading && !settings.crops && settings.step <= LevelChooser::LongestStep;
+  // Values that leave their cell's range are moved into that of all cells that are walked through
+  // together, and these are others where there are fewer samples.
+  return frame.errorTolerance.value_or(0) > 0 && this->Cells.rangesHold() &&
+         frame.blending.mode == BlendMode::Composite && !frame.shading && !settings.crops &&
+         settings.step <= LevelChooser::LongestStep;
 }
 
-bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometry& geometry,
-                                            const WorkLimit& limit,
+bool Renderer::Implementation::chooseLevels(const Frame& frame, const WorkLimit& limit,
                                             const std::function<bool()>& keepGoing,
                                             MarchSettings& settings)
 {
@@ -253,6 +255,10 @@ bool Renderer::Implementation::chooseLevels(const Frame& frame, const RayGeometr
                          this->Cached->store().cache().hierarchy().levels(),
                          LineKernelFor(ChooseInstructionSet(this->Options.kernel)));
   }
+  // As for all other pieces of the picture: samples would not fit together where they meet.
+  Frame whole = frame;
+  whole.piece.clear();
+  const RayGeometry geometry(whole, this->Volume.dims);
   const LevelChooser::Wish wish{*frame.errorTolerance, settings.step,
                                 settings.step * settings.unitsPerT};
   if (!this->Levels->choose(wish, {geometry, frame.width, frame.height}, this->Cells,
@@ -287,7 +293,7 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
   const std::int64_t measured = this->measuredPoints();
   const bool final = !this->choosesLevels(frame, settings) ||
-                     this->chooseLevels(frame, geometry, limit, keepGoing, settings);
+                     this->chooseLevels(frame, limit, keepGoing, settings);
   Frame meanwhile = frame; // until all is measured, the picture is as by distance
   meanwhile.levelOfDetailScale = final ? frame.levelOfDetailScale : 1.0;
   FrameStatistics statistics = this->Cached->render(meanwhile, geometry, this->Cells, *this->Colors,

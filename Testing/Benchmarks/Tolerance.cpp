@@ -122,7 +122,7 @@ public:
         this->ByDistance.push_back(this->showByDistance(scale, adaptive));
       }
     }
-    for (const double tolerance : {1.0, 2.0, 4.0, 8.0}) {
+    for (const double tolerance : {2.0, 4.0, 8.0, 16.0}) {
       this->compareAt(tolerance);
     }
   }

@@ -137,6 +137,7 @@ protected:
     auto model = RandomModel(SmallDescription());
     model->volume.dims = Dims;
     model->macroCells = inr::MakeMacroCells(Dims, 8);
+    model->macroCells.provenance = inr::MacroCellProvenance::Decoded; // or no tolerance chooses
     for (std::size_t k = 0; k < model->macroCells.ranges.size(); ++k) {
       // Not what the network gives, which is moved into them: some show with each of the colours.
       const float low = 0.25f * static_cast<float>(k % 4);

@@ -80,19 +80,25 @@ struct Across
 /// A value of the voxel at `at`, counted from the volume's middle.
 using VoxelFunction = std::function<double(const glm::dvec3& at)>;
 
-/// About `thick` voxels thick, `apart` from each other, along `way`.
-inline VoxelFunction Fibres(Dice& dice, const glm::dvec3& way)
+/// Along `way`, `thick` voxels or so thick and `apart` from each other, of values from `low` on.
+inline VoxelFunction FibresOf(const glm::dvec3& way, double thick, double apart,
+                              const glm::dvec2& shift, double low, double more)
 {
   const Across across(way);
-  const double apart = dice.scale(5, 24);
-  const double thick = dice.scale(0.6, 3);
-  const glm::dvec2 shift(dice.between(0, apart), dice.between(0, apart));
   return [=](const glm::dvec3& at) {
     const glm::dvec2 place =
         (glm::dvec2(glm::dot(at, across.first), glm::dot(at, across.second)) + shift) / apart;
     const glm::dvec2 off = apart * (place - glm::round(place));
-    return 0.05 + 0.9 * std::exp(-glm::dot(off, off) / (thick * thick));
+    return low + more * std::exp(-glm::dot(off, off) / (thick * thick));
   };
+}
+
+inline VoxelFunction Fibres(Dice& dice, const glm::dvec3& way)
+{
+  const double apart = dice.scale(5, 24);
+  const double thick = dice.scale(0.6, 3);
+  const glm::dvec2 shift(dice.between(0, apart), dice.between(0, apart));
+  return FibresOf(way, thick, apart, shift, 0.05, 0.9);
 }
 
 inline VoxelFunction Layers(Dice& dice, const glm::dvec3& normal)

@@ -108,6 +108,9 @@ std::vector<HardScene> HardScenes()
   middle.high = 0.6;
   inr::TransferFunction upper = middle;
   upper.high = 1;
+  inr::TransferFunction lower = Ramp({1, 0.5f, 0.2f, 0}, {1, 0.5f, 0.2f, 0.02f});
+  lower.high = 0.6;
+  lower.above = {1, 1, 1, 0.6f};
   inr::TransferFunction lamp = Ramp({0, 0, 0, 0}, {0, 0, 0, 0.1f});
   std::fill(lamp.table.begin() + 200, lamp.table.end(), glm::vec4(20, 20, 20, 0.5f));
   const auto smokeBeforeLamp = [](const glm::vec3& u) {
@@ -129,6 +132,7 @@ std::vector<HardScene> HardScenes()
           {"OpacityOfOne", Waves({1.0f / 30, 0, 1.0f / 50}), opaque, z, 1, 1},
           {"FarApartSlices", Waves({1.0f / 60, 0, 1.0f / 40}), faint, {1, 0.1, 0}, 30, 8},
           {"EdgeBelow", Waves({1.0f / 40, 0, 1.0f / 50}), upper, {0.3, 0.2, 1}},
+          {"EdgeAbove", Waves({1.0f / 40, 0, 1.0f / 50}), lower, {0.3, 0.2, 1}},
           {"EdgesOfTheMiddle", Waves({1.0f / 40, 0, 1.0f / 50}), middle, {0.3, 0.2, 1}},
           {"SmokeBeforeALamp", smokeBeforeLamp, lamp, z},
           {"BrightColours", Waves({1.0f / 40, 1.0f / 50, 0}), bright, {0.3, 0.2, 1}},

@@ -97,8 +97,8 @@ TEST(LevelChooser, AllowsMoreBehindSmokeByWhatItHides)
   }
   EXPECT_GE(alike, 22);
   EXPECT_EQ(clear.powers(1e-4), std::vector<int>(12, 0));
-  EXPECT_EQ(clear.powers(0.05), std::vector<int>({3, 3, 3, 3, 3, 3, 3, 3, 2, 2, 2, 2}));
-  clear.powers(0.3);
+  EXPECT_EQ(clear.powers(0.1), std::vector<int>({3, 3, 3, 3, 3, 3, 3, 3, 2, 2, 2, 2}));
+  clear.powers(0.6);
   EXPECT_EQ(clear.level(), 3); // rather than every eighth sample of level 0
 }
 

@@ -65,6 +65,34 @@ TEST(RandomTolerances, AreKeptWhereCellsAreFlatButNotTheirNeighbours)
   EXPECT_LT(worst.part, 0.3);
 }
 
+/// The worst that a search from such scenes on came to: fibres of half a voxel end on, as far from
+/// all lines that are looked at as can be, of which these see a fifth. 0.3 % of the pixels were off
+/// by up to 1.1 of the tolerance when that was made up for by a fifth of the tolerance.
+TEST(RandomTolerances, AreKeptBetweenTheLinesThatAreLookedAt)
+{
+  RandomHardScene scene;
+  scene.dims = glm::i64vec3(80);
+  scene.cellEdge = 16;
+  scene.along = {0.87959, 0.3531, 0.31881};
+  scene.unitDistance = 4.0548;
+  scene.sampleDistance = 0.5;
+  scene.field =
+      Between(scene.dims, FibresOf(scene.along, 0.601, 13.0258, {0.7298, 10.8264}, 0.1422, 0.3469));
+  for (int k = 0; k < 1024; ++k) {
+    const float x = static_cast<float>(k) / 1023;
+    scene.colours.table.emplace_back(1, 1 - x, x, 0.02271f * x);
+  }
+  inr::Renderer renderer = RendererOf(scene);
+  inr::Frame frame = FrameOf(scene, 96);
+  frame.errorTolerance = 0;
+  const Drawn exact = Draw(renderer, frame);
+  frame.errorTolerance = 17.8918;
+  const Drawn drawn = Draw(renderer, frame);
+  const std::vector<float> differences = PixelDifferences(drawn.picture, exact.picture);
+  EXPECT_LT(differences.back(), 0.8 * *frame.errorTolerance);
+  EXPECT_LT(drawn.statistics.samples, exact.statistics.samples);
+}
+
 TEST(RandomTolerances, AreKept)
 {
   const std::uint64_t seed = NumberFrom("INR_HARD_SEED", 1);

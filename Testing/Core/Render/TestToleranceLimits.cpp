@@ -131,6 +131,7 @@ inr::Renderer RowOfBlocks::makeRenderer()
     cells.ranges[k] = {0.6f * value, std::min(1.0f, 1.6f * value + 0.01f)};
   }
   cells.apron = 1.0 / glm::dvec3(dims);
+  cells.provenance = inr::MacroCellProvenance::Decoded;
   inr::RendererOptions options;
   options.cache = Options(inr::CachePrecision::Float32, 16);
   inr::Renderer renderer(std::make_shared<FieldEvaluator>(spots), VolumeOf(dims), cells, options);

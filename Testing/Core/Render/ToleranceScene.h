@@ -69,15 +69,16 @@ inline inr::TransferFunction Glow()
   return function;
 }
 
-inline inr::Renderer MakeRenderer(std::int64_t cacheBytes = 64 << 20, int threads = 2)
+inline inr::Renderer MakeRenderer(std::int64_t cacheBytes = 64 << 20, int threads = 2,
+                                  const inr::MacroCells& cells = CellsOf(FogAndWires, FoggyDims))
 {
   inr::RendererOptions options;
   options.threads = threads;
   options.cache.bytes = cacheBytes;
   options.cache.precision = inr::CachePrecision::Float32;
   options.cache.brickSize = 16;
-  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(FoggyDims),
-                         CellsOf(FogAndWires, FoggyDims), options);
+  inr::Renderer renderer(std::make_shared<FieldEvaluator>(FogAndWires), VolumeOf(FoggyDims), cells,
+                         options);
   renderer.setTransferFunction(Glow());
   return renderer;
 }
