@@ -5,6 +5,9 @@
 #include <vtkPiecewiseFunction.h>
 #include <vtkVolumeProperty.h>
 
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +18,18 @@ namespace {
 
 constexpr int SmallestTable = 1024;
 constexpr int LargestTable = 16384;
+/// Places that are looked at for each interval of the largest table, where nodes are closer.
+constexpr int MostPerInterval = 64;
+
+/// How many intervals two nodes of a function that are closest to each other ask for.
+template <typename Function> int IntervalsFor(Function* function, double low, double high)
+{
+  if (function->GetSize() < 2) {
+    return SmallestTable;
+  }
+  const int estimate = function->EstimateMinNumberOfSamples(low, high);
+  return estimate > 0 ? estimate : std::numeric_limits<int>::max(); // more than an int can say
+}
 
 /// A property's two functions behind one question: what is at this value?
 struct Functions
@@ -59,12 +74,11 @@ struct Functions
     return entries;
   }
 
-  int samples(double low, double high) const
+  int intervals(double low, double high) const
   {
-    const int opacity = this->Opacity->EstimateMinNumberOfSamples(low, high);
-    const int colour = this->Rgb ? this->Rgb->EstimateMinNumberOfSamples(low, high)
-                                 : this->Gray->EstimateMinNumberOfSamples(low, high);
-    return std::clamp(std::max(opacity, colour), SmallestTable, LargestTable);
+    const int colour =
+        this->Rgb ? IntervalsFor(this->Rgb, low, high) : IntervalsFor(this->Gray, low, high);
+    return std::max(IntervalsFor(this->Opacity, low, high), colour);
   }
 
   vtkObject* colour() const { return this->Rgb ? static_cast<vtkObject*>(this->Rgb) : this->Gray; }
@@ -132,7 +146,8 @@ Range Inside(const TransferFunction& table)
   return range;
 }
 
-std::vector<glm::vec4> Entries(const Functions& functions, const TransferFunction& table, int n)
+/// At n places from one end to the other.
+std::vector<glm::vec4> Sampled(const Functions& functions, const TransferFunction& table, int n)
 {
   const Range range = Inside(table);
   if (!table.logarithmic) {
@@ -147,6 +162,38 @@ std::vector<glm::vec4> Entries(const Functions& functions, const TransferFunctio
   return entries;
 }
 
+/// Every n-th of them, each the mean of those around it, the less the further: a peak between two
+/// entries adds to both, and what is linear remains what it is.
+std::vector<glm::vec4> Thinned(const std::vector<glm::vec4>& fine, int n)
+{
+  std::vector<glm::vec4> entries{fine.front()};
+  const auto step = static_cast<std::size_t>(n);
+  for (std::size_t middle = step; middle + step < fine.size(); middle += step) {
+    glm::dvec3 plain(0);
+    glm::dvec4 seen(0); // colours by their opacity
+    for (int k = 1 - n; k < n; ++k) {
+      const glm::dvec4 entry(fine[middle + static_cast<std::size_t>(n + k) - step]);
+      const double weight = (n - std::abs(k)) / (static_cast<double>(n) * n);
+      plain += weight * glm::dvec3(entry);
+      seen += weight * entry.w * glm::dvec4(glm::dvec3(entry), 1.0);
+    }
+    const glm::dvec3 color = seen.w > 0 ? glm::dvec3(seen) / seen.w : plain;
+    entries.emplace_back(glm::vec4(color, seen.w));
+  }
+  entries.push_back(fine.back());
+  return entries;
+}
+
+std::vector<glm::vec4> Entries(const Functions& functions, const TransferFunction& table)
+{
+  const int wanted = functions.intervals(table.low, table.high);
+  if (wanted <= LargestTable) {
+    return Sampled(functions, table, std::max(wanted, SmallestTable) + 1);
+  }
+  const int finer = std::min(wanted / LargestTable + 1, MostPerInterval);
+  return Thinned(Sampled(functions, table, LargestTable * finer + 1), finer);
+}
+
 } // namespace
 
 TransferFunction BuildTransferFunction(vtkVolumeProperty* property)
@@ -157,7 +204,7 @@ TransferFunction BuildTransferFunction(vtkVolumeProperty* property)
   const Range range = TableRange(functions, result.logarithmic);
   result.low = range.low;
   result.high = range.high;
-  result.table = Entries(functions, result, functions.samples(range.low, range.high) + 1);
+  result.table = Entries(functions, result);
   const double ratio = range.high / range.low;
   const double width = range.high - range.low;
   result.below = functions.at(result.logarithmic ? range.low / ratio : range.low - width);

@@ -152,6 +152,52 @@ TEST_F(TransferFunctions, ResolveNodesThatAreCloseTogether)
   EXPECT_LE(table.table.size(), 16385u);
 }
 
+/// They keep their area, wherever they are between entries, and their colour.
+TEST_F(TransferFunctions, HavePeaksThatAreNarrowerThanAnEntry)
+{
+  for (const double half : {10.0, 3.0}) {
+    for (const double middle : {500000.0, 123456.7, 999900.0}) {
+      this->colour->RemoveAllPoints();
+      this->opacity->RemoveAllPoints();
+      this->colour->AddRGBPoint(0, 0, 0, 1);
+      for (const double side : {-1.0, 1.0}) {
+        this->colour->AddRGBPoint(middle + side * half, 1, 0.5, 0);
+        this->colour->AddRGBPoint(middle + side * 1.1 * half, 0, 0, 1);
+      }
+      this->colour->AddRGBPoint(1e6, 0, 0, 1);
+      this->opacity->AddPoint(0, 0);
+      this->opacity->AddPoint(middle - half, 0);
+      this->opacity->AddPoint(middle, 0.8);
+      this->opacity->AddPoint(middle + half, 0);
+      this->opacity->AddPoint(1e6, 0);
+      const auto table = inr::BuildTransferFunction(this->property);
+      ASSERT_EQ(table.table.size(), 16385u);
+      double area = 0;
+      glm::dvec4 shown(0);
+      for (const glm::vec4& entry : table.table) {
+        area += 1e6 / 16384 * entry.a;
+        shown = entry.a > shown.a ? glm::dvec4(entry) : shown;
+      }
+      EXPECT_NEAR(area, 0.8 * half, 0.1 * half) << middle;
+      ExpectColour(glm::vec4(shown), 1, 0.5, 0, 0.01);
+    }
+  }
+}
+
+/// More of them next to each other than an int can count intervals for.
+TEST_F(TransferFunctions, MayJump)
+{
+  this->colour->AddRGBPoint(0, 1, 1, 1);
+  this->opacity->AddPoint(0, 0.1);
+  this->opacity->AddPoint(0.5, 0.1);
+  this->opacity->AddPoint(0.5 + 1e-12, 0.7);
+  this->opacity->AddPoint(1, 0.7);
+  const auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_EQ(table.table.size(), 16385u);
+  EXPECT_FLOAT_EQ(LookUp(table, 0.4999).a, 0.1f);
+  EXPECT_FLOAT_EQ(LookUp(table, 0.5001).a, 0.7f);
+}
+
 /// As a colour map of somebody else's program may have them: anywhere, some next to each other.
 TEST_F(TransferFunctions, MayHaveTenThousandNodes)
 {
