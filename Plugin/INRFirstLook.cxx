@@ -8,9 +8,12 @@
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
+#include "vtkPVXMLElement.h"
+#include "vtkPVXMLParser.h"
 #include "vtkSMBoundsDomain.h"
 #include "vtkSMDoubleVectorProperty.h"
 #include "vtkSMPVRepresentationProxy.h"
+#include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
@@ -21,6 +24,17 @@
 namespace {
 
 constexpr const char* TypeText = "INR Volume";
+
+/// Shows a group of the panel for representations that are no volumes.
+constexpr const char* NeitherVolume =
+    R"(<PropertyWidgetDecorator type="CompositeDecorator">
+         <Expression type="and">
+           <PropertyWidgetDecorator type="GenericDecorator" mode="visibility"
+                                    property="Representation" value="Volume" inverse="1"/>
+           <PropertyWidgetDecorator type="GenericDecorator" mode="visibility"
+                                    property="Representation" value="INR Volume" inverse="1"/>
+         </Expression>
+       </PropertyWidgetDecorator>)";
 
 vtkPVDataInformation* InputInformation(vtkSMProxy* representation)
 {
@@ -140,6 +154,25 @@ void OnPropertyModified(vtkObject* caller, unsigned long, void*, void* data)
   }
 }
 
+/// Hides what ParaView hides for "Volume", too: opacity, sizes and shine of surfaces, which do
+/// nothing to a volume.
+void HideSurfaceSettings(vtkSMProxy* representation)
+{
+  for (std::size_t k = 0; k < representation->GetNumberOfPropertyGroups(); ++k) {
+    vtkPVXMLElement* hints = representation->GetPropertyGroup(k)->GetHints();
+    vtkPVXMLElement* shows =
+        hints && hints->GetNumberOfNestedElements() == 1 ? hints->GetNestedElement(0) : nullptr;
+    const auto is = [&](const char* name, const char* value) {
+      const char* found = shows->GetAttribute(name);
+      return found && std::strcmp(found, value) == 0;
+    };
+    if (shows && is("property", "Representation") && is("value", "Volume") && is("inverse", "1")) {
+      hints->RemoveAllNestedElements();
+      hints->AddNestedElement(vtkPVXMLParser::ParseXML(NeitherVolume));
+    }
+  }
+}
+
 void OnRegister(vtkObject*, unsigned long, void*, void* callData)
 {
   const auto* info = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(callData);
@@ -148,6 +181,7 @@ void OnRegister(vtkObject*, unsigned long, void*, void* callData)
       !info->Proxy->GetProperty("Representation") || !info->Proxy->GetProperty("INRUnitDistance")) {
     return;
   }
+  HideSurfaceSettings(info->Proxy);
   vtkNew<vtkCallbackCommand> watch;
   watch->SetCallback(OnPropertyModified);
   info->Proxy->AddObserver(vtkCommand::PropertyModifiedEvent, watch);

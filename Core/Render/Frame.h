@@ -90,8 +90,8 @@ struct Frame
   /// Samples where little can be seen stand for up to four times the sample distance.
   bool adaptiveSampling = true;
 
-  /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel at most as
-  /// large as a pixel, 0 reads the full resolution everywhere; not negative.
+  /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel at most a
+  /// third larger than a pixel, 0 reads the full resolution everywhere; not negative.
   double levelOfDetailScale = 1;
 
   /// Takes the place of levelOfDetailScale and adaptiveSampling where it is given: by how many

@@ -113,6 +113,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       inr::DrawEverywhere(renderer);
     }
     this->ReportColouring();
+    this->ReportOpacityArray();
     this->OutlineMapper->SetInputConnection(
         vtkPVRenderView::GetPieceProducer(in, this, this->OutlinePort));
   }
@@ -320,6 +321,16 @@ void vtkINRVolumeRepresentation::ReportColouring()
     vtkErrorMacro(<< problem);
   }
   this->LastProblem = problem;
+}
+
+void vtkINRVolumeRepresentation::ReportOpacityArray()
+{
+  if (this->WantsOpacityArray) {
+    vtkWarningMacro("A separate opacity array has no effect on an INR volume, as a model holds one "
+                    "array; turn \"Use Separate Opacity Array\" off, or show real voxels "
+                    "(INRDecode) as \"Volume\".");
+  }
+  this->WantsOpacityArray = false; // said once
 }
 
 void vtkINRVolumeRepresentation::OnRefine(vtkObject*, unsigned long, void* mayRefine)

@@ -81,6 +81,10 @@ public:
   /// Whether this process has something to draw.
   bool DrawsHere();
 
+  /// In place of the superclass', which would copy every point of the presented grid: a model holds
+  /// one array, whose opacities no other one can give. Warns once when that is asked for.
+  void SetUseSeparateOpacityArray(bool wants) { this->WantsOpacityArray = wants; }
+
 protected:
   vtkINRVolumeRepresentation();
   ~vtkINRVolumeRepresentation() override;
@@ -107,8 +111,10 @@ private:
   void UpdateMapper();
   std::string WhyBlank();
   void ReportColouring();
+  void ReportOpacityArray();
   void OnRefine(vtkObject* mapper, unsigned long event, void* mayRefine);
 
+  bool WantsOpacityArray = false;
   int NumberOfThreads = 0;
   int SharedThreads = 0; ///< for 0 of the above; 0 = not known yet
   std::unique_ptr<inr::ClientWatch> Client;

@@ -124,3 +124,11 @@ values = histogram.GetColumnByName("bin_values")
 total = sum(values.GetTuple1(k) for k in range(64))
 check(histogram.GetNumberOfRows() == 64, "a histogram of", histogram.GetNumberOfRows())
 check(0 < total == reader.GetDataInformation().GetNumberOfPoints() <= 8000, "counts", total)
+
+# A setting that volumes of voxels have, and models cannot: one warning, and the same picture.
+plain = picture(view, "panel-plain")
+with Messages() as messages:
+    display.UseSeparateOpacityArray = 1
+    same_picture = picture(view, "panel-opacity-array")
+check(messages.text.count("separate opacity array") == 1, "not said once:", messages.text)
+check((plain == same_picture).all(), "an opacity array changes the picture")
