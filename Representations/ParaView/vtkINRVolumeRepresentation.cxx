@@ -5,9 +5,9 @@
 #include "ModelDelivery.h"
 #include "SharedDrawing.h"
 #include "ThreadShare.h"
+#include "WhyBlank.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkBoundingBox.h"
-#include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
 #include "vtkINRStatusActor.h"
@@ -20,7 +20,6 @@
 #include "vtkOutlineSource.h"
 #include "vtkPVDataDeliveryManager.h"
 #include "vtkPVRenderView.h"
-#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProcessModule.h"
@@ -28,7 +27,6 @@
 #include "vtkVolumeProperty.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -268,17 +266,6 @@ bool vtkINRVolumeRepresentation::DrawsHere()
   return this->VolumeMapper->GetDataObjectInput() != nullptr;
 }
 
-namespace {
-
-/// A prop whose place is not a number is left out by the renderer, without a word.
-bool IsPlaced(vtkProp3D* prop)
-{
-  const double* elements = prop->GetMatrix()->GetData();
-  return std::all_of(elements, elements + 16, [](double x) { return std::isfinite(x); });
-}
-
-} // namespace
-
 void vtkINRVolumeRepresentation::UpdateMapper()
 {
   // Cropping refers to the bounds of the data. Those that this process has are a piece's, or none
@@ -290,33 +277,9 @@ void vtkINRVolumeRepresentation::UpdateMapper()
   std::copy_n(own, 6, this->DataBounds);
 }
 
-std::string vtkINRVolumeRepresentation::WhyBlank()
-{
-  if (!IsPlaced(this->Actor)) {
-    return "The volume has no place: its position, scale, orientation or origin is not a finite "
-           "number; set them anew";
-  }
-  vtkDataSet* data = this->VolumeMapper->GetDataSetInput();
-  if (!data || data->GetNumberOfPoints() == 0) {
-    return {}; // another process draws, or the reader has said why there is nothing
-  }
-  vtkDataArray* scalars = data->GetPointData()->GetScalars();
-  const std::string advice =
-      std::string("; colour by its point array") +
-      (scalars && scalars->GetName() ? " '" + std::string(scalars->GetName()) + "'" : "");
-  const char* name = this->VolumeMapper->GetArrayName();
-  if (!name || !*name) {
-    return "A volume of a solid colour cannot be drawn" + advice;
-  }
-  const bool isPointArray =
-      this->VolumeMapper->GetScalarMode() == VTK_SCALAR_MODE_USE_POINT_FIELD_DATA &&
-      data->GetPointData()->HasArray(name);
-  return isPointArray ? "" : "The volume has no point array '" + std::string(name) + "'" + advice;
-}
-
 void vtkINRVolumeRepresentation::ReportColouring()
 {
-  const std::string problem = this->WhyBlank();
+  const std::string problem = inr::WhyBlank(this->Actor, this->VolumeMapper);
   if (!problem.empty() && problem != this->LastProblem) {
     vtkErrorMacro(<< problem);
   }

@@ -109,7 +109,6 @@ private:
   void TakeDelivery(vtkInformation* in);
   void ReportShared(bool drawsAll);
   void UpdateMapper();
-  std::string WhyBlank();
   void ReportColouring();
   void ReportOpacityArray();
   void OnRefine(vtkObject* mapper, unsigned long event, void* mayRefine);

@@ -5,7 +5,7 @@ import os
 import sys
 
 from glass_scenes import check_parallel, pictures
-from pvtest import Messages, check, check_same, connect, load_plugin, picture
+from pvtest import Messages, check, check_interactive, check_same, connect, load_plugin, picture
 
 PORT = int(sys.argv[1])
 
@@ -29,9 +29,5 @@ check_same(surfaces_alone(view, display, "there"), alone, composed=["flat"])
 
 # While the mouse moves, too: paths of a picture that has fewer pixels than the window, among glass.
 display.RenderMode = "Path Tracing"
-for step in range(5):
-    view.GetActiveCamera().Azimuth(4)
-    view.SMProxy.InteractiveRender()
-display.UpdatePropertyInformation()
-check(display.GetPropertyValue("FrameTime") > 0, "no picture while the mouse moves")
+check_interactive(view, display)
 os._exit(0)

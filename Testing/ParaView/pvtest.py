@@ -107,6 +107,15 @@ def look_at(view):
     view.ResetCamera()
 
 
+def check_interactive(view, display):
+    """Pictures come while the mouse moves, too."""
+    for step in range(5):
+        view.GetActiveCamera().Azimuth(4)
+        view.SMProxy.InteractiveRender()
+    display.UpdatePropertyInformation()
+    check(display.GetPropertyValue("FrameTime") > 0, "no picture while the mouse moves")
+
+
 def picture(view, name):
     """Renders, saves `name`.png beside the other outputs and returns RGB in [0, 1], (h, w, 3)."""
     path = output_file(name + ".png")
