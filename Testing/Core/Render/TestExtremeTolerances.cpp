@@ -114,7 +114,7 @@ TEST_P(ExtremeTolerance, IsKept)
   const Drawn exact = Draw(renderer, frame);
   ASSERT_GT(exact.statistics.samples, 1000);
   std::int64_t fewest = exact.statistics.samples;
-  for (const double tolerance : {1.0, 8.0, 40.0}) {
+  for (const double tolerance : {1.0, 8.0, 40.0, 100.0}) {
     frame.errorTolerance = tolerance;
     const Drawn drawn = Draw(renderer, frame);
     const std::vector<float> differences = PixelDifferences(drawn.picture, exact.picture);
