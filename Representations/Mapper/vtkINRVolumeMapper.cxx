@@ -361,8 +361,8 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   try {
     inr::PaintSettings settings = this->Settings();
     settings.renderer.accelerator = this->WantedAccelerator();
-    if (this->GetDrawsTogether() && !this->DrawingOrder.empty()) {
-      settings.group = inr::PictureGroup(this->Self->Controller, this->DrawingOrder);
+    if (this->GetDrawsTogether() && !this->ProcessOrder.empty()) {
+      settings.group = inr::PictureGroup(this->Self->Controller, this->ProcessOrder);
     }
     problem = this->Self->Painter.paint(this, renderer, volume, settings);
   } catch (const std::bad_alloc&) {
@@ -430,7 +430,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RenderMode: " << this->RenderMode << "\n"
      << indent << "Backend: " << this->Backend << "\n"
      << indent << "LocalRank: " << this->LocalRank << "\n"
-     << indent << "DrawingOrder: " << this->DrawingOrder.size() << " processes\n"
+     << indent << "ProcessOrder: " << this->ProcessOrder.size() << " processes\n"
      << indent << "AlwaysTogether: " << this->AlwaysTogether << "\n"
      << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n"
      << indent << "ScatteringAlbedo: " << this->ScatteringAlbedo << "\n"

@@ -63,7 +63,7 @@
 
 #include <memory> // for std::unique_ptr
 #include <string> // for FindAccelerator
-#include <vector> // for DrawingOrder
+#include <vector> // for ProcessOrder
 
 class vtkMultiProcessController;
 
@@ -128,7 +128,7 @@ public:
    * empty order, the default: projections of a piece are refused.
    */
   void SetController(vtkMultiProcessController* controller);
-  void SetDrawingOrder(const std::vector<int>& processes) { this->DrawingOrder = processes; }
+  void SetProcessOrder(const std::vector<int>& processes) { this->ProcessOrder = processes; }
   ///@}
   /**
    * Whether such processes draw bands of rows whatever is blended: pieces of several volumes in
@@ -485,7 +485,7 @@ private:
   int RenderMode = RAY_MARCHING;
   int Backend = AUTO;
   int LocalRank = 0;
-  std::vector<int> DrawingOrder;
+  std::vector<int> ProcessOrder;
   bool AlwaysTogether = false;
   int SamplesPerPixel = 64;
   double ScatteringAlbedo = 1.0;

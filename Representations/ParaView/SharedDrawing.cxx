@@ -58,7 +58,7 @@ void DrawEverywhere(vtkRenderer* renderer)
   }
 }
 
-std::vector<int> DrawingOrder(vtkRenderer* renderer)
+std::vector<int> ProcessOrder(vtkRenderer* renderer)
 {
   vtkIceTCompositePass* pass = CompositePassOf(renderer);
   if (!pass || !pass->GetUseOrderedCompositing() || !pass->GetOrderedCompositingHelper() ||

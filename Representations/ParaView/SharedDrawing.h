@@ -18,7 +18,7 @@ void DrawEverywhere(vtkRenderer* renderer);
 
 /// The processes whose pictures are being composed in order of depth, that first whose lies over
 /// the others; empty where none are, or not as one picture. They need not ask each other.
-std::vector<int> DrawingOrder(vtkRenderer* renderer);
+std::vector<int> ProcessOrder(vtkRenderer* renderer);
 
 /// The INR volumes that `renderer` shows, in the same order in all processes; those that a scale of
 /// zero makes flat are not seen.

@@ -46,7 +46,7 @@ int vtkINRLODVolume::Draw(vtkViewport* viewport)
   auto* renderer = vtkRenderer::SafeDownCast(viewport);
   auto* mapper = vtkINRVolumeMapper::SafeDownCast(this->GetMapper());
   if (renderer && mapper && mapper->GetDrawsTogether()) {
-    mapper->SetDrawingOrder(inr::DrawingOrder(renderer));
+    mapper->SetProcessOrder(inr::ProcessOrder(renderer));
   }
   return this->Superclass::RenderVolumetricGeometry(viewport);
 }

@@ -92,7 +92,7 @@ std::string vtkINRStatusActor::TextIn(vtkViewport* viewport)
     return this->GetText();
   }
   vtkRenderer* renderer = vtkRenderer::SafeDownCast(viewport);
-  const std::vector<int> order = renderer ? inr::DrawingOrder(renderer) : std::vector<int>();
+  const std::vector<int> order = renderer ? inr::ProcessOrder(renderer) : std::vector<int>();
   if (order.empty() || !this->StatusMapper) { // in all processes alike
     return {};
   }
