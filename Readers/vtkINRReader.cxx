@@ -96,7 +96,7 @@ inr::ModelOverrides OverridesOf(const int dims[3], const double range[2])
   if (dims[0] != 0 || dims[1] != 0 || dims[2] != 0) {
     overrides.dims = glm::i64vec3(dims[0], dims[1], dims[2]);
   }
-  if (range[0] != range[1]) {
+  if (range[0] != 0 || range[1] != 0) {
     overrides.dataRange = glm::dvec2(range[0], range[1]);
   }
   return overrides;

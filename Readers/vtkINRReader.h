@@ -82,8 +82,8 @@ public:
   ///@}
 
   ///@{
-  /// Value range for files that lack it (0 and 1 of the network's output stand for these). Equal
-  /// values (default 0, 0) = as in the file.
+  /// Value range for files that lack it (0 and 1 of the network's output stand for these). 0, 0
+  /// (default) = as in the file.
   vtkSetVector2Macro(DataRange, double);
   vtkGetVector2Macro(DataRange, double);
   ///@}

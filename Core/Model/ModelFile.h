@@ -15,7 +15,7 @@ namespace inr {
 struct ModelOverrides
 {
   std::optional<glm::i64vec3> dims;
-  std::optional<glm::dvec2> dataRange; ///< low, high
+  std::optional<glm::dvec2> dataRange; ///< low < high
 };
 
 /// True when the first bytes look like one of our or upstream's model files (BSON with a known root

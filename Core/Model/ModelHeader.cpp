@@ -221,6 +221,11 @@ void ApplyOverrides(const ModelOverrides& overrides, VolumeInfo& volume)
 {
   volume.dims = overrides.dims.value_or(volume.dims);
   if (overrides.dataRange) {
+    if (overrides.dataRange->x == overrides.dataRange->y) {
+      throw Error(ErrorCode::InvalidArgument, "both ends of DataRange are " +
+                                                  std::to_string(overrides.dataRange->x) +
+                                                  "; give the smallest and largest value");
+    }
     volume.low = overrides.dataRange->x;
     volume.high = overrides.dataRange->y;
   }

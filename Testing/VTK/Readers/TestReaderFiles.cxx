@@ -216,6 +216,8 @@ TEST_F(Reader, RefusesOverridesThatMakeNoSense)
   };
   this->Algorithm->SetDataRange(2.0, 1.0);
   refuses();
+  this->Algorithm->SetDataRange(5.0, 5.0);
+  refuses();
   this->Algorithm->SetDataRange(0.0, 0.0);
   this->Algorithm->SetDimensions(-4, 5, 6);
   refuses();
