@@ -5,8 +5,8 @@ import time
 
 import numpy as np
 from paraview import simple
-from guisteps import begin, follow, shot
-from pvtest import MODEL, check, check_baseline
+from guisteps import begin, follow
+from pvtest import MODEL, check, check_baseline, picture
 
 view = begin()
 view.OrientationAxesVisibility = 0
@@ -44,7 +44,7 @@ def watch():
     check(display.INRUseCropping == 1, "not in the panel")
     check(list(display.INRCroppingScale) == list(display.CroppingScale), "another scale in the panel")
     check(list(display.INRCroppingOrigin) == list(display.CroppingOrigin), "another origin")
-    image = shot(view, "gui-cropping", (400, 400))
+    image = picture(view, "gui-cropping", (400, 400))
     shown = (image[::-1] < 0.95).any(axis=2).mean(axis=1)  # part of each row, from above
     print("box", box().tolist(), "rows from", np.flatnonzero(shown > 0.2)[[0, -1]])
     # Of the box, whose handles stay, no more than one stands out.

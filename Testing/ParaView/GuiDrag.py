@@ -6,8 +6,8 @@ import time
 
 import numpy as np
 from paraview import simple
-from guisteps import begin, follow, shot
-from pvtest import MODEL, Messages, check, check_baseline, psnr
+from guisteps import SIZE, begin, follow
+from pvtest import MODEL, Messages, check, check_baseline, picture, psnr
 
 view = begin()
 reader = simple.OpenDataFile(MODEL)
@@ -55,12 +55,12 @@ def watch():
     yield from until(lambda: sources() == 1, "the second volume is deleted")
     check(display.Representation == "INR Volume", "undone to", display.Representation)
     yield from until(is_converged, "the picture is complete")
-    left = shot(view, "gui-drag")
+    left = picture(view, "gui-drag", SIZE)
     camera = view.GetActiveCamera()
     camera.Azimuth(90)
-    other = shot(view, "gui-drag-elsewhere")
+    other = picture(view, "gui-drag-elsewhere", SIZE)
     camera.Azimuth(-90)
-    again = shot(view, "gui-drag-again")
+    again = picture(view, "gui-drag-again", SIZE)
     check(left.std() > 0.05, "the volume is gone:", left.std())
     check(psnr(left, again) > 60, "the complete picture was not complete:", psnr(left, again))
     check(psnr(left, other) < 40, "pictures cannot be told apart:", psnr(left, other))

@@ -6,8 +6,8 @@ import ctypes
 import time
 
 from paraview import simple
-from guisteps import begin, follow, shot
-from pvtest import MODEL, check, check_baseline
+from guisteps import SIZE, begin, follow
+from pvtest import MODEL, check, check_baseline, picture
 
 view = begin()
 process = ctypes.CDLL(None)
@@ -88,7 +88,7 @@ def converges_and_stops():
     while time.time() < converged + 1.5:
         yield
     check(pictures_since(converged) == 0, "refined what has converged")
-    check_baseline(shot(view, "gui-refinement"), "GuiRefinement")
+    check_baseline(picture(view, "gui-refinement", SIZE), "GuiRefinement")
 
 
 def pauses_while_an_animation_plays():

@@ -7,8 +7,8 @@ import shutil
 import time
 
 from paraview import simple
-from guisteps import begin, follow, shot
-from pvtest import check, check_baseline, output_file
+from guisteps import SIZE, begin, follow
+from pvtest import check, check_baseline, output_file, picture
 
 view = begin()
 TIMES = [0.5, 2.0, 3.0]
@@ -65,7 +65,7 @@ def watch():
     simple.ResetCamera(view)
     view.GetActiveCamera().Azimuth(30)
     view.GetActiveCamera().Elevation(20)
-    check_baseline(shot(view, "gui-series"), "GuiSeries")
+    check_baseline(picture(view, "gui-series", SIZE), "GuiSeries")
     print("saved and opened", names)
 
 

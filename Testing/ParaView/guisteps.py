@@ -4,7 +4,9 @@ import os
 import sys
 
 from paraview import simple
-from pvtest import check, load_plugin, output_file, read_png
+from pvtest import check, load_plugin
+
+SIZE = (300, 300)  # of pictures, whatever the window's
 
 
 def begin():
@@ -14,14 +16,6 @@ def begin():
     sys.stderr = os.fdopen(2, "w", closefd=False)
     load_plugin()
     return simple.GetActiveViewOrCreate("RenderView")
-
-
-def shot(view, name, size=(300, 300)):
-    """What the view shows, whatever the window's size; saved as `name`.png beside the other outputs. RGB
-    in [0, 1], (h, w, 3)."""
-    path = output_file(name + ".png")
-    simple.SaveScreenshot(path, view, ImageResolution=list(size))
-    return read_png(path)
 
 
 def follow(steps, interactor):
