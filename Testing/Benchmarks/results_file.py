@@ -50,13 +50,23 @@ def result(name, value, unit, better, note="", **more):
     return {"name": name, "value": value, "unit": unit, "better": better, "note": note, **more}
 
 
-def write(topic, results, **more):
-    """Writes and returns the path; the machine's folder is its CPU and number of cores or, where
-    `more` for the context names a `gpu`, that."""
-    about = {**context(), **more}
+def path_of(topic, about):
+    """In the folder of the machine that a context is `about`: its GPU, or its CPU and number of cores."""
     name = about.get("gpu") or f"{about['cpu']} {about['cores']} cores"
     machine = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
-    path = FOLDER / machine / f"{topic}.json"
+    return FOLDER / machine / f"{topic}.json"
+
+
+def last(topic):
+    """The results that this machine's file has, none where there is no file."""
+    path = path_of(topic, context())
+    return json.loads(path.read_text())["results"] if path.exists() else []
+
+
+def write(topic, results, **more):
+    """Writes and returns the path; see path_of. `more` for the context may name a `gpu`."""
+    about = {**context(), **more}
+    path = path_of(topic, about)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps({"context": about, "results": results}, indent=1) + "\n")
     print(f"{path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path}")

@@ -9,9 +9,10 @@
 
 VOLUMES is the folder of the .vti files. What was trained and measured stays in the folder WORK, and
 a PART ("knobs", "loading", ...: those whose name has it) measures anew just that; without one, all is
-measured. What no run has measured in WORK is named, and in the result file. Times are of the processor, beside those of the default settings in turn. Where the package
-lpips of PyPI and its network's weights are on this machine, pictures are compared by that, too (see
-perceptual.py); where not, the result file says why.
+measured. Of what no run has measured in WORK, the result file keeps what this machine's has; every line
+names its commit. Times are of the processor, beside those of the default settings in turn. Where the
+package lpips of PyPI and its network's weights are on this machine, pictures are compared by that, too
+(see perceptual.py); where not, the result file says why.
 """
 import json
 import math
@@ -178,13 +179,13 @@ def main():
         if not wanted or any(name in "-".join(part) for name in wanted):
             print("-".join(part), flush=True)
             bench.measure(*part)
-    absent = ["-".join(part) for part in PARTS if not bench.file(*part).exists()]
-    if absent:
-        print("not measured yet:", *absent, file=sys.stderr)
-    lines = list(bench.measured(PARTS))
-    results = [*summaries(lines), *map(result_of, lines)]
+    results = [result for result in results_file.last("tradeoff") if "commit" in result]
+    results = {result["name"]: result for result in results}
+    for result in map(result_of, bench.measured(PARTS)):
+        results[result["name"]] = result
+    results = [*summaries(results.values()), *results.values()]
     results_file.write("tradeoff", [rounded(result) for result in results],
-                       lpips=bench.about_lpips, **({"absent": absent} if absent else {}))
+                       lpips=bench.about_lpips)
 
 
 if __name__ == "__main__":
