@@ -93,7 +93,7 @@ struct SampleRun
 /// Samples of a ray, front to back. The arrays have room for kernels to write past the last sample.
 struct SampleBatch
 {
-  static constexpr int Capacity = 32;
+  static constexpr int Capacity = 64;
   static constexpr int Room = Capacity + 16;
   BrickPath paths[2 * Capacity + 2];
   SampleRun runs[Capacity];

@@ -168,6 +168,7 @@ private:
   Origin Origins[SampleBatch::Capacity];          ///< of its runs
   BrickKey Bricks[2 * SampleBatch::Capacity + 2]; ///< of the batch's paths
   int Count = 0;
+  int Room = 0;  ///< samples that the batch is for
   int Ahead = 0; ///< samples, those left out included, from the batch's first to where it ends
   std::optional<BrickKey> Awaited; ///< by the next sample
   int RunCount = 0;                ///< in Batch

@@ -9,6 +9,19 @@
 
 namespace inr {
 
+namespace {
+
+/// Samples that are placed at once: fewer before a ray has met anything, as it may be opaque, and
+/// where little shows behind what it has met.
+int BatchFor(const RayColor& color)
+{
+  constexpr double behind = 0.25;
+  return color.transmittance < 1.0 && color.transmittance > behind ? SampleBatch::Capacity
+                                                                   : SampleBatch::Capacity / 2;
+}
+
+} // namespace
+
 // Flat: what it calls it calls for every brick and macro-cell of every ray.
 __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
 {
@@ -17,10 +30,11 @@ __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
   this->Paths = 0;
   this->LastLength = 0;
   this->Ahead = 0;
+  this->Room = BatchFor(state.color);
   this->Runs[0].setPlace(-1);
   this->Runs[1].setPlace(-1);
   const MarchSettings& settings = this->Scene.settings;
-  while (this->Count < SampleBatch::Capacity && !this->Ended && !this->Waiting) {
+  while (this->Count < this->Room && !this->Ended && !this->Waiting) {
     if (!state.samples.moveToVisible(settings)) {
       this->Ended = true;
       return;
@@ -131,8 +145,8 @@ CachedMarcher::RunPair CachedMarcher::runsFor(const CachedRay& state, double pla
 bool CachedMarcher::looksTooFar(const RunPair& runs) const
 {
   // So many samples behind the first one it may turn out that the ray is opaque.
-  constexpr int inUse = 4 * SampleBatch::Capacity;
-  constexpr int toBeLoaded = SampleBatch::Capacity;
+  constexpr int inUse = 2 * SampleBatch::Capacity;
+  constexpr int toBeLoaded = SampleBatch::Capacity / 2;
   if (this->Count == 0 || this->Ahead < toBeLoaded) {
     return false;
   }
@@ -165,7 +179,7 @@ void CachedMarcher::add(const CachedRay& state, AlikeSamples& alike, const RunPa
   const bool all = (stretch.closed && stretch.level > 0) ||
                    (runs.fine->shown().kind == ShownBlocks::Kind::All &&
                     runs.coarse->shown().kind == ShownBlocks::Kind::All);
-  const int room = SampleBatch::Capacity - this->Count;
+  const int room = this->Room - this->Count;
   int count = std::min(alike.count, all ? room : SampleRow::Most);
   if (count > 1) {
     const double length = std::min(runs.fine->exit(), runs.coarse->exit()) - place;
