@@ -122,7 +122,7 @@ public:
         this->ByDistance.push_back(this->showByDistance(scale, adaptive));
       }
     }
-    for (const double tolerance : {2.0, 4.0, 8.0, 16.0}) {
+    for (const double tolerance : {2.0, 8.0, 16.0, 32.0, 64.0}) {
       this->compareAt(tolerance);
     }
   }
