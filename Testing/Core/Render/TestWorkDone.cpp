@@ -158,4 +158,16 @@ TEST(WorkDone, CountsTheMacroCellsOnARaysWay)
   }
 }
 
+TEST(WorkDone, CountsACellOnceWhereRaysWaitForBricks)
+{
+  RecordedScene scene(SmallBricks());
+  scene.renderer.setTransferFunction(UniformMedium(0.001f));
+  const inr::Frame frame = Oblique(glm::dvec3(scene.dims));
+  const inr::WorkDone waiting = scene.render(frame);
+  const inr::WorkDone again = scene.render(frame);
+  EXPECT_GT(waiting.bricks.bricks, 100);
+  EXPECT_EQ(again.bricks.bricks, 0);
+  EXPECT_EQ(waiting.cells, again.cells);
+}
+
 } // namespace
