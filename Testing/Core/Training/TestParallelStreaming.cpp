@@ -3,13 +3,11 @@
 // Training from pieces by a group, here of threads.
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
-#include "Core/Training/ParallelTraining.h"
 #include "Core/Training/Quality.h"
 #include "Core/Training/SamplePool.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/RandomModel.h"
-#include "Testing/Core/Training/FieldReader.h"
-#include "Testing/Core/Training/ThreadGroup.h"
+#include "Testing/Core/Training/StreamingGroup.h"
 
 #include <gtest/gtest.h>
 
@@ -18,74 +16,6 @@
 #include <optional>
 
 namespace {
-
-constexpr std::int64_t MiB = std::int64_t{1} << 20;
-constexpr glm::i64vec3 Dims(60, 71, 83);
-
-const Field<float>& Volume()
-{
-  static const auto* const field =
-      new Field<float>(Waves<float>(Dims, inr::ScalarType::Float32, -3, 5));
-  return *field;
-}
-
-inr::TrainingOptions Options(std::uint64_t steps)
-{
-  inr::TrainingOptions options = Steps(steps);
-  options.description = SmallDescription();
-  options.storedAs = inr::ParameterType::Half; // packing takes longer than these trainings
-  options.memoryLimit = 200 * MiB;
-  options.threads = 1;
-  return options;
-}
-
-/// What each process of the group gets, or what it is told.
-struct Outcome
-{
-  inr::ModelPointer model;
-  std::optional<inr::Error> error;
-  std::int64_t voxelsRead = 0;
-  int reads = 0;
-};
-
-using Before = std::function<void(int rank, int reading)>;
-using Watch = std::function<bool(int rank, const inr::TrainingProgress&)>;
-
-/// Nobody reads before all others do: as with files that are opened together.
-std::vector<Outcome> Train(int size, const inr::TrainingOptions& options, const Before& before = {},
-                           const Watch& watch = {}, const Field<float>& field = Volume())
-{
-  Meeting readers(size);
-  std::vector<Outcome> outcomes(static_cast<std::size_t>(size));
-  InGroup(size, [&](const ThreadGroup& group) {
-    Outcome& outcome = outcomes[static_cast<std::size_t>(group.rank())];
-    FieldReader<float> reader(field);
-    reader.before = [&](int reading) {
-      readers.gather(group.rank(), "");
-      before ? before(group.rank(), reading) : void();
-    };
-    try {
-      outcome.model =
-          inr::TrainModel(reader, {}, options, group, [&](const inr::TrainingProgress& now) {
-            return !watch || watch(group.rank(), now);
-          });
-    } catch (const inr::Error& error) {
-      outcome.error = error;
-    }
-    outcome.voxelsRead = reader.voxelsRead;
-    outcome.reads = reader.reads;
-  });
-  return outcomes;
-}
-
-void ExpectErrors(const std::vector<Outcome>& outcomes, const std::string& words)
-{
-  for (const Outcome& outcome : outcomes) {
-    ASSERT_TRUE(outcome.error.has_value()) << "went on, instead of: " << words;
-    EXPECT_NE(std::string(outcome.error->what()).find(words), std::string::npos)
-        << outcome.error->what();
-  }
-}
 
 bool SameRanges(const inr::Model& a, const inr::Model& b)
 {
@@ -112,9 +42,9 @@ std::unique_ptr<inr::SamplePool> PoolOf(const inr::BlockGrid& blocks, FieldReade
 // With few blocks and with more than a batch has items; 3 do not divide them.
 TEST(ParallelStreaming, SharesOutTheBatchesOfOneProcess)
 {
-  FieldReader<float> reader(Volume());
+  FieldReader<float> reader(StreamedField());
   for (const std::int64_t mostVoxels : {20000, 100}) {
-    const inr::BlockGrid blocks(Dims, mostVoxels);
+    const inr::BlockGrid blocks(StreamedDims, mostVoxels);
     const auto whole = PoolOf(blocks, reader, inr::BlockShare(blocks.count()));
     whole->begin(-3, 5, 1);
     for (const int size : {2, 3, 4}) {
@@ -151,20 +81,21 @@ TEST(ParallelStreaming, SharesOutTheBatchesOfOneProcess)
 
 TEST(ParallelStreaming, GivesAllTheSameModelEveryTime)
 {
-  const inr::ModelPointer memory = inr::TrainModel(Volume().data(), {}, Options(24));
+  const inr::ModelPointer memory = inr::TrainModel(StreamedField().data(), {}, StreamedOptions(24));
   for (const int size : {1, 2, 3}) {
     SCOPED_TRACE(size);
-    inr::TrainingOptions options = Options(24);
+    inr::TrainingOptions options = StreamedOptions(24);
     options.storedAs = size == 2 ? inr::ParameterType::Quantised : options.storedAs;
-    const std::vector<Outcome> first = Train(size, options);
-    const std::vector<Outcome> again = Train(size, options);
+    const std::vector<Outcome> first = TrainTogether(size, options);
+    const std::vector<Outcome> again = TrainTogether(size, options);
     for (std::size_t rank = 0; rank < first.size(); ++rank) {
       ASSERT_TRUE(first[rank].model) << first[rank].error->what();
       EXPECT_EQ(first[rank].model->parameters, first[0].model->parameters);
       EXPECT_EQ(again[rank].model->parameters, first[0].model->parameters);
       EXPECT_EQ(first[rank].model->quality->psnr, first[0].model->quality->psnr);
       // Its part of three times the volume, and the layers between these small blocks.
-      EXPECT_LT(first[rank].voxelsRead, 5.0 * static_cast<double>(Volume().data().voxels()) / size);
+      EXPECT_LT(first[rank].voxelsRead,
+                5.0 * static_cast<double>(StreamedField().data().voxels()) / size);
     }
     EXPECT_EQ(first[0].model->volume.low, memory->volume.low);
     EXPECT_EQ(first[0].model->volume.high, memory->volume.high);
@@ -174,12 +105,12 @@ TEST(ParallelStreaming, GivesAllTheSameModelEveryTime)
 
 TEST(ParallelStreaming, MeasuresTheWholeVolume)
 {
-  Field<float> field = Volume();
+  Field<float> field = StreamedField();
   field.values[4000] = NAN;
   for (const std::int64_t measured : {std::int64_t{1} << 26, std::int64_t{1} << 14}) {
-    inr::TrainingOptions options = Options(30);
+    inr::TrainingOptions options = StreamedOptions(30);
     options.measuredVoxels = measured;
-    const std::vector<Outcome> outcomes = Train(3, options, {}, {}, field);
+    const std::vector<Outcome> outcomes = TrainTogether(3, options, {}, {}, field);
     ASSERT_TRUE(outcomes[1].model) << outcomes[1].error->what();
     const inr::Model& model = *outcomes[1].model;
     const inr::DecodedReport truth = inr::MeasureQuality(
@@ -207,15 +138,16 @@ TEST(ParallelStreaming, MeasuresTheWholeVolume)
 // While surveying, training and measuring.
 TEST(ParallelStreaming, StopsForAllWhenOneCannotRead)
 {
-  const int reads = Train(3, Options(20))[1].reads;
+  const int reads = TrainTogether(3, StreamedOptions(20))[1].reads;
   ASSERT_GE(reads, 11 + 2 + 1); // of 32 blocks, some of them again, and a box
   for (const int failing : {2, 12, reads}) {
-    ExpectErrors(Train(3, Options(20),
-                       [&](int rank, int reading) {
-                         if (rank == 1 && reading == failing) {
-                           throw inr::Error(inr::ErrorCode::CannotRead, "the disk is on fire");
-                         }
-                       }),
+    ExpectErrors(TrainTogether(3, StreamedOptions(20),
+                               [&](int rank, int reading) {
+                                 if (rank == 1 && reading == failing) {
+                                   throw inr::Error(inr::ErrorCode::CannotRead,
+                                                    "the disk is on fire");
+                                 }
+                               }),
                  "on fire");
   }
 }
@@ -224,12 +156,12 @@ TEST(ParallelStreaming, StopsForAllWhenOneIsToldToInEveryPhase)
 {
   for (const inr::TrainingPhase phase :
        {inr::TrainingPhase::Reading, inr::TrainingPhase::Training, inr::TrainingPhase::Measuring}) {
-    inr::TrainingOptions options = Options(50);
+    inr::TrainingOptions options = StreamedOptions(50);
     options.storedAs = inr::ParameterType::Half; // or quantising would ask, too, if it takes long
-    ExpectErrors(Train(2, options, {},
-                       [phase](int rank, const inr::TrainingProgress& now) {
-                         return rank == 0 || now.phase != phase;
-                       }),
+    ExpectErrors(TrainTogether(2, options, {},
+                               [phase](int rank, const inr::TrainingProgress& now) {
+                                 return rank == 0 || now.phase != phase;
+                               }),
                  "stopped");
   }
 }
@@ -237,16 +169,16 @@ TEST(ParallelStreaming, StopsForAllWhenOneIsToldToInEveryPhase)
 TEST(ParallelStreaming, GoesOnFromItsCheckpoint)
 {
   const TemporaryFolder folder;
-  const inr::ModelPointer whole = Train(2, Options(40))[0].model;
-  inr::TrainingOptions options = Options(40);
+  const inr::ModelPointer whole = TrainTogether(2, StreamedOptions(40))[0].model;
+  inr::TrainingOptions options = StreamedOptions(40);
   options.checkpoint.path = folder.file("a.checkpoint");
   const auto stop = [](int rank, const inr::TrainingProgress& now) {
     return rank != 1 || now.steps < 23;
   };
-  const std::vector<Outcome> stopped = Train(2, options, {}, stop);
+  const std::vector<Outcome> stopped = TrainTogether(2, options, {}, stop);
   ExpectErrors(stopped, "stopped");
   EXPECT_NE(std::string(stopped[0].error->what()).find("23 steps are kept"), std::string::npos);
-  EXPECT_EQ(Train(2, options)[1].model->parameters, whole->parameters);
+  EXPECT_EQ(TrainTogether(2, options)[1].model->parameters, whole->parameters);
 }
 
 // Both have to read the same blocks.
@@ -272,9 +204,9 @@ TEST(ParallelStreaming, HeedsTheSmallestMemoryLimitAndTheLargestVoxels)
     std::vector<inr::ModelPointer> models(2);
     InGroup(2, [&](const ThreadGroup& group) {
       const Process& process = group.rank() == 0 ? first : second;
-      inr::TrainingOptions options = Options(3);
+      inr::TrainingOptions options = StreamedOptions(3);
       options.memoryLimit = process.limit;
-      WithOtherArrays reader(Volume(), process.bytesPerVoxel);
+      WithOtherArrays reader(StreamedField(), process.bytesPerVoxel);
       models[static_cast<std::size_t>(group.rank())] = inr::TrainModel(reader, {}, options, group);
     });
     EXPECT_EQ(models[0]->parameters, models[1]->parameters);
@@ -294,14 +226,14 @@ TEST(ParallelStreaming, HeedsTheSmallestMemoryLimitAndTheLargestVoxels)
 
 TEST(ParallelStreaming, RefusesDifferentTypes)
 {
-  const Field<double> doubles = Waves<double>(Dims, inr::ScalarType::Float64, -3, 5);
+  const Field<double> doubles = Waves<double>(StreamedDims, inr::ScalarType::Float64, -3, 5);
   std::vector<Outcome> outcomes(2);
   InGroup(2, [&](const ThreadGroup& group) {
-    FieldReader<float> floatReader(Volume());
+    FieldReader<float> floatReader(StreamedField());
     FieldReader<double> doubleReader(doubles);
     inr::VolumeReader* const readers[] = {&floatReader, &doubleReader};
     try {
-      inr::TrainModel(*readers[group.rank()], {}, Options(2), group);
+      inr::TrainModel(*readers[group.rank()], {}, StreamedOptions(2), group);
     } catch (const inr::Error& error) {
       outcomes[static_cast<std::size_t>(group.rank())].error = error;
     }
@@ -311,7 +243,8 @@ TEST(ParallelStreaming, RefusesDifferentTypes)
 
 TEST(ParallelStreaming, SaysHowMuchMemoryEachProcessNeeds)
 {
-  inr::TrainingOptions options = Options(10);
+  inr::TrainingOptions options = StreamedOptions(10);
   options.memoryLimit = 100 * MiB;
-  ExpectErrors(Train(2, options), "in each process and its share of the MemoryLimit is 100 MiB");
+  ExpectErrors(TrainTogether(2, options),
+               "in each process and its share of the MemoryLimit is 100 MiB");
 }
