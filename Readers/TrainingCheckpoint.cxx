@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TrainingCheckpoint.h"
 
+#include "Core/Training/KeptSurvey.h"
+
 #include <vtkLogger.h>
 #include <vtkObject.h>
 #include <vtkSetGet.h>
@@ -33,6 +35,10 @@ void TrainingCheckpoint::note(inr::CheckpointEvent event, const std::string& tex
     this->Warnings.push_back(text);
     return;
   }
+  if (event == inr::CheckpointEvent::SurveyKept) {
+    this->HasSurvey = true;
+    return;
+  }
   this->Ours = true;
   if (event == inr::CheckpointEvent::Resumed) {
     this->News.push_back(text);
@@ -56,11 +62,14 @@ void TrainingCheckpoint::tell()
   }
 }
 
-void TrainingCheckpoint::remove()
+void TrainingCheckpoint::remove(int rank)
 {
+  std::error_code ignored; // they are of no harm
   if (this->Ours) {
-    std::error_code ignored; // it is of no harm
     std::filesystem::remove(this->Path, ignored);
+  }
+  if (this->HasSurvey) {
+    std::filesystem::remove(inr::SurveyPath(this->Path, rank), ignored);
   }
 }
 

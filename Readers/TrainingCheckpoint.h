@@ -24,8 +24,9 @@ public:
   /// made this.
   void tell();
 
-  /// Removes the file if it is of this training: when the model is safe.
-  void remove();
+  /// Removes what is of this training, and of a group what process `rank` has: when the model is
+  /// safe.
+  void remove(int rank);
 
   /// The error, which says that there is a checkpoint, where it is of use.
   inr::Error complete(const inr::Error& error);
@@ -40,5 +41,6 @@ private:
   std::mutex Mutex;
   std::vector<std::string> News;
   std::vector<std::string> Warnings;
-  bool Ours = false; ///< the training went on from there, or has written it
+  bool Ours = false;      ///< the training went on from there, or has written it
+  bool HasSurvey = false; ///< of this process
 };

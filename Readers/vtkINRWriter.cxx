@@ -314,7 +314,7 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
     throw checkpoint.complete(error);
   }
   checkpoint.tell();
-  checkpoint.remove();
+  checkpoint.remove(group.rank());
   this->UpdateProgress(this->Internal->Steps.progress(1.0));
   this->Internal->Previous = model->volume.time ? model : nullptr;
   if (model->training->nonFinite > 0 && group.rank() == 0) {

@@ -96,8 +96,10 @@ public:
 
   ///@{
   /// Seconds of training between two checkpoints, which take 14 bytes per parameter and, of an
-  /// input that is read in pieces, its samples: 512 MiB at most, and 16 bytes per macro-cell. The
-  /// distance grows where writing takes more than a twentieth of the time. 0 = none. Default 60.
+  /// input that is read in pieces, its samples: 512 MiB at most, and 16 bytes per macro-cell. Each
+  /// of several processes writes its samples once, to a file of its own (FileName +
+  /// ".checkpoint.rank" and its number), if reading all took longer than that. The distance grows
+  /// where writing takes more than a twentieth of the time. 0 = none. Default 60.
   vtkSetClampMacro(CheckpointInterval, double, 0, VTK_DOUBLE_MAX);
   vtkGetMacro(CheckpointInterval, double);
   ///@}

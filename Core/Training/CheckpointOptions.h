@@ -11,7 +11,8 @@ enum class CheckpointEvent {
   Resumed, ///< the training goes on from it
   Ignored, ///< there is one, but none that this training can go on from
   Written,
-  Failed ///< cannot be written; told once, and the training goes on
+  SurveyKept, ///< of a group: what this process has read of the data is in a file beside
+  Failed      ///< cannot be written; told once, and the training goes on
 };
 
 /// A file from which a training that was stopped or killed goes on, to the very result that it

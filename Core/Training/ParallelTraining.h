@@ -20,8 +20,9 @@ ModelPointer TrainModel(const VolumePiece& piece, const VolumeInfo& info,
 /// many as the others, any of which its `reader` must be able to give. options.memoryLimit is for
 /// each process; the smallest counts. n processes give the model of one with mini-batches n times
 /// as large and the same blocks, the same for a given n with maximumSteps. One thread reads and
-/// trains in turns, since neither readers nor groups can be expected to stand two. Otherwise as
-/// above; throws what a reader throws in all processes.
+/// trains in turns, since neither readers nor groups can be expected to stand two. What has been
+/// read for the first time is kept beside the checkpoint, see KeptSurvey. Otherwise as above;
+/// throws what a reader throws in all processes.
 ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingGroup& group,
                         const TrainingObserver& observer = {});

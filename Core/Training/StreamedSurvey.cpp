@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace inr {
 
@@ -66,16 +67,28 @@ bool StreamedVolume::isAsBefore(std::uint64_t number)
   constexpr std::int64_t share = 16; // of so many blocks one, and not more than some
   constexpr std::int64_t most = 8;
   const std::uint64_t stream = RandomBits(StreamSeed(this->Seed, RandomStream::KeptBlocks), number);
-  const std::int64_t count = std::clamp(this->Blocks.count() / share, std::int64_t{1}, most);
+  const std::int64_t count = std::clamp(this->Share.mostBlocks / share, std::int64_t{1}, most);
+  bool same = true;
   for (std::int64_t k = 0; k < count; ++k) {
-    const auto block = static_cast<std::int64_t>(RandomBits(stream, static_cast<std::uint64_t>(k)) %
-                                                 static_cast<std::uint64_t>(this->Blocks.count()));
-    const VolumePiece piece = this->read(this->Blocks.voxels(block));
-    if (this->Pool.differences(block, piece, this->tolerance(), this->Threads) > 0) {
-      return false;
-    }
+    this->Group.together([&] { same = this->isAsBefore(stream, k) && same; });
   }
-  return true;
+  const std::vector<bool> all = this->Group.valuesOfAll(same);
+  return std::all_of(all.begin(), all.end(), [](bool each) { return each; });
+}
+
+/// Of the k-th block of a random choice.
+bool StreamedVolume::isAsBefore(std::uint64_t stream, std::int64_t k)
+{
+  if (this->Share.blocks() == 0) {
+    this->readNothing();
+    return true;
+  }
+  const auto blocks = static_cast<std::uint64_t>(this->Share.blocks());
+  const std::int64_t block =
+      this->Share.firstBlock +
+      static_cast<std::int64_t>(RandomBits(stream, static_cast<std::uint64_t>(k)) % blocks);
+  const VolumePiece piece = this->read(this->Blocks.voxels(block));
+  return this->Pool.differences(block, piece, this->tolerance(), this->Threads) == 0;
 }
 
 void StreamedVolume::sampleEstimate(std::int64_t block, const VolumePiece& piece)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
-#include "Core/Training/Checkpoint.h"
+#include "Core/Training/KeptSurvey.h"
 #include "Core/Training/ParallelTraining.h"
 #include "Core/Training/ProgressRelay.h"
 #include "Core/Training/StreamBudget.h"
@@ -11,9 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 #include <thread>
 
 namespace inr {
@@ -113,8 +111,8 @@ private:
 };
 
 /// A pool that is read on the thread that trains: the one from which a process may call the others,
-/// and the host application be called. Each process has a part of it and the first one the
-/// checkpoint, so nothing of it is kept there.
+/// and the host application be called. Nothing of it is in the checkpoint, which rank 0 writes: see
+/// KeptSurvey.
 class PoolReadBetweenSteps : public PoolBatches
 {
 public:
@@ -141,41 +139,6 @@ void Train(TrainingRun& run, Surveyed& surveyed, const TrainingGroup& group, con
   }
   PoolReadBetweenSteps batches(volume, pool);
   run.train(batches, volume.estimate(PsnrEstimate::UsualVoxels), arena);
-}
-
-/// Where it may tell of the volume.
-bool HasCheckpoint(const TrainingOptions& options, const TrainingGroup& group)
-{
-  const CheckpointOptions& kept = options.checkpoint;
-  std::error_code unknown;
-  return group.size() == 1 && kept.resume && !kept.path.empty() &&
-         std::filesystem::exists(kept.path, unknown);
-}
-
-/// Takes up what the checkpoint tells of the volume, as long as it is one of the training that is
-/// asked for and the volume still looks the same. Otherwise `volume` may have become anything. What
-/// may be wrong with the file the user learns where the training goes on from it, or not.
-bool ResumeSurvey(StreamedVolume& volume, const VolumeInfo& whole, const TrainingOptions& options)
-{
-  std::uint64_t steps = 0;
-  try {
-    const CheckpointFile file(options.checkpoint.path);
-    if (!file.hasSurvey()) {
-      return false;
-    }
-    file.loadSurvey(volume.state());
-    const TrainingObserver nobody;
-    const TrainingRun run(whole, volume.statistics(), options, nobody);
-    const PoolBatches batches(volume, volume.pool(), true);
-    const PsnrEstimate estimate = volume.estimate(PsnrEstimate::UsualVoxels);
-    if (!volume.resume() || run.identity(estimate, batches) != file.identity()) {
-      return false;
-    }
-    steps = file.state().steps;
-  } catch (const Error&) {
-    return false;
-  }
-  return volume.isAsBefore(steps);
 }
 
 /// The same in all processes, whose readers may keep different arrays beside the one.
@@ -225,9 +188,8 @@ ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const Trai
                                             options, group, arena);
   };
   Surveyed surveyed{makeVolume()};
-  if (HasCheckpoint(options, group)) {
-    surveyed.isFromCheckpoint = ResumeSurvey(*surveyed.volume, whole, options);
-  }
+  const KeptSurvey kept(whole, options, group);
+  surveyed.isFromCheckpoint = kept.resume(*surveyed.volume);
   if (!surveyed.isFromCheckpoint) {
     surveyed.volume.reset(); // there is memory for one
     surveyed.volume = makeVolume();
@@ -241,6 +203,7 @@ ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const Trai
   if (run.isConstant()) {
     return run.constantModel();
   }
+  kept.keep(volume, run, surveyed.isFromCheckpoint);
   Train(run, surveyed, group, arena, relay, ShareToRead(volume, options));
   std::shared_ptr<Model> trained;
   group.together([&] { trained = run.store(volume.estimate(PsnrEstimate::StoringVoxels)); });

@@ -37,7 +37,7 @@ public:
   bool resume();
 
   /// Reads a few blocks and says whether the volume is still the one that state() tells of; others
-  /// for another `number`.
+  /// for another `number`. For all.
   bool isAsBefore(std::uint64_t number);
 
   const VolumeStatistics& statistics() const { return this->Statistics; }
@@ -73,6 +73,7 @@ private:
   void requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const;
   void readNothing();
   void survey(std::int64_t block);
+  bool isAsBefore(std::uint64_t stream, std::int64_t k);
   void sampleEstimate(std::int64_t block, const VolumePiece& piece);
   void requireKnownValues(std::int64_t block, const VolumePiece& piece) const;
   double tolerance() const;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Processes of pvbatch that train one model of a file of which they hold no piece: "write" in several
 processes, "check" in one."""
+import glob
 import os
 import resource
 import sys
@@ -37,12 +38,18 @@ def save(path):
     source = simple.ImageReader(FileNames=[raw], DataScalarType="float", DataExtent=extent,
                                 DataByteOrder="LittleEndian", FileDimensionality=3,
                                 DataSpacing=[1, 2, 3])
+    writer = servermanager.writers.INRWriter(Input=source, FileName=path, MemoryLimit=LIMIT,
+                                             MaximumSteps=STEPS, TimeLimit=0, ModelConfig=MODEL,
+                                             CheckpointInterval=1e-3, ReadableByInstantVNR=1)
+    kept = set()
+    writer.SMProxy.GetClientSideObject().AddObserver(
+        "ProgressEvent", lambda *_: kept.update(glob.glob(path + ".checkpoint.rank?")))
     before = peak()
     with Messages() as messages:
-        servermanager.writers.INRWriter(Input=source, FileName=path, MemoryLimit=LIMIT,
-                                        MaximumSteps=STEPS, TimeLimit=0, ModelConfig=MODEL,
-                                        ReadableByInstantVNR=1).UpdatePipeline()
+        writer.UpdatePipeline()
     check(messages.errors() == 0, "saving reported", messages.text)
+    check(len(kept) == 2, "of what the processes had read, these were kept:", kept)
+    check(glob.glob(path + ".*") == [], "files are left", glob.glob(path + ".*"))
     return peak() - before
 
 

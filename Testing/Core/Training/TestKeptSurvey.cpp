@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What each process of a group keeps of its first reading, for a training that goes on.
+#include "Core/Training/Checkpoint.h"
+#include "Core/Training/KeptSurvey.h"
+#include "Testing/Core/Model/TemporaryFolder.h"
+#include "Testing/Core/Training/StreamingGroup.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+
+namespace {
+
+using inr::CheckpointEvent;
+
+/// What all processes read, in voxels of the volume.
+double VolumesRead(const std::vector<Outcome>& outcomes)
+{
+  double voxels = 0;
+  for (const Outcome& outcome : outcomes) {
+    voxels += static_cast<double>(outcome.voxelsRead);
+  }
+  return voxels / static_cast<double>(StreamedField().data().voxels());
+}
+
+class KeptSurvey : public testing::Test
+{
+protected:
+  KeptSurvey()
+  {
+    this->Options.checkpoint.path = this->Path;
+    this->Options.checkpoint.interval = 0;
+    this->Options.checkpoint.tell = [this](CheckpointEvent event, const std::string&) {
+      this->Kept += event == CheckpointEvent::SurveyKept ? 1 : 0;
+      this->Failed += event == CheckpointEvent::Failed ? 1 : 0;
+    };
+  }
+
+  std::vector<Outcome> train(const Watch& watch = {})
+  {
+    this->Kept = 0;
+    this->Failed = 0;
+    this->Surveyed = false;
+    return TrainTogether(
+        this->Size, this->Options, {},
+        [&](int rank, const inr::TrainingProgress& now) {
+          this->Surveyed = this->Surveyed || now.phase == inr::TrainingPhase::Reading;
+          return !watch || watch(rank, now);
+        },
+        this->Data);
+  }
+
+  void stopAfter(std::uint64_t steps)
+  {
+    ExpectErrors(this->train([steps](int rank, const inr::TrainingProgress& now) {
+      return rank != 1 || now.steps < steps;
+    }),
+                 "stopped");
+  }
+
+  std::vector<Outcome> trainWithoutCheckpoint()
+  {
+    inr::TrainingOptions options = this->Options;
+    options.checkpoint = {};
+    return TrainTogether(this->Size, options, {}, {}, this->Data);
+  }
+
+  /// In all processes, to the last bit.
+  void expectModelOf(const std::vector<Outcome>& other, const std::vector<Outcome>& outcomes)
+  {
+    for (std::size_t rank = 0; rank < outcomes.size(); ++rank) {
+      const inr::ModelPointer& model = outcomes[rank].model;
+      ASSERT_TRUE(model) << outcomes[rank].error->what();
+      EXPECT_EQ(model->parameters, other[rank].model->parameters);
+      EXPECT_EQ(model->volume.low, other[rank].model->volume.low);
+      EXPECT_EQ(model->volume.high, other[rank].model->volume.high);
+      EXPECT_EQ(model->quality->psnr, other[rank].model->quality->psnr);
+    }
+  }
+
+  std::string file(int rank) const { return inr::SurveyPath(this->Path, rank); }
+
+  TemporaryFolder Folder;
+  std::string Path = Folder.file("a.inr.checkpoint");
+  inr::TrainingOptions Options = StreamedOptions(40);
+  int Size = 2;
+  Field<float> Data = StreamedField();
+  std::atomic<int> Kept{0};
+  std::atomic<int> Failed{0};
+  std::atomic<bool> Surveyed{false};
+};
+
+TEST_F(KeptSurvey, SparesAGroupASecondReading)
+{
+  for (const int size : {2, 5}) {
+    SCOPED_TRACE(size);
+    this->Size = size;
+    const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+    this->stopAfter(3);
+    EXPECT_TRUE(this->Surveyed);
+    EXPECT_EQ(this->Kept, size);
+    const std::vector<Outcome> resumed = this->train();
+    this->expectModelOf(whole, resumed);
+    EXPECT_FALSE(this->Surveyed);
+    EXPECT_EQ(this->Kept, size);
+    EXPECT_LT(VolumesRead(resumed), VolumesRead(whole) - 0.7); // some blocks are looked at
+  }
+}
+
+// What has been read again until then is read again: the samples are those of the step.
+TEST_F(KeptSurvey, FitsEveryCheckpointOfItsTraining)
+{
+  const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+  for (const std::uint64_t steps : {1u, 17u, 25u, 39u}) {
+    this->stopAfter(steps);
+    EXPECT_EQ(this->Surveyed, steps == 1);
+  }
+  this->expectModelOf(whole, this->train());
+  EXPECT_FALSE(this->Surveyed);
+}
+
+TEST_F(KeptSurvey, IsReadAgainWhereAFileIsBrokenOrMissing)
+{
+  const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+  this->stopAfter(20);
+  std::string bytes = ReadBytes(this->file(1));
+  bytes[bytes.size() / 2] ^= 4;
+  WriteBytes(this->file(1), bytes);
+  this->expectModelOf(whole, this->train());
+  EXPECT_TRUE(this->Surveyed);
+
+  std::filesystem::remove(this->file(0));
+  this->expectModelOf(whole, this->train());
+  EXPECT_TRUE(this->Surveyed);
+}
+
+TEST_F(KeptSurvey, IsOfNoOtherTraining)
+{
+  this->stopAfter(20);
+  this->Options.seed = 2;
+  const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+  this->expectModelOf(whole, this->train());
+  EXPECT_TRUE(this->Surveyed);
+}
+
+TEST_F(KeptSurvey, IsReadAgainWhenTheDataHaveChanged)
+{
+  this->stopAfter(20);
+  std::reverse(this->Data.values.begin(), this->Data.values.end()); // within their range
+  const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+  this->expectModelOf(whole, this->train());
+  EXPECT_TRUE(this->Surveyed);
+}
+
+// As where processes are killed while they write: each file is right by itself.
+TEST_F(KeptSurvey, IsOfOneTrainingInAllProcesses)
+{
+  const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+  float& last = this->Data.values.back();
+  const float before = last;
+  last = 100; // in no block that is looked at, but in the range
+  this->stopAfter(5);
+  const std::string other = ReadBytes(this->file(0));
+  last = before;
+  std::filesystem::remove(this->Path);
+  this->stopAfter(20);
+  EXPECT_TRUE(this->Surveyed); // what belongs to no checkpoint is not trusted
+  WriteBytes(this->file(0), other);
+  this->expectModelOf(whole, this->train());
+  EXPECT_TRUE(this->Surveyed);
+}
+
+TEST_F(KeptSurvey, IsNotWorthAFileWhereReadingIsShort)
+{
+  this->Options.checkpoint.interval = 3600;
+  this->stopAfter(20);
+  EXPECT_EQ(this->Kept, 0);
+  EXPECT_FALSE(std::filesystem::exists(this->file(0)));
+  this->train();
+  EXPECT_TRUE(this->Surveyed);
+}
+
+TEST_F(KeptSurvey, IsLeftAloneWhereNothingIsToBeResumed)
+{
+  this->stopAfter(20);
+  this->Options.checkpoint.resume = false;
+  this->train();
+  EXPECT_TRUE(this->Surveyed);
+}
+
+TEST_F(KeptSurvey, SaysWhereItCannotBeWritten)
+{
+  std::filesystem::create_directory(this->file(1));
+  const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+  this->expectModelOf(whole, this->train());
+  EXPECT_EQ(this->Kept, 1);
+  EXPECT_EQ(this->Failed, 1);
+}
+
+} // namespace
