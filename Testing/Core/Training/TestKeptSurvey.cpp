@@ -140,10 +140,12 @@ TEST_F(KeptSurvey, IsReadAgainWhereAFileIsBrokenOrMissing)
 TEST_F(KeptSurvey, IsOfNoOtherTraining)
 {
   this->stopAfter(20);
-  this->Options.seed = 2;
-  const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
-  this->expectModelOf(whole, this->train());
-  EXPECT_TRUE(this->Surveyed);
+  for (const auto& change : {&inr::TrainingOptions::seed, &inr::TrainingOptions::maximumSteps}) {
+    this->Options.*change += 1;
+    const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+    this->expectModelOf(whole, this->train());
+    EXPECT_TRUE(this->Surveyed);
+  }
 }
 
 TEST_F(KeptSurvey, IsReadAgainWhenTheDataHaveChanged)
