@@ -103,7 +103,7 @@ bool KeptSurvey::isOfOneTraining(const TrainingIdentity& mine) const
 {
   std::string text;
   for (const auto& [name, value] : mine) {
-    text += name + '\n' + value + '\n';
+    text.append(name).append("\n").append(value).append("\n");
   }
   return this->isInAll(this->Group.fromFirst(text) == text);
 }

@@ -63,6 +63,7 @@ inline void InGroup(int size, const std::function<void(const ThreadGroup&)>& wor
 {
   Meeting meeting(size);
   std::vector<std::thread> threads;
+  threads.reserve(static_cast<std::size_t>(size));
   for (int rank = 0; rank < size; ++rank) {
     threads.emplace_back([&, rank] { work(ThreadGroup(meeting, rank, size)); });
   }
