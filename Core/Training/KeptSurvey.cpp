@@ -19,6 +19,15 @@ TrainingIdentity IdentityOf(const TrainingRun& run, StreamedVolume& volume)
   return run.identity(volume.estimate(PsnrEstimate::UsualVoxels), volume.pool());
 }
 
+std::string ToText(const TrainingIdentity& identity)
+{
+  std::string text;
+  for (const auto& [name, value] : identity) {
+    text.append(name).append("\n").append(value).append("\n");
+  }
+  return text;
+}
+
 } // namespace
 
 KeptSurvey::KeptSurvey(const VolumeInfo& whole, const TrainingOptions& options,
@@ -34,13 +43,14 @@ bool KeptSurvey::resume(StreamedVolume& volume) const
     return false;
   }
   const std::optional<TrainingIdentity> kept = this->load(volume);
-  if (!this->isInAll(kept.has_value()) || !this->isOfOneTraining(*kept)) {
+  const Before before = this->before();
+  if (!this->isInAll(kept.has_value()) || !this->isOfTheTraining(*kept, before)) {
     return false;
   }
   const TrainingObserver nobody;
   const TrainingRun run(this->Whole, volume.statistics(), this->Options, nobody, &this->Group);
   return this->isInAll(IdentityOf(run, volume) == *kept) &&
-         volume.isAsBefore(this->Group.valueOfFirst(this->steps()));
+         volume.isAsBefore(this->Group.valueOfFirst(before.steps));
 }
 
 void KeptSurvey::keep(StreamedVolume& volume, const TrainingRun& run, bool resumed) const
@@ -75,12 +85,9 @@ bool KeptSurvey::isInAll(bool mine) const
 bool KeptSurvey::isThere() const
 {
   const CheckpointOptions& checkpoint = this->Options.checkpoint;
-  const auto exists = [](const std::string& path) {
-    std::error_code unknown;
-    return std::filesystem::exists(path, unknown);
-  };
-  return checkpoint.resume && !checkpoint.path.empty() && exists(this->Path) &&
-         (this->Group.rank() > 0 || exists(checkpoint.path)); // or who removes it gets rid of none
+  std::error_code unknown;
+  return checkpoint.resume && !checkpoint.path.empty() &&
+         std::filesystem::exists(this->Path, unknown);
 }
 
 /// Of which training it is; nothing where it cannot be read or is of another kind of volume.
@@ -98,24 +105,24 @@ std::optional<TrainingIdentity> KeptSurvey::load(StreamedVolume& volume) const
   }
 }
 
-/// Processes may have been killed after some of them had written their files.
-bool KeptSurvey::isOfOneTraining(const TrainingIdentity& mine) const
+/// Of which the checkpoint is that rank 0 has, in all processes: they may have been killed after
+/// some of them had written their files, or the checkpoint been removed, so that it is begun anew.
+bool KeptSurvey::isOfTheTraining(const TrainingIdentity& mine, const Before& before) const
 {
-  std::string text;
-  for (const auto& [name, value] : mine) {
-    text.append(name).append("\n").append(value).append("\n");
-  }
-  return this->isInAll(this->Group.fromFirst(text) == text);
+  return this->isInAll(this->Group.fromFirst(before.training) == ToText(mine));
 }
 
-/// Of the checkpoint; 0 where there is none.
-std::uint64_t KeptSurvey::steps() const
+/// Nothing in all processes but rank 0, and where there is no checkpoint.
+KeptSurvey::Before KeptSurvey::before() const
 {
+  if (this->Group.rank() > 0) {
+    return {};
+  }
   try {
-    return this->Group.rank() == 0 ? CheckpointFile(this->Options.checkpoint.path).state().steps
-                                   : 0;
+    const CheckpointFile file(this->Options.checkpoint.path);
+    return {ToText(file.identity()), file.state().steps};
   } catch (const Error&) {
-    return 0;
+    return {};
   }
 }
 

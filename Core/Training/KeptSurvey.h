@@ -6,6 +6,7 @@
 #include "Core/Training/TrainingGroup.h"
 #include "Core/Training/TrainingRun.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -32,11 +33,18 @@ public:
   void keep(StreamedVolume& volume, const TrainingRun& run, bool resumed) const;
 
 private:
+  /// What the checkpoint says.
+  struct Before
+  {
+    std::string training; ///< its identity
+    std::uint64_t steps = 0;
+  };
+
   bool isInAll(bool mine) const;
   bool isThere() const;
   std::optional<TrainingIdentity> load(StreamedVolume& volume) const;
-  bool isOfOneTraining(const TrainingIdentity& mine) const;
-  std::uint64_t steps() const;
+  bool isOfTheTraining(const TrainingIdentity& mine, const Before& before) const;
+  Before before() const;
 
   const VolumeInfo& Whole;
   const TrainingOptions& Options;

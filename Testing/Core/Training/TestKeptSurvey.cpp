@@ -157,22 +157,29 @@ TEST_F(KeptSurvey, IsReadAgainWhenTheDataHaveChanged)
   EXPECT_TRUE(this->Surveyed);
 }
 
-// As where processes are killed while they write: each file is right by itself.
-TEST_F(KeptSurvey, IsOfOneTrainingInAllProcesses)
+// As where processes are killed while they write, or a checkpoint is removed to begin anew: each
+// file is right by itself, and the data differ in a place that nobody looks at, and in their range.
+TEST_F(KeptSurvey, IsThatOfTheCheckpointInAllProcesses)
 {
   const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
   float& last = this->Data.values.back();
   const float before = last;
-  last = 100; // in no block that is looked at, but in the range
+  last = 100;
   this->stopAfter(5);
-  const std::string other = ReadBytes(this->file(0));
+  const std::string other[] = {ReadBytes(this->file(0)), ReadBytes(this->file(1))};
   last = before;
   std::filesystem::remove(this->Path);
   this->stopAfter(20);
-  EXPECT_TRUE(this->Surveyed); // what belongs to no checkpoint is not trusted
-  WriteBytes(this->file(0), other);
-  this->expectModelOf(whole, this->train());
   EXPECT_TRUE(this->Surveyed);
+  const std::string checkpoint = ReadBytes(this->Path);
+  for (const int others : {1, 2}) {
+    for (int rank = 0; rank < others; ++rank) {
+      WriteBytes(this->file(rank), other[rank]);
+    }
+    WriteBytes(this->Path, checkpoint);
+    this->expectModelOf(whole, this->train());
+    EXPECT_TRUE(this->Surveyed);
+  }
 }
 
 TEST_F(KeptSurvey, IsNotWorthAFileWhereReadingIsShort)
