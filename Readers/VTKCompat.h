@@ -6,6 +6,7 @@
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 7, 0)
 #include <vtkMarchingCellsContourCases.h>
 #else
+#include <vtkArrayIteratorTemplate.h>
 #include <vtkMarchingCubesTriangleCases.h>
 #endif
 
@@ -30,6 +31,11 @@
 #define INR_VTK_ARRAY_CAPACITY Capacity
 #else
 #define INR_VTK_ARRAY_CAPACITY Size
+#endif
+
+/// Tables, statistics and writers of text go through arrays by iterators; later by array dispatch.
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 7, 0)
+#define INR_VTK_ARRAY_ITERATORS
 #endif
 
 /// Writers override WriteDataAndReturn instead of WriteData.

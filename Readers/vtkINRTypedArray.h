@@ -14,7 +14,6 @@
 #include "VTKCompat.h"
 #include "vtkINRDataArray.h"
 
-#include <vtkArrayIteratorTemplate.h>
 #include <vtkGenericDataArray.h>
 #include <vtkObjectFactory.h>
 
@@ -87,14 +86,15 @@ public:
   void SetNumberOfTuples(vtkIdType tuples) override { this->Resize(tuples); }
   void Squeeze() override {}
 
-  /// Over a decoded copy of all values. Tables, statistics and writers of text go by these, without
-  /// asking whether there is one.
+#ifdef INR_VTK_ARRAY_ITERATORS
+  /// Over a decoded copy of all values. Who goes by these does not ask whether there is one.
   VTK_NEWINSTANCE vtkArrayIterator* NewIterator() override
   {
     auto* iterator = vtkArrayIteratorTemplate<T>::New();
     iterator->Initialize(this);
     return iterator;
   }
+#endif
 
   /// A decoded copy of all values, kept for the next call; null, with an error, for too many.
   void* GetVoidPointer(vtkIdType index) override
