@@ -8,7 +8,8 @@
 
 namespace inr {
 
-/// Network outputs at scattered points, for one instruction set. The model must have panels.
+/// Network outputs at scattered points, for one instruction set. The model must be packed
+/// for its precision.
 struct EvaluateKernel
 {
   /// Floats of scratch memory that `evaluate` needs.
@@ -18,8 +19,9 @@ struct EvaluateKernel
                    float* workspace);
 };
 
-/// The kernel built for `set`, which must be usable.
-const EvaluateKernel& EvaluateKernelFor(InstructionSet set);
+/// The kernel built for `set`; both must be usable.
+const EvaluateKernel& EvaluateKernelFor(InstructionSet set,
+                                        InferencePrecision precision = InferencePrecision::Float32);
 
 namespace baseline {
 extern const EvaluateKernel Evaluate;
@@ -28,6 +30,9 @@ namespace avx2 {
 extern const EvaluateKernel Evaluate;
 }
 namespace avx512 {
+extern const EvaluateKernel Evaluate;
+}
+namespace avx512bf16 {
 extern const EvaluateKernel Evaluate;
 }
 

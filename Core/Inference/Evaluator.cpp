@@ -58,6 +58,14 @@ Layout CheckedLayout(const Model& model)
   return layout;
 }
 
+InferencePrecision PrecisionFor(const ModelView& model, InstructionSet set,
+                                InferencePrecision wanted)
+{
+  const bool can =
+      IsUsable(wanted, set) && (wanted == InferencePrecision::Float32 || StaysInRange(model));
+  return can ? wanted : InferencePrecision::Float32;
+}
+
 LatticeAxis ViewOf(const std::vector<float>& axis)
 {
   return {axis.data(), static_cast<std::int64_t>(axis.size())};
@@ -66,12 +74,14 @@ LatticeAxis ViewOf(const std::vector<float>& axis)
 class KernelEvaluator : public Evaluator
 {
 public:
-  KernelEvaluator(ModelPointer model, InstructionSet set)
-      : Source(std::move(model)), Set(set), Kernel(EvaluateKernelFor(set)),
-        LatticeKernel(GridKernelFor(set)),
+  KernelEvaluator(ModelPointer model, InstructionSet set, InferencePrecision wanted)
+      : Source(std::move(model)), Set(set),
         Views(this->Source->description, CheckedLayout(*this->Source),
               this->Source->parameters.data()),
-        Network(this->Views.view())
+        Precision(PrecisionFor(this->Views.view(), set, wanted)),
+        Kernel(EvaluateKernelFor(set, this->Precision)),
+        LatticeKernel(GridKernelFor(set, this->Precision)),
+        Network(this->Views.view(), this->Precision)
   {
     const std::vector<float>& parameters = this->Source->parameters;
     PreferHugePages(parameters.data(), parameters.size() * sizeof(float));
@@ -105,7 +115,11 @@ public:
     }
   }
 
-  std::string kernel() const override { return InstructionSetName(this->Set); }
+  std::string kernel() const override
+  {
+    const std::string name = InstructionSetName(this->Set);
+    return this->Precision == InferencePrecision::BFloat16 ? name + " bfloat16" : name;
+  }
 
 private:
   /// Values of `count` positions some of which overflow: halves them until it is known which do, so
@@ -158,9 +172,10 @@ private:
 
   ModelPointer Source;
   InstructionSet Set;
+  ModelViewStorage Views;
+  InferencePrecision Precision;
   const EvaluateKernel& Kernel;
   const GridKernel& LatticeKernel;
-  ModelViewStorage Views;
   PackedNetwork Network;
 };
 
@@ -180,16 +195,21 @@ void Evaluator::evaluateGrid(const std::vector<float> (&axes)[3], float* values)
   this->evaluate(positions.data(), static_cast<std::int64_t>(positions.size()), values);
 }
 
-const GridKernel& GridKernelFor(InstructionSet set) { return INR_KERNEL_FOR(set, Grid); }
-
-const EvaluateKernel& EvaluateKernelFor(InstructionSet set)
+const GridKernel& GridKernelFor(InstructionSet set, InferencePrecision precision)
 {
-  return INR_KERNEL_FOR(set, Evaluate);
+  return INR_BFLOAT16_KERNEL_OR(INR_KERNEL_FOR(set, Grid), precision, Grid);
 }
 
-std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const std::string& kernel)
+const EvaluateKernel& EvaluateKernelFor(InstructionSet set, InferencePrecision precision)
 {
-  return std::make_shared<KernelEvaluator>(std::move(model), ChooseInstructionSet(kernel));
+  return INR_BFLOAT16_KERNEL_OR(INR_KERNEL_FOR(set, Evaluate), precision, Evaluate);
+}
+
+std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const std::string& kernel,
+                                               InferencePrecision precision)
+{
+  return std::make_shared<KernelEvaluator>(std::move(model), ChooseInstructionSet(kernel),
+                                           precision);
 }
 
 void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm::vec3* positions,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Inference/InferencePrecision.h"
 #include "Core/Model/Model.h"
 #include "Core/Parallel.h"
 
@@ -40,14 +41,21 @@ public:
   /// Points that a call should have where there are as many: a device is far away. 0: any number.
   virtual std::int64_t pointsAtOnce() const { return 0; }
 
-  /// The instruction set in use: "avx512", "avx2" or "baseline".
+  /// The instruction set in use: "avx512", "avx2" or "baseline"; with " bfloat16" where products
+  /// are made of that.
   virtual std::string kernel() const = 0;
 };
 
+/// With BFloat16, weights and what goes into a layer are off by up to 2^-9 of themselves, which
+/// adds at most (2^-8 + 2^-18) of the sum of the products' magnitudes to what a sum loses. Where
+/// the kernel cannot do that here, or the model's numbers might leave float's range, it is Float32.
+///
 /// The fastest kernel that this processor runs; `kernel` asks for one by name (for tests) and
 /// Error(Unsupported) says that it is not to be had here. Throws Error(InvalidModel) when the
 /// parameter count does not fit the description or a parameter is NaN or infinite.
-std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const std::string& kernel = "");
+std::shared_ptr<const Evaluator>
+MakeEvaluator(ModelPointer model, const std::string& kernel = "",
+              InferencePrecision precision = InferencePrecision::Float32);
 
 /// `evaluate` with the batch spread over `arena`.
 void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm::vec3* positions,

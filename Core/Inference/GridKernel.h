@@ -15,7 +15,8 @@ struct LatticeAxis
   std::int64_t count;
 };
 
-/// Network outputs on a regular lattice, for one instruction set. The model must have panels.
+/// Network outputs on a regular lattice, for one instruction set. The model must be packed
+/// for its precision.
 struct GridKernel
 {
   /// Bytes of scratch memory that `evaluate` needs.
@@ -25,8 +26,9 @@ struct GridKernel
                    void* workspace);
 };
 
-/// The kernel built for `set`, which must be usable.
-const GridKernel& GridKernelFor(InstructionSet set);
+/// The kernel built for `set`; both must be usable.
+const GridKernel& GridKernelFor(InstructionSet set,
+                                InferencePrecision precision = InferencePrecision::Float32);
 
 namespace baseline {
 extern const GridKernel Grid;
@@ -35,6 +37,9 @@ namespace avx2 {
 extern const GridKernel Grid;
 }
 namespace avx512 {
+extern const GridKernel Grid;
+}
+namespace avx512bf16 {
 extern const GridKernel Grid;
 }
 

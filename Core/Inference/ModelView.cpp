@@ -4,6 +4,7 @@
 #include "Core/Model/GridIndex.h"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 
 namespace inr {
@@ -42,19 +43,46 @@ LevelView ViewOf(const GridDescription& grid, const GridLevel& level)
   return view;
 }
 
-std::vector<float> PanelsOf(const LayerView& layer)
+/// Elements for `columns` columns of a layer's rows, elementOf(row, column) each.
+template <class Element, class ElementOf>
+std::vector<Element> PackedIn(std::size_t columns, const LayerView& layer,
+                              const ElementOf& elementOf)
 {
-  const std::size_t panels = static_cast<std::size_t>((layer.rows + PanelRows - 1) / PanelRows);
-  std::vector<float> packed(panels * PanelRows * static_cast<std::size_t>(layer.columns));
-  for (std::size_t row = 0; row < static_cast<std::size_t>(layer.rows); ++row) {
-    for (std::size_t column = 0; column < static_cast<std::size_t>(layer.columns); ++column) {
-      const std::size_t columns =
-          row / PanelRows * static_cast<std::size_t>(layer.columns) + column;
-      packed[columns * PanelRows + row % PanelRows] =
-          layer.weights[row * static_cast<std::size_t>(layer.columns) + column];
+  const auto rows = static_cast<std::size_t>(layer.rows);
+  std::vector<Element> packed((rows + PanelRows - 1) / PanelRows * PanelRows * columns);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      packed[(row / PanelRows * columns + column) * PanelRows + row % PanelRows] =
+          elementOf(row, column);
     }
   }
   return packed;
+}
+
+std::vector<float> PanelsOf(const LayerView& layer)
+{
+  const auto columns = static_cast<std::size_t>(layer.columns);
+  return PackedIn<float>(columns, layer, [&](std::size_t row, std::size_t column) {
+    return layer.weights[row * columns + column];
+  });
+}
+
+/// The bits of a finite number as bfloat16, to nearest and, halfway, to even.
+std::uint32_t BFloat16BitsOf(float value)
+{
+  std::uint32_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  return (bits + 0x7fffu + (bits >> 16 & 1u)) >> 16;
+}
+
+std::vector<std::uint32_t> PairsOf(const LayerView& layer)
+{
+  const auto columns = static_cast<std::size_t>(layer.columns);
+  return PackedIn<std::uint32_t>((columns + 1) / 2, layer, [&](std::size_t row, std::size_t pair) {
+    const float* const weights = layer.weights + row * columns + 2 * pair;
+    const float second = 2 * pair + 1 < columns ? weights[1] : 0.0f;
+    return BFloat16BitsOf(weights[0]) | BFloat16BitsOf(second) << 16;
+  });
 }
 
 } // namespace
@@ -73,7 +101,7 @@ ModelViewStorage::ModelViewStorage(const Description& description, const Layout&
   for (const LayerShape& layer : layout.layers) {
     const bool last = &layer == &layout.layers.back();
     this->Layers.push_back(
-        {parameters + layer.offset, last ? 1 : layer.rows, layer.columns, nullptr});
+        {parameters + layer.offset, last ? 1 : layer.rows, layer.columns, nullptr, nullptr});
     this->View.widest = std::max({this->View.widest, layer.rows, layer.columns});
   }
   this->View.levels = this->Levels.data();
@@ -89,12 +117,17 @@ ModelViewStorage::ModelViewStorage(const Description& description, const Layout&
   this->View.inputWidth = layout.inputWidth;
 }
 
-PackedNetwork::PackedNetwork(const ModelView& model)
+PackedNetwork::PackedNetwork(const ModelView& model, InferencePrecision precision)
     : Layers(model.layers, model.layers + model.layerCount), View(model)
 {
   for (LayerView& layer : this->Layers) {
-    this->Panels.push_back(PanelsOf(layer));
-    layer.panels = this->Panels.back().data();
+    if (precision == InferencePrecision::BFloat16) {
+      this->Pairs.push_back(PairsOf(layer));
+      layer.pairs = this->Pairs.back().data();
+    } else {
+      this->Panels.push_back(PanelsOf(layer));
+      layer.panels = this->Panels.back().data();
+    }
   }
   this->View.layers = this->Layers.data();
 }

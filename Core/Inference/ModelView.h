@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Inference/InferencePrecision.h"
 #include "Core/Model/Description.h"
 
 #include <cstdint>
@@ -39,6 +40,7 @@ struct LayerView
   int columns;
   /// The weights in the order in which inference reads them, or null: see PackedNetwork.
   const float* panels;
+  const std::uint32_t* pairs;
 };
 
 /// A model's description and parameters as the kernels want them.
@@ -79,22 +81,26 @@ private:
   ModelView View{};
 };
 
-/// A model's weights in panels of PanelRows rows: weight (r, c) of a layer is element
-/// ((r / PanelRows) * columns + c) * PanelRows + r % PanelRows, and rows beyond the last are 0. A
-/// copy: later changes of the weights are not seen.
+/// A model's weights in panels of PanelRows rows. For float32, weight (r, c) of a layer is element
+/// ((r / PanelRows) * columns + c) * PanelRows + r % PanelRows of `panels`. For bfloat16 the same
+/// of `pairs`, with pairs of columns: in the lower half of an element the weight of the even one,
+/// rounded to nearest, in the upper half that of the next. Rows and columns beyond the last are 0.
+/// A copy: later changes of the weights are not seen.
 class PackedNetwork
 {
 public:
   /// What `model` points to, except for its weights, must outlive this.
-  explicit PackedNetwork(const ModelView& model);
+  explicit PackedNetwork(const ModelView& model,
+                         InferencePrecision precision = InferencePrecision::Float32);
   PackedNetwork(const PackedNetwork&) = delete;
   PackedNetwork& operator=(const PackedNetwork&) = delete;
 
-  /// `model`, with panels.
+  /// `model`, with panels or pairs.
   const ModelView& view() const { return this->View; }
 
 private:
   std::vector<std::vector<float>> Panels;
+  std::vector<std::vector<std::uint32_t>> Pairs;
   std::vector<LayerView> Layers;
   ModelView View;
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // An INR evaluated in long double, whose range no model of floats leaves, together with a bound of
-// what float32 arithmetic may lose. Shares no code with the kernels but the layout of parameters.
+// what float32 arithmetic may lose, of factors that may be rounded before. Shares no code with the
+// kernels but the layout of parameters.
 #pragma once
 
 #include "Core/Model/GridIndex.h"
@@ -22,7 +23,10 @@ struct Bounded
 class LongDoubleTruth
 {
 public:
-  explicit LongDoubleTruth(const inr::Model& model) : Source(model), Shape(model.description) {}
+  /// `rounding`: by how much of itself weights and what goes into a layer are rounded at most.
+  explicit LongDoubleTruth(const inr::Model& model, long double rounding = 0)
+      : Source(model), Shape(model.description), OfProducts(2 * rounding + rounding * rounding)
+  {}
 
   Bounded operator()(const glm::vec3& position) const
   {
@@ -103,7 +107,7 @@ private:
     return features;
   }
 
-  /// The bound that Evaluator.h states.
+  /// The bounds that Evaluator.h states.
   std::vector<Bounded> multiply(const inr::LayerShape& layer, const std::vector<Bounded>& in,
                                 int rows) const
   {
@@ -119,7 +123,7 @@ private:
         magnitudes += std::abs(weight) * (std::abs(in[column].value) + in[column].error);
       }
       const auto count = static_cast<long double>(in.size());
-      out[row].error += (count + 2) * Ulp * magnitudes + count * Tiny;
+      out[row].error += (this->OfProducts + (count + 2) * Ulp) * magnitudes + count * Tiny;
     }
     return out;
   }
@@ -177,4 +181,5 @@ private:
 
   const inr::Model& Source;
   inr::Layout Shape;
+  long double OfProducts; ///< by how much of itself a product is off for its factors' rounding
 };

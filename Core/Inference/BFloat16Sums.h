@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The sums of the network's layers over products of bfloat16 numbers, two of them at a time; see
+// Lanes.h for what may be in here. Weights and what goes into a layer are rounded to 8 bits, sums
+// are float32. Columns are taken in pairs, always the same ones, and a pair is left out where both
+// are zero for the whole strip: in which order a sum comes about does not depend on the strip.
+#pragma once
+
+#include "Core/Inference/Activations.h"
+#include "Core/Inference/Strip.h"
+
+namespace inr {
+namespace INR_ISA {
+
+/// The numbers of two columns, rounded to nearest: those of `first` in the lower halves of lanes.
+inline __m512i PairOf(Floats first, Floats second)
+{
+  const __m512i order = _mm512_set_epi16(31, 15, 30, 14, 29, 13, 28, 12, 27, 11, 26, 10, 25, 9, 24,
+                                         8, 23, 7, 22, 6, 21, 5, 20, 4, 19, 3, 18, 2, 17, 1, 16, 0);
+  return _mm512_permutexvar_epi16(order, (__m512i)_mm512_cvtne2ps_pbh(second, first));
+}
+
+/// Makes encoded samples a layer's inputs: row f of `width` is in strip.values from f * StripSize
+/// on, pair k will be from k * StripSize on, before or where its rows are.
+template <int Groups> inline void BeginStrip(int width, Strip& strip)
+{
+  strip.count = (width + 1) / 2;
+  for (int k = 0; k < strip.count; ++k) {
+    const float* const first = strip.values + 2 * k * StripSize;
+    const bool isWhole = 2 * k + 1 < width; // the padding is zero
+    for (int at = 0; at < Groups * LaneCount; at += LaneCount) {
+      const Floats second = isWhole ? Load(first + StripSize + at) : Floats{};
+      const __m512i pair = PairOf(Load(first + at), second);
+      std::memcpy(strip.values + k * StripSize + at, &pair, sizeof(pair));
+    }
+    strip.from[k] = k * PanelRows;
+  }
+}
+
+/// Rows from `row` on, which lie in one panel.
+template <int Rows, int Groups>
+inline void SumTile(const LayerView& layer, int row, const Strip& in, Floats (&sums)[Rows][Groups])
+{
+  const std::int64_t panel = row / PanelRows * PanelRows;
+  const std::uint32_t* const first =
+      layer.pairs + panel * ((layer.columns + 1) / 2) + row % PanelRows;
+#pragma GCC unroll 8
+  for (int r = 0; r < Rows; ++r) {
+#pragma GCC unroll 4
+    for (int g = 0; g < Groups; ++g) {
+      sums[r][g] = Floats{};
+    }
+  }
+  for (int k = 0; k < in.count; ++k) {
+    const std::uint32_t* const weights = first + in.from[k];
+    __m512i input[Groups];
+#pragma GCC unroll 4
+    for (int g = 0; g < Groups; ++g) {
+      std::memcpy(&input[g], in.values + k * StripSize + g * LaneCount, sizeof(input[g]));
+    }
+#pragma GCC unroll 8
+    for (int r = 0; r < Rows; ++r) {
+      const auto weight = (__m512bh)SpreadInt(weights[r]);
+#pragma GCC unroll 4
+      for (int g = 0; g < Groups; ++g) {
+        sums[r][g] = _mm512_dpbf16_ps(sums[r][g], (__m512bh)input[g], weight);
+      }
+    }
+  }
+}
+
+/// Appends the rows of a tile, of `rows` of the layer, to `out` in pairs, unless they are zero.
+/// Behind the last row there may be one with weights of zero in the next layer.
+template <int Rows, int Groups>
+inline void AppendPairs(const Floats (&values)[Rows][Groups], int row, int rows, Strip& out)
+{
+  static_assert(Rows % 2 == 0, "pairs lie within a tile");
+#pragma GCC unroll 4
+  for (int r = 0; r < Rows; r += 2) {
+    if (row + r >= rows) {
+      continue;
+    }
+    float* const to = out.values + out.count * StripSize;
+    UInts bits{};
+#pragma GCC unroll 4
+    for (int g = 0; g < Groups; ++g) {
+      const __m512i pair = PairOf(values[r][g], values[r + 1][g]);
+      std::memcpy(to + g * LaneCount, &pair, sizeof(pair));
+      bits |= (UInts)pair;
+    }
+    out.from[out.count] = (row + r) / 2 * PanelRows;
+    out.count += IsZero(bits) ? 0 : 1;
+  }
+}
+
+/// The same after an activation. Any but the first two goes through memory as a whole: were sums
+/// live across its calls, they would be in memory all the time.
+template <int Rows, int Groups>
+inline void AppendTile(Activation activation, const Floats (&sums)[Rows][Groups], int row, int rows,
+                       Strip& out)
+{
+  constexpr int size = Rows * Groups;
+  Floats values[Rows][Groups];
+  if (activation == Activation::ReLU || activation == Activation::None) {
+    const Floats lowest = Spread(activation == Activation::ReLU ? 0.0f : -__builtin_inff());
+#pragma GCC unroll 16
+    for (int k = 0; k < size; ++k) {
+      values[k / Groups][k % Groups] = Maximum(lowest, sums[k / Groups][k % Groups]);
+    }
+  } else {
+    float activated[size * LaneCount];
+#pragma GCC unroll 16
+    for (int k = 0; k < size; ++k) {
+      Store(activated + k * LaneCount, sums[k / Groups][k % Groups]);
+    }
+    Activate(activation, activated, size * LaneCount);
+#pragma GCC unroll 16
+    for (int k = 0; k < size; ++k) {
+      values[k / Groups][k % Groups] = Load(activated + k * LaneCount);
+    }
+  }
+  AppendPairs(values, row, rows, out);
+}
+
+} // namespace INR_ISA
+} // namespace inr

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Samples that go through the network together; see Lanes.h for what may be in here. A strip is as
+// wide as a tile of results that stays in registers, and all its layers stay in the first-level
+// cache.
+#pragma once
+
+#include "Core/Inference/Lanes.h"
+#include "Core/Inference/ModelView.h"
+
+namespace inr {
+namespace INR_ISA {
+
+/// Registers hold a tile of results: rows of a layer by groups of LaneCount samples.
+constexpr int StripRows = LaneCount == 16 ? PanelRows : 4;
+constexpr int StripGroups = LaneCount == 8 ? 3 : 2; // see RunStrip
+constexpr int StripSize = StripGroups * LaneCount;
+static_assert(PanelRows % StripRows == 0, "a tile lies within a panel");
+
+/// Inputs of a layer: those columns that are not zero for all samples.
+struct Strip
+{
+  float* values;      ///< of the k-th such column: from k * StripSize on
+  std::int32_t* from; ///< where its weights begin in a panel, in weights
+  int count;
+};
+
+/// A strip's memory: `in` is to be filled with encoded samples, out is scratch.
+struct StripPair
+{
+  Strip in;
+  Strip out;
+};
+
+/// Scratch memory for strips, in floats.
+inline std::int64_t StripWorkspace(const ModelView& model)
+{
+  return 2 * model.widest * (StripSize + 1) + 64;
+}
+
+inline StripPair MakeStrips(const ModelView& model, float* workspace)
+{
+  float* const values = AlignToLine(workspace);
+  const std::int64_t size = static_cast<std::int64_t>(model.widest) * StripSize;
+  auto* const from = reinterpret_cast<std::int32_t*>(values + 2 * size);
+  return {{values, from, 0}, {values + size, from + model.widest, 0}};
+}
+
+} // namespace INR_ISA
+} // namespace inr
