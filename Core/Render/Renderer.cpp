@@ -41,6 +41,14 @@ FrameStatistics Sum(const std::vector<FrameStatistics>& tiles)
   return sum;
 }
 
+std::shared_ptr<const Evaluator> FieldOf(const ModelPointer& model, const RendererOptions& options)
+{
+  // What an accelerator gives is compared with this, and may be replaced by it.
+  const bool alone = options.accelerator == nullptr;
+  return MakeEvaluator(model, options.kernel,
+                       alone ? options.inference : InferencePrecision::Float32);
+}
+
 } // namespace
 
 struct Renderer::Implementation
@@ -122,8 +130,8 @@ struct Renderer::Implementation
 };
 
 Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
-    : Self(std::make_unique<Implementation>(MakeEvaluator(model, options.kernel), model, model,
-                                            model->volume, model->macroCells, options))
+    : Self(std::make_unique<Implementation>(FieldOf(model, options), model, model, model->volume,
+                                            model->macroCells, options))
 {}
 
 Renderer::Renderer(const std::shared_ptr<const Evaluator>& field, const VolumeInfo& volume,

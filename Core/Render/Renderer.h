@@ -21,6 +21,8 @@ struct RendererOptions
 {
   int threads = 0;    ///< 0 = all available cores
   std::string kernel; ///< instruction set, for tests; empty = the fastest
+  /// Of what the CPU infers where there is no accelerator, and it and the model allow that.
+  InferencePrecision inference = InferencePrecision::Float32;
   bool cached = true; ///< through a cache of bricks, else straight from the network
   /// Frames with a time limit do a fixed amount of work instead of what there is time for, and
   /// bricks come in within them only; see WorkLimit. CacheOptions::background is then off.
@@ -32,8 +34,9 @@ struct RendererOptions
   bool operator==(const RendererOptions& other) const
   {
     return this->threads == other.threads && this->kernel == other.kernel &&
-           this->cached == other.cached && this->deterministic == other.deterministic &&
-           this->cache == other.cache && this->accelerator == other.accelerator;
+           this->inference == other.inference && this->cached == other.cached &&
+           this->deterministic == other.deterministic && this->cache == other.cache &&
+           this->accelerator == other.accelerator;
   }
 };
 
@@ -41,9 +44,10 @@ struct RendererOptions
 /// from its network.
 ///
 /// Renderers of the same field (one model or one Evaluator) share their bricks if these are of the
-/// same size and precision and in a cache as large; how many are asked for at once, and in which
-/// order, may differ. They are kept as long as one such renderer or KeptBricks of one exist.
-/// All renderers of the process share the memory of their caches: see CacheBudget.
+/// same size, inferred and kept in the same precision, and in a cache as large; how many are asked
+/// for at once, and in which order, may differ. They are kept as long as one such renderer or
+/// KeptBricks of one exist. All renderers of the process share the memory of their caches: see
+/// CacheBudget.
 ///
 /// A complete frame is a pure function of model, transfer function and Frame: threads, tiles, the
 /// size of the cache and what other renderers do change no pixel. The exception are paths whose
@@ -86,7 +90,7 @@ public:
   /// Keeps the bricks beyond the life of the renderer; null where there is no cache.
   std::shared_ptr<const KeptBricks> keepBricks() const;
 
-  /// The instruction set with which the CPU computes: Evaluator::kernel().
+  /// The instruction set with which the CPU computes, and how: Evaluator::kernel().
   std::string kernel() const;
 
   /// What infers bricks or, without a cache, samples in the CPU's place: Accelerator::name(). Empty

@@ -40,6 +40,13 @@ inr::CachePrecision PrecisionFor(double tolerance, int otherwise)
   return tolerance > 0 ? inr::CachePrecision::Bits16 : inr::CachePrecision::Float32;
 }
 
+inr::InferencePrecision InferenceFor(double tolerance, int otherwise)
+{
+  return tolerance < 0 && otherwise == vtkINRVolumeMapper::BFLOAT16
+             ? inr::InferencePrecision::BFloat16
+             : inr::InferencePrecision::Float32;
+}
+
 } // namespace
 
 struct vtkINRVolumeMapper::Internals
@@ -333,6 +340,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   inr::RendererOptions& renderer = settings.renderer;
   renderer.threads = this->NumberOfThreads;
   renderer.deterministic = this->Deterministic;
+  renderer.inference = InferenceFor(this->ErrorTolerance, this->InferencePrecision);
   renderer.cached = this->CacheMode != NETWORK_ONLY;
   renderer.cache.bytes = std::int64_t{this->CacheSize} << 20;
   renderer.cache.precision = PrecisionFor(this->ErrorTolerance, this->CachePrecision);
@@ -444,6 +452,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "ErrorTolerance: " << this->ErrorTolerance << "\n"
      << indent << "CacheMode: " << this->CacheMode << "\n"
      << indent << "CacheSize: " << this->CacheSize << "\n"
+     << indent << "InferencePrecision: " << this->InferencePrecision << "\n"
      << indent << "CachePrecision: " << this->CachePrecision << "\n"
      << indent << "BrickSize: " << this->BrickSize << "\n"
      << indent << "MaximumRequests: " << this->MaximumRequests << "\n"

@@ -399,6 +399,11 @@ void vtkINRVolumeRepresentation::SetCacheSize(int mebibytes)
   this->GetMapper()->SetCacheSize(mebibytes);
 }
 
+void vtkINRVolumeRepresentation::SetInferencePrecision(int precision)
+{
+  this->GetMapper()->SetInferencePrecision(precision);
+}
+
 void vtkINRVolumeRepresentation::SetCachePrecision(int precision)
 {
   this->GetMapper()->SetCachePrecision(precision);

@@ -61,6 +61,7 @@ public:
   void SetErrorTolerance(double tolerance);
   void SetCacheMode(int mode);
   void SetCacheSize(int mebibytes);
+  void SetInferencePrecision(int precision);
   void SetCachePrecision(int precision);
   void SetBrickSize(int voxels);
   void SetMaximumRequests(int bricks);

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The cache's properties in ParaView: what they may and what they must not change in a picture."""
+import pathlib
+
 import numpy as np
 from paraview import simple
 from pvtest import MODEL, check, load_plugin, look_at, picture, psnr, show_view
@@ -55,6 +57,18 @@ display.LevelOfDetailScale = 1
 exact = shown("float", CachePrecision="Float", BrickSize=40, LevelOfDetailScale=0)
 check(psnr(shown("bits16", CachePrecision="16 bit"), exact) > 50, "16 bit")
 check(psnr(shown("bits8", CachePrecision="8 bit"), exact) > 40, "8 bit")
+
+# Rounded numbers in the network show where the processor has them, and no tolerance allows them.
+can_round = "avx512_bf16" in pathlib.Path("/proc/cpuinfo").read_text()
+rounded = shown("rounded", CachePrecision="Float", InferencePrecision="bfloat16")
+check(("bfloat16" in value("BackendInUse")) == can_round, "drawn by", value("BackendInUse"))
+check(np.array_equal(rounded, exact) != can_round, "bfloat16 shows, or not")
+check(psnr(rounded, exact) > 40, "bfloat16 costs", psnr(rounded, exact))
+strict = shown("strict", ErrorTolerance=0)
+check("bfloat16" not in value("BackendInUse"), "rounds within a tolerance")
+check(np.array_equal(strict, shown("float again", InferencePrecision="Float")), "no tolerance")
+display.ErrorTolerance = -1
+
 network = shown("network", CacheMode="Network only")
 check(value("CacheUsed") == 0, "a cache without use:", value("CacheUsed"))
 error = psnr(exact, network)

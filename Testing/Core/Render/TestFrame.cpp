@@ -61,8 +61,8 @@ std::size_t FieldsOf(const inr::TranslucentLayers::Layer& layer)
 
 std::size_t FieldsOf(const inr::RendererOptions& options)
 {
-  const auto& [a, b, c, d, e, f] = options;
-  return Count(a, b, c, d, e, f);
+  const auto& [a, b, c, d, e, f, g] = options;
+  return Count(a, b, c, d, e, f, g);
 }
 
 std::size_t FieldsOf(const inr::CacheOptions& options)
@@ -210,6 +210,7 @@ TEST(RendererOptions, AreOthersWithAnotherValueOfAnyField)
   ExpectDifferent<inr::RendererOptions>(
       {}, {{"threads", [](auto& o) { o.threads = 3; }},
            {"kernel", [](auto& o) { o.kernel = "scalar"; }},
+           {"inference", [](auto& o) { o.inference = inr::InferencePrecision::BFloat16; }},
            {"cached", [](auto& o) { o.cached = false; }},
            {"deterministic", [](auto& o) { o.deterministic = true; }},
            {"cache", [](auto& o) { o.cache.brickSize = 8; }},

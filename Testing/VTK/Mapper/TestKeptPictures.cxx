@@ -108,6 +108,8 @@ std::vector<Change> Changes()
       {"clipping", Then::Different, Then::Different, Clip},
       {"samples counted", Then::Made, Then::Kept, [](One one) { one.mapper->SampleChannelsOn(); }},
       {"cache", Then::Made, Then::Made, [](One one) { one.mapper->SetCachePrecision(0); }},
+      {"inference", Then::Made, Then::Made,
+       [](One one) { one.mapper->SetInferencePrecision(vtkINRVolumeMapper::BFLOAT16); }},
       {"threads", Then::Made, Then::Made, [](One one) { one.mapper->SetNumberOfThreads(3); }},
       {"still time", Then::Kept, Then::Kept, [](One one) { one.mapper->SetStillTimeLimit(60); }},
       {"surface in it", Then::Different, Then::Different, [](One one) { one.addCube(); }},
