@@ -21,6 +21,28 @@
 
 namespace {
 
+const std::string Rounding = " bfloat16"; ///< behind the name of a kernel
+
+/// Those of UsableKernels, and such that multiply rounded numbers.
+std::vector<std::string> InferenceKernels()
+{
+  std::vector<std::string> names = UsableKernels();
+  for (const std::string& kernel : UsableKernels()) {
+    if (inr::IsUsable(inr::InferencePrecision::BFloat16, inr::ChooseInstructionSet(kernel))) {
+      names.push_back(kernel + Rounding);
+    }
+  }
+  return names;
+}
+
+std::shared_ptr<const inr::Evaluator> EvaluatorOf(inr::ModelPointer model, const std::string& name)
+{
+  const std::size_t end = name.find(Rounding);
+  return inr::MakeEvaluator(std::move(model), name.substr(0, end),
+                            end == std::string::npos ? inr::InferencePrecision::Float32
+                                                     : inr::InferencePrecision::BFloat16);
+}
+
 /// A random model, all of its features times `scale`.
 inr::ModelPointer ScaledFeatures(const inr::Description& description, float scale)
 {
@@ -34,7 +56,7 @@ inr::ModelPointer ScaledFeatures(const inr::Description& description, float scal
 void InferModel(benchmark::State& state, inr::ModelPointer model, const std::string& kernel,
                 int threads, std::int64_t points = 1 << 17)
 {
-  const auto evaluator = inr::MakeEvaluator(std::move(model), kernel);
+  const auto evaluator = EvaluatorOf(std::move(model), kernel);
   const inr::Arena arena(threads);
   const std::vector<glm::vec3> positions = RandomPositions(points);
   std::vector<float> values(positions.size());
@@ -58,7 +80,7 @@ void InferBricks(benchmark::State& state, inr::ModelPointer model, const std::st
                  int threads, std::int64_t size, int level)
 {
   const inr::Hierarchy levels({size, size, size}, 40);
-  const auto source = inr::MakeBrickSource(inr::MakeEvaluator(std::move(model), kernel), levels);
+  const auto source = inr::MakeBrickSource(EvaluatorOf(std::move(model), kernel), levels);
   const inr::Arena arena(threads);
   const std::vector<inr::BrickKey> keys = SomeBricks(levels, level, 4 * threads);
   std::vector<float> values(keys.size() * static_cast<std::size_t>(levels.voxelsPerBrick()));
@@ -107,13 +129,14 @@ void Training(benchmark::State& state, const inr::Description& description,
 
 using Benchmark = void (*)(benchmark::State&, const inr::Description&, const std::string&, int);
 
-/// `function` for both models, every kernel, and one and all threads; timed by the processor time
+/// `function` for both models, these kernels, and one and all threads; timed by the processor time
 /// of the process, which leaves out what others do on the machine, or by the wall clock.
-void Register(const std::string& what, Benchmark function, bool wallClock)
+void Register(const std::string& what, Benchmark function, const std::vector<std::string>& kernels,
+              bool wallClock)
 {
   for (const auto& [model, description] :
        {std::pair{"default model", DefaultDescription()}, {"256^3 model", ChosenDescription()}}) {
-    for (const std::string& kernel : UsableKernels()) {
+    for (const std::string& kernel : kernels) {
       const std::string name = what + ", " + model + ", " + kernel;
       for (const auto& [note, threads] :
            {std::pair{", 1 thread", 1}, {", all threads", inr::AvailableCores()}}) {
@@ -129,7 +152,7 @@ void Register(const std::string& what, Benchmark function, bool wallClock)
 /// means of eight samples.
 void RegisterBricks(const std::string& what, const inr::ModelPointer& model, std::int64_t size)
 {
-  for (const std::string& kernel : UsableKernels()) {
+  for (const std::string& kernel : InferenceKernels()) {
     for (const int threads : {1, inr::AvailableCores()}) {
       const std::string name =
           what + ", " + kernel + (threads == 1 ? ", 1 thread" : ", all threads");
@@ -177,10 +200,10 @@ void RegisterCeilings()
     const inr::ModelPointer model = inr::ReadModel(path);
     RegisterBricks("brick, trained model", model, model->volume.dims.x);
   }
-  Register("inference", Inference, false);
+  Register("inference", Inference, InferenceKernels(), false);
   RegisterBadNumbers();
-  Register("brick inference", Bricks, false);
-  Register("training", Training, true);
+  Register("brick inference", Bricks, InferenceKernels(), false);
+  Register("training", Training, UsableKernels(), true);
   return true;
 }();
 

@@ -12,7 +12,8 @@
 //
 // prints one JSON object per line; tradeoff.py writes the result file. MODE: "volume", what the
 // model made of the data; "knobs", one setting at a time that changes the picture; "tolerance",
-// what takes the place of one of them; "grid", three at once; "loading", what changes how the
+// what takes the place of one of them; "inference", what the network computes with (where this
+// processor can, see kernels.json); "grid", three at once; "loading", what changes how the
 // cache fills (or several of these, with a "+" in between); "paths", path tracing; "model", this
 // model beside the USUAL one; "memory", which part takes how much. VIEW: the volume as a "whole",
 // from "near", where a voxel is several pixels, or as from "far": the whole in a quarter of the
@@ -61,7 +62,7 @@ void CompareVolumes(const inr::ModelPointer& pointer, const inr::VolumeData& vox
   record.print();
 }
 
-/// `parts`: some of "knobs", "tolerance", "loading" and "grid".
+/// `parts`: some of "knobs", "tolerance", "inference", "loading" and "grid".
 void TurnKnobs(const Subject& subject, const Scene& scene, const std::string& parts)
 {
   const auto wanted = [&](const char* part) { return parts.find(part) != std::string::npos; };
@@ -72,6 +73,9 @@ void TurnKnobs(const Subject& subject, const Scene& scene, const std::string& pa
   }
   if (wanted("tolerance")) {
     bench.measure(ToleranceKnob(scene.frame), "tolerance");
+  }
+  if (wanted("inference")) {
+    bench.measure(InferenceKnob(scene.frame), "inference");
   }
   if (wanted("loading")) {
     bench.measure(LoadingKnobs(scene.frame, bench.wanted()), "loading");

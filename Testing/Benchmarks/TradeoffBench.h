@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -157,7 +158,7 @@ private:
   /// With the bricks of all points that are as precise.
   inr::Renderer& sharing(const inr::RendererOptions& options)
   {
-    const auto key = std::make_pair(options.cached, options.cache.precision);
+    const Kind key(options.cached, options.cache.precision, options.inference);
     const auto found = this->Sharing.find(key);
     if (found != this->Sharing.end()) {
       return found->second;
@@ -174,5 +175,6 @@ private:
   inr::Image UsualPicture;
   double UsualFilling = 0;
   std::int64_t Wanted = 0;
-  std::map<std::pair<bool, inr::CachePrecision>, inr::Renderer> Sharing;
+  using Kind = std::tuple<bool, inr::CachePrecision, inr::InferencePrecision>;
+  std::map<Kind, inr::Renderer> Sharing;
 };

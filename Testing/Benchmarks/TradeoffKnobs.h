@@ -145,6 +145,20 @@ inline std::vector<Point> PictureKnobs(const inr::Frame& frame)
   return knobs.points;
 }
 
+/// What the network computes with, where it fills the cache and where it is asked for each sample.
+inline std::vector<Point> InferenceKnob(const inr::Frame& frame)
+{
+  SingleKnobs knobs(frame);
+  for (const bool cached : {true, false}) {
+    knobs.add("InferencePrecision", cached ? "bfloat16" : "bfloat16, network only", cached,
+              [&](Point& point) {
+                point.options.inference = inr::InferencePrecision::BFloat16;
+                point.options.cached = cached;
+              });
+  }
+  return knobs.points;
+}
+
 /// What takes the place of level of detail, in 255ths of a channel of the picture with all samples,
 /// half a voxel apart.
 inline std::vector<Point> ToleranceKnob(const inr::Frame& frame)

@@ -18,7 +18,7 @@ SETS = {"AVX512": "avx512", "AVX2": "avx2"}
 TARGETS = {"brick AVX512": 3.5, "brick AVX2": 1.5, "brick vs scattered AVX512": 2,
            "brick vs scattered AVX2": 1.3, "scattered AVX512 of ceiling": 0.6,
            "scattered AVX2 of ceiling": 0.6, "brick two cores vs one AVX512": 1.8,
-           "brick two cores vs one AVX2": 1.8}
+           "brick two cores vs one AVX2": 1.8, "brick AVX512 bfloat16": 6}
 LOADS = 64  # of table entries, per sample of the default model
 WEIGHTS = 4 * 64 * 64 + 64  # products per sample of the default model
 
@@ -70,6 +70,12 @@ def derived(rate):
         yield (f"brick two cores vs one {label}",
                rate[f"{MODEL}, {kernel}, all threads"] / brick, "", f"brick {label}",
                "by processor time")
+    rounded = f"{MODEL}, avx512 bfloat16, 1 thread"
+    if rounded in rate:
+        yield ("brick AVX512 bfloat16", rate[rounded], "M voxels/s", None,
+               "random parameters; one core")
+        yield ("brick bfloat16 vs float32", rate[rounded] / rate[f"{MODEL}, avx512, 1 thread"], "",
+               "brick AVX512", "")
 
 
 def main():

@@ -44,6 +44,7 @@ PARTS = ([(volume, size, "volume", "whole") for volume in VOLUMES for size in SI
             ("rm_mixing", "default", "tolerance", "whole"),
             ("heptane_fire", "default", "tolerance", "whole"),
             ("rm_mixing", "default", "tolerance", "near")]
+         + [(volume, "default", "inference", "whole") for volume in VOLUMES]
          + [(volume, size, "memory", "whole") for volume in ("rm_mixing", "heptane_fire")
             for size in ("default", "small")]
          + [(volume, size, "model", "whole") for volume in ("rm_mixing", "les_vorticity")
