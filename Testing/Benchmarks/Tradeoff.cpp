@@ -62,6 +62,26 @@ void CompareVolumes(const inr::ModelPointer& pointer, const inr::VolumeData& vox
   record.print();
 }
 
+/// The model's voxels from rounded numbers, against those by default.
+void CompareInference(const inr::ModelPointer& model, const std::string& name)
+{
+  const inr::Arena arena(Threads);
+  const std::vector<float> exact = Decoded(model, arena);
+  const std::vector<float> rounded = Decoded(model, arena, inr::InferencePrecision::BFloat16);
+  double squares = 0;
+  double largest = 0;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    const double error = std::abs(static_cast<double>(rounded[k]) - static_cast<double>(exact[k]));
+    squares += error * error;
+    largest = std::max(largest, error);
+  }
+  const double mean = squares / static_cast<double>(exact.size());
+  Record record(name + ", voxels in bfloat16");
+  record.add("psnr_float", std::min(EqualPictures, -10 * std::log10(mean)));
+  record.add("max", largest);
+  record.print();
+}
+
 /// `parts`: some of "knobs", "tolerance", "inference", "loading" and "grid".
 void TurnKnobs(const Subject& subject, const Scene& scene, const std::string& parts)
 {
@@ -136,6 +156,9 @@ void Run(char* const* arguments, const std::string& mode, const std::string& vie
   }
   const inr::ModelPointer usual = usualModel != nullptr ? inr::ReadModel(usualModel) : model;
   const Subject subject = SubjectOf(model, usual, volume.data());
+  if (mode == "inference") {
+    CompareInference(model, name);
+  }
   for (const Scene& scene : Scenes(subject.model->volume, name, view)) {
     if (mode == "model") {
       CompareModels(subject, scene);

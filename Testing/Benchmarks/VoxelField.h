@@ -68,11 +68,13 @@ inline std::vector<float> Normalised(const inr::VolumeData& voxels, const inr::V
 }
 
 /// What the model says of its own voxels.
-inline std::vector<float> Decoded(const inr::ModelPointer& model, const inr::Arena& arena)
+inline std::vector<float>
+Decoded(const inr::ModelPointer& model, const inr::Arena& arena,
+        inr::InferencePrecision precision = inr::InferencePrecision::Float32)
 {
   const glm::i64vec3& dims = model->volume.dims;
   std::vector<float> values(static_cast<std::size_t>(dims.x * dims.y * dims.z));
-  inr::EvaluateLattice(*inr::MakeEvaluator(model), arena,
+  inr::EvaluateLattice(*inr::MakeEvaluator(model, "", precision), arena,
                        inr::VoxelLattice(dims, glm::i64vec3(0), dims), values.data());
   for (float& value : values) {
     value = inr::NormalisedOutput(value);

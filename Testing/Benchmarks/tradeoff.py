@@ -131,6 +131,7 @@ def result_of(line):
                                              key != "tolerance_mib"), "MiB", "lower",
                                    "by part; with a tolerance, tolerance_mib more", **line)
     for key, what in (("psnr", "decoded against original voxels"),
+                      ("psnr_float", "against those in float32"),
                       ("psnr_a_c", "the decoded voxels' picture against the data's"),
                       ("psnr_a_without_cache", "the decoded voxels' with and without a cache")):
         if key in line:
