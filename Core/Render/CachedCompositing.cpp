@@ -2,6 +2,7 @@
 //
 // What CachedMarcher does with the values of a batch.
 #include "Core/Render/CachedMarcher.h"
+#include "Core/Render/SampleBits.h"
 #include "Core/Render/StepTable.h"
 
 #include <cmath>
@@ -73,12 +74,14 @@ void CachedMarcher::addLight(CachedRay& state, const glm::vec4& color, float opa
 
 void CachedMarcher::clampToRanges()
 {
+  this->Clamped = 0;
   for (int k = 0; k < this->Count; ++k) {
     const float value = this->Batch.value[k];
     ClampToRange({this->Batch.low[k], this->Batch.high[k]}, this->Batch.value[k]);
-    const float moved = std::abs(value - this->Batch.value[k]);
-    this->Statistics.clamped += moved > RoundingOfStorage ? 1 : 0;
+    const bool moves = std::abs(value - this->Batch.value[k]) > RoundingOfStorage;
+    this->Clamped |= std::uint64_t{moves} << k;
   }
+  this->Statistics.clamped += CountBits(this->Clamped);
 }
 
 int CachedMarcher::findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const

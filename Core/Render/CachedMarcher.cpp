@@ -209,6 +209,7 @@ void CachedMarcher::goBackTo(int sample, const CachedRay& before, CachedRay& sta
   state.samples = before.samples;
   state.samples.resume(intervalOf(origin, sample), origin.stretch, this->Scene.settings);
   this->Statistics.samples -= this->Count - sample; // they will be counted again
+  this->Statistics.clamped -= CountBits(this->Clamped >> sample);
   const int taken = sample - origin.sample;
   this->Statistics.hidden = origin.hidden + PlaceOfBit(origin.shown, taken) - taken;
   for (int k = sample; k < this->Count; ++k) {

@@ -174,7 +174,8 @@ private:
   int RunCount = 0;                ///< in Batch
   int Paths = 0;                   ///< in Batch
   std::int64_t DitherMask;         ///< of sample numbers
-  float LastLength = 0; ///< of the ray's last sample, if it is shorter than a step; else 0
+  std::uint64_t Clamped = 0; ///< those of the batch's samples that clampToRanges moved, bit by bit
+  float LastLength = 0;      ///< of the ray's last sample, if it is shorter than a step; else 0
   bool Waiting = false;
   bool Ended = false;
   std::optional<SampleShader> Shader;

@@ -84,4 +84,33 @@ TEST(HiddenRanges, OfForeignFilesHideNothing)
   EXPECT_GT(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 0.5f);
 }
 
+/// Renders twice: of the second picture all bricks are there.
+void ExpectAsManyClamped(const inr::RendererOptions& options, const inr::TransferFunction& colours,
+                         const inr::Frame& frame)
+{
+  inr::MacroCells cells = CellsOf(Waves, Cube, 8);
+  std::fill(cells.ranges.begin(), cells.ranges.end(), inr::ValueRange{0.5f, 0.6f});
+  cells.provenance = inr::MacroCellProvenance::File;
+  inr::Renderer renderer(std::make_shared<FieldEvaluator>(Waves), VolumeOf(Cube), cells, options);
+  renderer.setTransferFunction(colours);
+  inr::Image picture;
+  const inr::FrameStatistics waiting = renderer.render(frame, picture);
+  const inr::FrameStatistics again = renderer.render(frame, picture);
+  EXPECT_GT(waiting.work.bricks.bricks, 50);
+  EXPECT_EQ(again.work.bricks.bricks, 0);
+  EXPECT_GT(again.clamped, 1000);
+  EXPECT_EQ(waiting.clamped, again.clamped);
+  EXPECT_EQ(waiting.samples, again.samples);
+}
+
+TEST(HiddenRanges, ASampleIsClampedOnceWhereItsRayGoesBack)
+{
+  inr::RendererOptions options;
+  options.cache = Options(inr::CachePrecision::Bits16, 8);
+  inr::Frame frame = Oblique(glm::dvec3(Cube), 24);
+  ExpectAsManyClamped(options, UniformMedium(0.001f), frame);
+  frame.shading = inr::Material{0.2f, 0.6f, 0.4f, 8.0f};
+  ExpectAsManyClamped(options, UniformMedium(0.001f), frame);
+}
+
 } // namespace
