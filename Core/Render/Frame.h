@@ -101,7 +101,7 @@ struct Frame
   /// less, they come from coarser levels and are further apart wherever that stays within it; see
   /// LevelChooser. Everything else, paths, and volumes whose values may leave the ranges of their
   /// macro-cells (MacroCells::rangesHold) are drawn as with 0. What the precision of the cache
-  /// rounds comes on top, and up to 0.26 in opaque media, as rays end at 0.999 of opacity; and
+  /// rounds comes on top (see PrecisionWithin), and up to 0.26 in opaque media, as rays end at 0.999 of opacity; and
   /// between voxels of the full resolution the field is taken to be linear. Of pieces, all together
   /// keep to it. Ignored without a cache.
   std::optional<double> errorTolerance;

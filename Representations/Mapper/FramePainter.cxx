@@ -3,6 +3,7 @@
 
 #include "ComposedLight.h"
 #include "Core/Error.h"
+#include "Core/Render/StoragePrecision.h"
 #include "LayerExchange.h"
 #include "MapperInput.h"
 #include "SceneCheck.h"
@@ -115,9 +116,14 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
   if (!problem.empty()) {
     return problem;
   }
-  this->makeRenderer(*input.array, settings.renderer);
-  this->Caster->setTransferFunction(this->TransferFunctions.get(property));
   frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
+  const TransferFunction& colors = this->TransferFunctions.get(property);
+  RendererOptions options = settings.renderer;
+  if (frame.errorTolerance) {
+    options.cache.precision = PrecisionWithin(frame, colors, input.array->GetModel()->volume);
+  }
+  this->makeRenderer(*input.array, options);
+  this->Caster->setTransferFunction(colors);
   this->CountSamples = settings.countSamples;
   vtkRenderWindow* window = renderer->GetRenderWindow();
   frame.sampleDistance *= IsInteractive(window) ? 2 : 1;

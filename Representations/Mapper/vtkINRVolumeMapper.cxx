@@ -30,16 +30,6 @@ vtkStandardNewMacro(vtkINRVolumeMapper);
 
 namespace {
 
-/// A tolerance decides for itself: nothing is rounded where nothing may be wrong, and what 16 bits
-/// round shows less than any other.
-inr::CachePrecision PrecisionFor(double tolerance, int otherwise)
-{
-  if (tolerance < 0) {
-    return static_cast<inr::CachePrecision>(otherwise);
-  }
-  return tolerance > 0 ? inr::CachePrecision::Bits16 : inr::CachePrecision::Float32;
-}
-
 inr::InferencePrecision InferenceFor(double tolerance, int otherwise)
 {
   return tolerance < 0 && otherwise == vtkINRVolumeMapper::BFLOAT16
@@ -343,7 +333,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   renderer.inference = InferenceFor(this->ErrorTolerance, this->InferencePrecision);
   renderer.cached = this->CacheMode != NETWORK_ONLY;
   renderer.cache.bytes = std::int64_t{this->CacheSize} << 20;
-  renderer.cache.precision = PrecisionFor(this->ErrorTolerance, this->CachePrecision);
+  renderer.cache.precision = static_cast<inr::CachePrecision>(this->CachePrecision);
   renderer.cache.brickSize = this->BrickSize;
   renderer.cache.maximumRequests = this->MaximumRequests;
   renderer.cache.ranking = this->PriorityRanking;

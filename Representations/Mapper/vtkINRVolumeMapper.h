@@ -217,13 +217,13 @@ public:
   /**
    * By how many 255ths a channel of the picture may differ from the one with every sample from the
    * full resolution, for 99.9 % of its pixels. Levels, distances of samples and the precision of
-   * the cache (FLOAT32 with 0, else BITS16) follow from it; LevelOfDetailScale, AdaptiveSampling,
-   * InferencePrecision and CachePrecision do not count. 0: not at all. Below 0, the default: they
-   * do, and levels follow from the distance to the viewer. Lit, cropped (but to a box), projected
+   * the cache (BITS16 where what that rounds cannot show, else FLOAT32) follow from it;
+   * LevelOfDetailScale, AdaptiveSampling, InferencePrecision and CachePrecision do not count. 0:
+   * not at all. Below 0, the default: they do, and levels follow from the distance to the viewer. Lit, cropped (but to a box), projected
    * and path-traced pictures, those with a SampleDistance above 1, and those of models that
    * instantvnr or cINR wrote, whose values may leave the ranges that their files state, are as with
    * 0. It needs the cache: CacheMode NETWORK_ONLY does without. It has to know the field where that
-   * can be seen, which the first picture waits for: up to eight times as long as decoding that;
+   * can be seen, which the first picture waits for: up to ten times as long as decoding that;
    * where it is more than some 450 million voxels, all are of the full resolution. Rays end at
    * 0.999 of opacity, so below 0.3 it cannot be kept in opaque media.
    */

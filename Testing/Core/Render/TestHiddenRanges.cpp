@@ -85,7 +85,7 @@ TEST(HiddenRanges, OfForeignFilesHideNothing)
 }
 
 /// Renders twice: of the second picture all bricks are there.
-void ExpectAsManyClamped(const inr::RendererOptions& options, const inr::TransferFunction& colours,
+void ExpectTheSameCounts(const inr::RendererOptions& options, const inr::TransferFunction& colours,
                          const inr::Frame& frame)
 {
   inr::MacroCells cells = CellsOf(Waves, Cube, 8);
@@ -94,23 +94,31 @@ void ExpectAsManyClamped(const inr::RendererOptions& options, const inr::Transfe
   inr::Renderer renderer(std::make_shared<FieldEvaluator>(Waves), VolumeOf(Cube), cells, options);
   renderer.setTransferFunction(colours);
   inr::Image picture;
-  const inr::FrameStatistics waiting = renderer.render(frame, picture);
-  const inr::FrameStatistics again = renderer.render(frame, picture);
+  inr::Image samples[2]; // and their levels
+  const inr::FrameStatistics waiting = renderer.render(frame, picture, nullptr, {}, &samples[0]);
+  const inr::FrameStatistics again = renderer.render(frame, picture, nullptr, {}, &samples[1]);
   EXPECT_GT(waiting.work.bricks.bricks, 50);
   EXPECT_EQ(again.work.bricks.bricks, 0);
-  EXPECT_GT(again.clamped, 1000);
+  EXPECT_GT(again.clamped, 400);
   EXPECT_EQ(waiting.clamped, again.clamped);
   EXPECT_EQ(waiting.samples, again.samples);
+  EXPECT_EQ(waiting.hidden, again.hidden);
+  // It walks once more through the cells that it went back by.
+  EXPECT_EQ(waiting.work.cells > again.work.cells, frame.shading.has_value());
+  EXPECT_GE(waiting.work.cells, again.work.cells);
+  EXPECT_GT(again.levels.coarsest, 0);
+  EXPECT_EQ(samples[0].pixels, samples[1].pixels);
 }
 
-TEST(HiddenRanges, ASampleIsClampedOnceWhereItsRayGoesBack)
+TEST(HiddenRanges, ASampleIsCountedOnceWhereItsRayGoesBack)
 {
   inr::RendererOptions options;
   options.cache = Options(inr::CachePrecision::Bits16, 8);
   inr::Frame frame = Oblique(glm::dvec3(Cube), 24);
-  ExpectAsManyClamped(options, UniformMedium(0.001f), frame);
+  frame.levelOfDetailScale = 0.7; // some of the next level
+  ExpectTheSameCounts(options, UniformMedium(0.001f), frame);
   frame.shading = inr::Material{0.2f, 0.6f, 0.4f, 8.0f};
-  ExpectAsManyClamped(options, UniformMedium(0.001f), frame);
+  ExpectTheSameCounts(options, UniformMedium(0.001f), frame);
 }
 
 } // namespace
