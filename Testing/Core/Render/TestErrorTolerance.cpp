@@ -221,6 +221,28 @@ TEST(ErrorTolerance, MeasuresNothingTwice)
   EXPECT_EQ(Draw(renderer, FrameWith(2.0)).statistics.work.networkSamples, 0);
 }
 
+/// From next to no colours to such that show everything, and back.
+TEST(ErrorTolerance, IsForTheColoursThereAre)
+{
+  inr::TransferFunction flat = Glow();
+  for (glm::vec4& entry : flat.table) {
+    entry = glm::vec4(0.2f, 0.6f, 0.8f, 0.02f + 0.01f * entry.w);
+  }
+  const inr::Frame frame = FrameWith(2.0);
+  inr::Renderer renderer = MakeRenderer();
+  renderer.setTransferFunction(flat);
+  const Drawn before = Draw(renderer, frame);
+  renderer.setTransferFunction(Glow());
+  const Drawn glowing = Draw(renderer, frame);
+  renderer.setTransferFunction(flat);
+  const Drawn after = Draw(renderer, frame);
+  inr::Renderer other = MakeRenderer();
+  EXPECT_EQ(glowing.picture.pixels, Draw(other, frame).picture.pixels);
+  EXPECT_LT(before.statistics.samples, glowing.statistics.samples / 2);
+  EXPECT_EQ(after.picture.pixels, before.picture.pixels);
+  EXPECT_EQ(after.statistics.samples, before.statistics.samples);
+}
+
 TEST(ErrorTolerance, MustBeAFiniteNumberFromZeroOn)
 {
   inr::Renderer renderer = MakeRenderer();
