@@ -6,6 +6,10 @@
 // the linker would keep one copy, and it might be the one this processor cannot run.
 #pragma once
 
+#ifdef __FAST_MATH__
+#error "Build without -ffast-math and -Ofast: NaN, infinities and the order of sums matter here."
+#endif
+
 #include <cstdint>
 #include <cstring>
 #ifdef __x86_64__
