@@ -44,13 +44,7 @@ inline void SumTile(const LayerView& layer, int row, const Strip& in, Floats (&s
   const std::int64_t panel = row / PanelRows * PanelRows;
   const std::uint32_t* const first =
       layer.pairs + panel * ((layer.columns + 1) / 2) + row % PanelRows;
-#pragma GCC unroll 8
-  for (int r = 0; r < Rows; ++r) {
-#pragma GCC unroll 4
-    for (int g = 0; g < Groups; ++g) {
-      sums[r][g] = Floats{};
-    }
-  }
+  SetZero(sums);
   for (int k = 0; k < in.count; ++k) {
     const std::uint32_t* const weights = first + in.from[k];
     __m512i input[Groups];

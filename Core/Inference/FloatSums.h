@@ -28,13 +28,7 @@ inline void SumTile(const LayerView& layer, int row, const Strip& in, Floats (&s
 {
   const std::int64_t panel = row / PanelRows * PanelRows;
   const float* const first = layer.panels + panel * layer.columns + row % PanelRows;
-#pragma GCC unroll 8
-  for (int r = 0; r < Rows; ++r) {
-#pragma GCC unroll 4
-    for (int g = 0; g < Groups; ++g) {
-      sums[r][g] = Floats{};
-    }
-  }
+  SetZero(sums);
   for (int k = 0; k < in.count; ++k) {
     const float* const weights = first + in.from[k];
     Floats input[Groups];

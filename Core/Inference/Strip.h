@@ -17,6 +17,17 @@ constexpr int StripGroups = LaneCount == 8 ? 3 : 2; // see RunStrip
 constexpr int StripSize = StripGroups * LaneCount;
 static_assert(PanelRows % StripRows == 0, "a tile lies within a panel");
 
+template <int Rows, int Groups> inline void SetZero(Floats (&sums)[Rows][Groups])
+{
+#pragma GCC unroll 8
+  for (int r = 0; r < Rows; ++r) {
+#pragma GCC unroll 4
+    for (int g = 0; g < Groups; ++g) {
+      sums[r][g] = Floats{};
+    }
+  }
+}
+
 /// Inputs of a layer: those columns that are not zero for all samples.
 struct Strip
 {
