@@ -36,6 +36,44 @@ void Check(const TransferFunction& function)
 
 float ExtinctionOf(const glm::vec4& entry) { return -std::log1p(-entry.w); }
 
+/// Wider than a double where the platform has that: differences and ratios of denormal or of the
+/// largest numbers overflow.
+using Wide = long double;
+
+/// No infinity may come out, nor a NaN of two: what is further than that is as good as there.
+float Finite(Wide value)
+{
+  constexpr Wide largest = 1e30L; // there is room for what tables multiply by
+  return static_cast<float>(std::clamp(value, -largest, largest));
+}
+
+/// By what values are divided before their logarithm is taken: 1 but for what float cannot hold.
+Wide LogarithmicUnit(const VolumeInfo& volume)
+{
+  const double largest = std::max(std::abs(volume.low), std::abs(volume.high));
+  const bool isOrdinary = largest > 1e-30 && largest < 1e30;
+  return isOrdinary || largest <= 0 ? 1.0L : Wide{largest};
+}
+
+/// How normalised values of a volume become table coordinates; see ColorLookup::coordinate.
+void MapValues(const TransferFunction& function, const VolumeInfo& volume, ColorLookup& lookup)
+{
+  const Wide last = static_cast<Wide>(function.table.size() - 1);
+  const Wide width = Wide{volume.high} - volume.low;
+  if (!function.logarithmic) {
+    const Wide range = Wide{function.high} - function.low;
+    lookup.scale = Finite(last * (width / range));
+    lookup.bias = Finite(last * ((Wide{volume.low} - function.low) / range));
+    return;
+  }
+  const Wide unit = LogarithmicUnit(volume);
+  const Wide scale = last / std::log(Wide{function.high} / function.low);
+  lookup.scale = Finite(scale);
+  lookup.bias = Finite(-scale * std::log(function.low / unit));
+  lookup.valueLow = Finite(volume.low / unit);
+  lookup.valueScale = Finite(width / unit);
+}
+
 } // namespace
 
 ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volume)
@@ -43,24 +81,13 @@ ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volum
       Above(ExtinctionOf(function.above))
 {
   Check(function);
-  const double last = static_cast<double>(this->Entries.size() - 1);
   ColorLookup& lookup = this->Lookup;
   lookup.entries = this->Entries.data();
   lookup.count = static_cast<int>(this->Entries.size());
   lookup.logarithmic = function.logarithmic;
   lookup.below = function.below;
   lookup.above = function.above;
-  if (function.logarithmic) {
-    const double scale = last / std::log(function.high / function.low);
-    lookup.scale = static_cast<float>(scale);
-    lookup.bias = static_cast<float>(-scale * std::log(function.low));
-    lookup.valueLow = static_cast<float>(volume.low);
-    lookup.valueScale = static_cast<float>(volume.high - volume.low);
-  } else {
-    const double scale = last / (function.high - function.low);
-    lookup.scale = static_cast<float>(scale * (volume.high - volume.low));
-    lookup.bias = static_cast<float>(scale * (volume.low - function.low));
-  }
+  MapValues(function, volume, lookup);
   this->Maxima.emplace_back();
   for (const glm::vec4& entry : this->Entries) {
     this->Maxima[0].push_back(ExtinctionOf(entry));

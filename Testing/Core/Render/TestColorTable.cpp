@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace {
 
@@ -58,6 +60,48 @@ TEST(ColorTable, LogarithmicTablesAreEvenInTheLogarithm)
   EXPECT_NEAR(table.lookup().at(0.1f).w, 0.5f, 1e-5);
   EXPECT_NEAR(table.lookup().at(std::sqrt(1000.0f) / 100).w, 0.75f, 1e-5);
   EXPECT_EQ(table.lookup().at(0.0f).w, 0.0f); // log 0: below
+}
+
+// Found by fuzzing: a range of a denormal number, whose inverse is infinite.
+TEST(ColorTable, AreInPlaceForRangesAtTheEndsOfDoubles)
+{
+  const double smallest = std::numeric_limits<double>::denorm_min();
+  const double largest = std::numeric_limits<double>::max();
+  const std::pair<double, double> ranges[] = {
+      {0, smallest},       {-smallest, 3 * smallest}, {0, 1e-310},
+      {-largest, largest}, {0.5 * largest, largest},  {-1e300, 1e200}};
+  inr::TransferFunction function;
+  function.table = {{0, 0, 0, 0}, {0, 0, 0, 0.5f}, {0, 0, 0, 1}};
+  for (const auto& [low, high] : ranges) {
+    function.low = low;
+    function.high = high;
+    const inr::ColorTable table(function, Range(low, high));
+    EXPECT_EQ(table.lookup().at(0.0f).w, 0.0f) << low;
+    EXPECT_NEAR(table.lookup().at(0.25f).w, 0.25f, 1e-6) << low;
+    EXPECT_EQ(table.lookup().at(1.0f).w, 1.0f) << low;
+  }
+  function.low = 0; // of other ranges than the volume's: all is above, or all below
+  function.high = smallest;
+  const float above = inr::ColorTable(function, Range(1, largest)).lookup().coordinate(0.5f);
+  EXPECT_TRUE(above > 2.0f && std::isfinite(above)) << above;
+  function.high = largest;
+  EXPECT_EQ(inr::ColorTable(function, Range(0, smallest)).lookup().coordinate(0.5f), 0.0f);
+}
+
+TEST(ColorTable, TakesLogarithmsOfWhatFloatCannotHold)
+{
+  inr::TransferFunction function;
+  function.logarithmic = true;
+  function.table = {{0, 0, 0, 0}, {0, 0, 0, 0.5f}, {0, 0, 0, 1}};
+  for (const double unit : {1e-306, 1e-200, 1.0, 1e300}) {
+    function.low = 1e-3 * unit;
+    function.high = unit;
+    const inr::ColorTable table(function, Range(0, 2 * unit));
+    EXPECT_NEAR(table.lookup().at(0.5e-3f).w, 0.0f, 1e-5) << unit;
+    EXPECT_NEAR(table.lookup().at(0.5e-2f).w, 1.0f / 3, 1e-5) << unit;
+    EXPECT_NEAR(table.lookup().at(0.5f).w, 1.0f, 1e-5) << unit;
+    EXPECT_EQ(table.lookup().at(0.0f).w, 0.0f) << unit;
+  }
 }
 
 TEST(ColorTable, MajorantBoundsEveryValueOfARange)
