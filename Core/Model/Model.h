@@ -54,10 +54,11 @@ inline float NormalisedOutput(float output)
   return output > 0.0f ? (output < 1.0f ? output : 1.0f) : 0.0f;
 }
 
-/// Data value of a normalised output y.
+/// Data value of a normalised output y; of y in [0, 1], one of the range.
 inline double ValueOf(const VolumeInfo& info, float y)
 {
-  return info.low + (info.high - info.low) * static_cast<double>(y);
+  const double value = info.low + (info.high - info.low) * static_cast<double>(y);
+  return y <= 1.0f && value > info.high ? info.high : value; // the width may have been rounded up
 }
 
 /// Measured against the data when the file was written, over all finite voxels, or over some.

@@ -31,3 +31,18 @@ TEST(Scalars, SizesAreThoseOfTheTypes)
   EXPECT_EQ(inr::ScalarSize(ScalarType::Float32), sizeof(float));
   EXPECT_EQ(inr::ScalarSize(ScalarType::Float64), sizeof(double));
 }
+
+// Found by fuzzing: the width of a range may be rounded up.
+TEST(ValueOf, StaysInTheRange)
+{
+  inr::VolumeInfo info;
+  info.low = -1e38;
+  info.high = 1.90735e32;
+  for (int k = 0; k < 1000; ++k) {
+    info.high *= 1.001;
+    EXPECT_EQ(inr::ValueOf(info, 0.0f), info.low);
+    EXPECT_LE(inr::ValueOf(info, 1.0f), info.high) << k;
+    EXPECT_GT(inr::ValueOf(info, 1.0f), info.high + 1e-14 * info.low) << k;
+    EXPECT_GT(inr::ValueOf(info, 1.5f), info.high) << k; // of no network's output
+  }
+}
