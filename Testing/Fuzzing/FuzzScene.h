@@ -206,6 +206,9 @@ inline FuzzScene MakeFuzzScene(const inr::VolumeInfo& volume, SceneBytes& bytes)
   }
   frame.seed = bytes.next();
   frame.errorTolerance = fuzz_scene::Tolerance(bytes);
+  if (bytes.below(4) == 1) {
+    scene.options.inference = inr::InferencePrecision::BFloat16;
+  }
   scene.quick =
       frame.sampleDistance <= 1e6 && fuzz_scene::MostSamples(volume, frame) <= 2 * mostSteps;
   return scene;
