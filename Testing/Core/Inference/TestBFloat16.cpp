@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Inference/Evaluator.h"
 #include "Core/Inference/ModelView.h"
+#include "Testing/Core/Inference/EvaluatePoints.h"
 #include "Testing/Core/Inference/LongDoubleTruth.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
@@ -48,14 +48,6 @@ inr::ModelPointer CalmModel(const inr::Description& description)
 std::shared_ptr<const inr::Evaluator> Rounded(const inr::ModelPointer& model)
 {
   return inr::MakeEvaluator(model, "", inr::InferencePrecision::BFloat16);
-}
-
-std::vector<float> Evaluate(const inr::Evaluator& evaluator,
-                            const std::vector<glm::vec3>& positions)
-{
-  std::vector<float> values(positions.size());
-  evaluator.evaluate(positions.data(), static_cast<std::int64_t>(positions.size()), values.data());
-  return values;
 }
 
 class BFloat16 : public testing::Test

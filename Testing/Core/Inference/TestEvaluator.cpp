@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
-#include "Core/Inference/Evaluator.h"
 #include "Core/Inference/HugePages.h"
+#include "Testing/Core/Inference/EvaluatePoints.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
 
@@ -12,14 +12,6 @@
 #include <limits>
 
 namespace {
-
-std::vector<float> Evaluate(const inr::Evaluator& evaluator,
-                            const std::vector<glm::vec3>& positions)
-{
-  std::vector<float> values(positions.size());
-  evaluator.evaluate(positions.data(), static_cast<std::int64_t>(positions.size()), values.data());
-  return values;
-}
 
 TEST(Evaluator, ValueDoesNotDependOnTheBatch)
 {
