@@ -83,17 +83,17 @@ struct SampleRun
   std::uint32_t seed;
   std::uint32_t counter; ///< of the first sample
   std::uint32_t stride;  ///< of the counters
-  int count;
-  std::uint64_t shown; ///< bit k: whether sample k of them is taken, as `count` are
-  int length;          ///< what each stands for, see StepLookup
-  float low;           ///< range of their macro-cell, to which values are clamped
+  int count;             ///< taken, at most SampleRow::Most
+  std::uint64_t shown;   ///< bit k: whether sample k of them is taken, as `count` are
+  int length;            ///< what each stands for, see StepLookup
+  float low;             ///< range of their macro-cell, to which values are clamped
   float high;
 };
 
 /// Samples of a ray, front to back. The arrays have room for kernels to write past the last sample.
 struct SampleBatch
 {
-  static constexpr int Capacity = 64;
+  static constexpr int Capacity = 128;
   static constexpr int Room = Capacity + 16;
   BrickPath paths[2 * Capacity + 2];
   SampleRun runs[Capacity];

@@ -9,6 +9,11 @@ namespace inr {
 
 namespace {
 
+/// Samples that a ray's first batch is for.
+constexpr int FirstRoom = 32;
+/// And, at most, one of samples that are shaded: of these there is a bit for each.
+constexpr int MostShaded = 64;
+
 SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t stream)
 {
   return {scene.majorants,
@@ -110,7 +115,9 @@ bool CachedMarcher::marchPart(CachedRay& state)
   if (this->Scene.settings.crops) {
     this->Cropped.emplace(this->Scene.settings.cropping, state.ray, this->Scene.settings.step);
   }
+  this->Room = FirstRoom;
   while (!this->Ended && !this->Waiting) {
+    const double before = state.color.transmittance;
     if (this->Probe) {
       this->advanceSurfaces(state);
     } else if (this->Shader) {
@@ -121,6 +128,7 @@ bool CachedMarcher::marchPart(CachedRay& state)
       projects ? this->project(state) : this->composite(state);
     }
     this->Ended = this->Ended || this->isDone(state);
+    this->adaptRoom(before, state.color.transmittance);
   }
   if (projects && this->Ended) {
     this->finishProjection(state);
@@ -154,6 +162,16 @@ double CachedMarcher::timeOf(const CachedRay& state, int sample) const
   const std::int64_t interval = intervalOf(origin, sample);
   const double t = (static_cast<double>(interval) + origin.offset) * this->Scene.settings.step;
   return std::min(t, state.ray.length);
+}
+
+void CachedMarcher::adaptRoom(double before, double after)
+{
+  constexpr double little = 0.1;
+  if (after < 0.5 * before || after < little) {
+    this->Room = FirstRoom;
+  } else if (after < 1.0 && after > 0.75 * before) {
+    this->Room = std::min(2 * this->Room, this->Shader ? MostShaded : SampleBatch::Capacity);
+  }
 }
 
 void CachedMarcher::close(BrickRun& run, float transmittance)

@@ -93,6 +93,10 @@ private:
   bool marchPart(CachedRay& ray);
   /// Sends a ray on behind the translucent layer at its end; false when there is nothing to see.
   bool enterNextPart(CachedRay& ray) const;
+  /// Chooses how many samples the next batch is for, after one that took the ray's transmittance
+  /// from `before` to `after`: what lies behind an opaque sample is placed in vain, and every batch
+  /// has its price.
+  void adaptRoom(double before, double after);
   /// Fills the batch, unless the ray ends or has to wait.
   void place(CachedRay& state);
   /// Whether the first of such samples is; leaves those in `alike` of which the same is true.

@@ -9,19 +9,6 @@
 
 namespace inr {
 
-namespace {
-
-/// Samples that are placed at once: fewer before a ray has met anything, as it may be opaque, and
-/// where little shows behind what it has met.
-int BatchFor(const RayColor& color)
-{
-  constexpr double behind = 0.25;
-  return color.transmittance < 1.0 && color.transmittance > behind ? SampleBatch::Capacity
-                                                                   : SampleBatch::Capacity / 2;
-}
-
-} // namespace
-
 // Flat: what it calls it calls for every brick and macro-cell of every ray.
 __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
 {
@@ -30,7 +17,6 @@ __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
   this->Paths = 0;
   this->LastLength = 0;
   this->Ahead = 0;
-  this->Room = BatchFor(state.color);
   this->Runs[0].setPlace(-1);
   this->Runs[1].setPlace(-1);
   const MarchSettings& settings = this->Scene.settings;
@@ -145,8 +131,8 @@ CachedMarcher::RunPair CachedMarcher::runsFor(const CachedRay& state, double pla
 bool CachedMarcher::looksTooFar(const RunPair& runs) const
 {
   // So many samples behind the first one it may turn out that the ray is opaque.
-  constexpr int inUse = 2 * SampleBatch::Capacity;
-  constexpr int toBeLoaded = SampleBatch::Capacity / 2;
+  constexpr int inUse = 128;
+  constexpr int toBeLoaded = 32;
   if (this->Count == 0 || this->Ahead < toBeLoaded) {
     return false;
   }
@@ -179,7 +165,7 @@ void CachedMarcher::add(const CachedRay& state, AlikeSamples& alike, const RunPa
   const bool all = (stretch.closed && stretch.level > 0) ||
                    (runs.fine->shown().kind == ShownBlocks::Kind::All &&
                     runs.coarse->shown().kind == ShownBlocks::Kind::All);
-  const int room = this->Room - this->Count;
+  const int room = std::min(this->Room - this->Count, SampleRow::Most);
   int count = std::min(alike.count, all ? room : SampleRow::Most);
   if (count > 1) {
     const double length = std::min(runs.fine->exit(), runs.coarse->exit()) - place;

@@ -199,7 +199,7 @@ void LayOut(const SampleRun& run, int at, SampleBatch& batch, Located& out)
 {
   const bool hasGaps = (run.shown & (run.shown + 1)) != 0;
   if (hasGaps) {
-    std::int32_t numbers[SampleBatch::Room] = {};
+    std::int32_t numbers[SampleRow::Most + LaneCount] = {};
     ListShown(run, numbers);
     const auto listed = [&](int k) {
       Ints number;

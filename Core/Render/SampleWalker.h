@@ -126,7 +126,7 @@ private:
   /// with 1, 6, 12 and 24 as far as could be told (5 %), and 0, 0.2, 0.8 and 3 % more samples; 11 %
   /// without any such stretch.
   static constexpr double WorthAStretch = 12;
-  static constexpr double BlockLength = 64; ///< samples that are looked ahead for
+  static constexpr double BlockLength = 128; ///< samples that are looked ahead for
 
   /// To the next sample of the whole ray that may be seen.
   INR_HOST_DEVICE bool moveAlongRay(const MarchSettings& settings)

@@ -4,6 +4,7 @@
 // at a time.
 #include "Core/Random.h"
 #include "Core/Render/ColorTable.h"
+#include "Core/Render/SampleBits.h"
 #include "Core/Render/StepTable.h"
 #include "Testing/Core/Kernels.h"
 
@@ -123,7 +124,7 @@ inr::SampleRun RandomRun(int count, int paths)
   run.seed = static_cast<std::uint32_t>(inr::RandomBits(3, static_cast<std::uint64_t>(count)));
   run.counter = static_cast<std::uint32_t>(RandomInt(0, 100000));
   run.count = count;
-  run.shown = RandomInt(0, 1) == 0 ? (std::uint64_t{1} << count) - 1 : RandomBits(count);
+  run.shown = RandomInt(0, 1) == 0 ? inr::LowestBits(count) : RandomBits(count);
   run.length = RandomInt(0, 9);
   run.low = Random(-1, 0);
   run.high = Random(0, 1);
@@ -206,7 +207,8 @@ TEST_P(BrickKernels, LayOutRuns)
       int runs = 0;
       const int most = RandomInt(1, inr::SampleBatch::Capacity);
       while (count < most) {
-        batch->runs[runs] = RandomRun(RandomInt(1, most - count), paths);
+        const int longest = std::min(most - count, inr::SampleRow::Most);
+        batch->runs[runs] = RandomRun(RandomInt(1, longest), paths);
         count += batch->runs[runs++].count;
       }
       kernel.sampleRuns(voxels.format, *batch, runs);
