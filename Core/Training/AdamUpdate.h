@@ -11,8 +11,15 @@ namespace INR_ISA {
 
 using Counts = std::uint16_t __attribute__((vector_size(2 * LaneCount)));
 
+/// AdamStep of LaneCount parameters.
+struct AdamSteps
+{
+  Floats rate;
+  Floats beta2;
+};
+
 /// Updates LaneCount parameters from k on; those whose lane of `which` is 0 stay as they are.
-inline void AdamLanes(const AdamRun& run, std::int64_t k, Floats learningRate, Ints which)
+inline void AdamLanes(const AdamRun& run, std::int64_t k, const AdamSteps& steps, Ints which)
 {
   const Floats old = Load(run.parameters + k);
   const Floats gradient = Load(run.gradients + k) + Spread(run.decay) * old;
@@ -20,36 +27,39 @@ inline void AdamLanes(const AdamRun& run, std::int64_t k, Floats learningRate, I
   const Floats oldSecond = Load(run.secondMoments + k);
   const Floats first = Spread(run.beta1) * oldFirst + Spread(1.0f - run.beta1) * gradient;
   const Floats second =
-      Spread(run.beta2) * oldSecond + Spread(1.0f - run.beta2) * gradient * gradient;
-  const Floats step = learningRate * first / (SquareRoot(second) + Spread(run.epsilon));
+      steps.beta2 * oldSecond + (Spread(1.0f) - steps.beta2) * gradient * gradient;
+  const Floats step = steps.rate * first / (SquareRoot(second) + Spread(run.epsilon));
   Store(run.firstMoments + k, which ? first : oldFirst);
   Store(run.secondMoments + k, which ? second : oldSecond);
   Store(run.parameters + k, which ? old - step : old);
 }
 
-/// Adds 1 to the counts whose lane of `which` is not 0, up to `last`; returns their corrections.
-inline Floats CountAndCorrect(std::uint16_t* counts, Ints which, const AdamCorrections& corrections)
+/// Adds 1 to the counts whose lane of `which` is not 0, up to the last; returns those updates.
+inline AdamSteps CountSteps(std::uint16_t* counts, Ints which, const AdamSchedule& schedule)
 {
   Counts before;
   std::memcpy(&before, counts, sizeof(before));
   Ints count = __builtin_convertvector(before, Ints) - which; // a true comparison is -1
-  const Ints last = (Ints)SpreadInt(corrections.last);
+  const Ints last = (Ints)SpreadInt(schedule.last);
   count = count > last ? last : count;
   const Counts after = __builtin_convertvector(count, Counts);
   std::memcpy(counts, &after, sizeof(after));
-  Floats values;
+  AdamSteps steps;
   for (int lane = 0; lane < LaneCount; ++lane) {
-    values[lane] = corrections.values[count[lane]];
+    const AdamStep& step = schedule.steps[count[lane]];
+    steps.rate[lane] = step.rate;
+    steps.beta2[lane] = step.beta2;
   }
-  return values;
+  return steps;
 }
 
 inline void AdamSparseLanes(const AdamRun& run, std::int64_t k, float learningRate,
-                            std::uint16_t* counts, const AdamCorrections& corrections)
+                            std::uint16_t* counts, const AdamSchedule& schedule)
 {
   const Ints which = Load(run.gradients + k) != Floats{};
-  const Floats corrected = Spread(learningRate) * CountAndCorrect(counts + k, which, corrections);
-  AdamLanes(run, k, corrected, which);
+  AdamSteps steps = CountSteps(counts + k, which, schedule);
+  steps.rate = Spread(learningRate) * steps.rate;
+  AdamLanes(run, k, steps, which);
   Store(run.gradients + k, Floats{});
 }
 
@@ -62,7 +72,7 @@ inline AdamRun CopyOf(const AdamRun& run, std::int64_t k, std::int64_t count,
     std::memset(lanes[array], 0, sizeof(lanes[array]));
     std::memcpy(lanes[array], from[array] + k, static_cast<std::size_t>(count) * sizeof(float));
   }
-  return {lanes[0], lanes[1], lanes[2], lanes[3], run.beta1, run.beta2, run.epsilon, run.decay};
+  return {lanes[0], lanes[1], lanes[2], lanes[3], run.beta1, run.epsilon, run.decay};
 }
 
 inline void CopyBack(const AdamRun& copy, const AdamRun& run, std::int64_t k, std::int64_t count)
@@ -74,32 +84,32 @@ inline void CopyBack(const AdamRun& copy, const AdamRun& run, std::int64_t k, st
   std::memcpy(run.secondMoments + k, copy.secondMoments, bytes);
 }
 
-inline void AdamAll(const AdamRun& run, std::int64_t count, float learningRate)
+inline void AdamAll(const AdamRun& run, std::int64_t count, AdamStep step)
 {
+  const AdamSteps steps{Spread(step.rate), Spread(step.beta2)};
   const Ints all = Floats{} == Floats{};
   std::int64_t k = 0;
   for (; k + LaneCount <= count; k += LaneCount) {
-    AdamLanes(run, k, Spread(learningRate), all);
+    AdamLanes(run, k, steps, all);
   }
   if (k < count) {
     float lanes[4][LaneCount];
     const AdamRun copy = CopyOf(run, k, count - k, lanes);
-    AdamLanes(copy, 0, Spread(learningRate), all);
+    AdamLanes(copy, 0, steps, all);
     CopyBack(copy, run, k, count - k);
   }
 }
 
 /// The last parameters, which fill no vector.
 inline void AdamSparseRest(const AdamRun& run, std::int64_t k, std::int64_t count,
-                           float learningRate, std::uint16_t* counts,
-                           const AdamCorrections& corrections)
+                           float learningRate, std::uint16_t* counts, const AdamSchedule& schedule)
 {
   float lanes[4][LaneCount];
   std::uint16_t countLanes[LaneCount] = {};
   const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(std::uint16_t);
   std::memcpy(countLanes, counts + k, bytes);
   const AdamRun copy = CopyOf(run, k, count, lanes);
-  AdamSparseLanes(copy, 0, learningRate, countLanes, corrections);
+  AdamSparseLanes(copy, 0, learningRate, countLanes, schedule);
   CopyBack(copy, run, k, count);
   std::memcpy(counts + k, countLanes, bytes);
 }
@@ -116,8 +126,7 @@ inline bool TakeMarks(std::uint8_t* touched, std::int64_t begin, std::int64_t en
 }
 
 inline void AdamSparse(const AdamRun& run, std::int64_t count, std::uint8_t* touched,
-                       float learningRate, std::uint16_t* counts,
-                       const AdamCorrections& corrections)
+                       float learningRate, std::uint16_t* counts, const AdamSchedule& schedule)
 {
   // As many parameters at a time as are whole lines and whole vectors.
   constexpr std::int64_t turn = LaneCount > GradientLine ? LaneCount : GradientLine;
@@ -128,9 +137,9 @@ inline void AdamSparse(const AdamRun& run, std::int64_t count, std::uint8_t* tou
     }
     for (std::int64_t k = first; k < end; k += LaneCount) {
       if (k + LaneCount <= end) {
-        AdamSparseLanes(run, k, learningRate, counts, corrections);
+        AdamSparseLanes(run, k, learningRate, counts, schedule);
       } else {
-        AdamSparseRest(run, k, end - k, learningRate, counts, corrections);
+        AdamSparseRest(run, k, end - k, learningRate, counts, schedule);
       }
     }
   }

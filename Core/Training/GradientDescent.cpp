@@ -3,6 +3,7 @@
 
 #include "Core/Inference/HugePages.h"
 #include "Core/Inference/KernelTable.h"
+#include "Core/Training/AdamSchedule.h"
 #include "Core/Training/RandomStream.h"
 
 #include <algorithm>
@@ -15,8 +16,6 @@ const TrainKernel& TrainKernelFor(InstructionSet set) { return INR_KERNEL_FOR(se
 
 namespace {
 
-constexpr float Beta1 = 0.9f;
-constexpr float Beta2 = 0.999f;
 constexpr float Epsilon = 1e-15f;
 constexpr float WeightDecay = 1e-6f; // of the MLP only
 
@@ -39,20 +38,6 @@ std::int64_t SamplesPerCheck(std::uint64_t weights)
     samples /= 2;
   }
   return samples;
-}
-
-/// From this many updates on an entry's bias correction is 1 to float precision.
-constexpr std::uint16_t LastCorrectedStep = 16384;
-
-/// Adam's bias correction of the learning rate after t = 0 .. LastCorrectedStep updates.
-std::vector<float> BiasCorrections()
-{
-  std::vector<float> corrections(LastCorrectedStep + 1);
-  for (std::uint32_t t = 1; t <= LastCorrectedStep; ++t) {
-    corrections[t] =
-        static_cast<float>(std::sqrt(1.0 - std::pow(Beta2, t)) / (1.0 - std::pow(Beta1, t)));
-  }
-  return corrections;
 }
 
 float InitialBound(const Description& description, const Layout& layout, std::size_t layer)
@@ -105,7 +90,7 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
       Views(description, this->Shape, this->Parameters.data()), Gradient(this->Parameters.size()),
       Grid(this->Views.view(), this->Gradient.data() + this->Shape.gridOffset),
       FirstMoments(this->Parameters.size()), SecondMoments(this->Parameters.size()),
-      Updates(this->Parameters.size() - this->Shape.gridOffset), Corrections(BiasCorrections())
+      Updates(this->Parameters.size() - this->Shape.gridOffset), Updating(AdamUpdates())
 {
   for (std::vector<float>* const values :
        {&this->Parameters, &this->Gradient, &this->FirstMoments, &this->SecondMoments}) {
@@ -288,18 +273,18 @@ void GradientDescent::updateNetwork(float learningRate)
                     this->Gradient.data(),
                     this->FirstMoments.data(),
                     this->SecondMoments.data(),
-                    Beta1,
-                    Beta2,
+                    FirstMomentKept,
                     Epsilon,
                     WeightDecay};
-  const std::size_t step = std::min<std::uint64_t>(this->Steps, LastCorrectedStep);
-  this->Kernel.adam(run, static_cast<std::int64_t>(this->Shape.gridOffset),
-                    learningRate * this->Corrections[step]);
+  const std::size_t last = std::min<std::uint64_t>(this->Steps, LastAdamUpdate);
+  AdamStep step = this->Updating[last];
+  step.rate *= learningRate;
+  this->Kernel.adam(run, static_cast<std::int64_t>(this->Shape.gridOffset), step);
 }
 
 void GradientDescent::updateGrid(float learningRate)
 {
-  const AdamCorrections corrections{this->Corrections.data(), LastCorrectedStep};
+  const AdamSchedule schedule{this->Updating.data(), LastAdamUpdate};
   const std::vector<GridGradient::Piece>& pieces = this->Grid.pieces();
   const auto count = static_cast<std::int64_t>(pieces.size());
   this->Threads.forEachBlock(count, 1, [&](std::int64_t task, std::int64_t) {
@@ -309,12 +294,11 @@ void GradientDescent::updateGrid(float learningRate)
                       &this->Gradient[first],
                       &this->FirstMoments[first],
                       &this->SecondMoments[first],
-                      Beta1,
-                      Beta2,
+                      FirstMomentKept,
                       Epsilon,
                       0.0f};
     this->Kernel.adamSparse(run, piece.count, piece.touched, learningRate,
-                            &this->Updates[piece.first], corrections);
+                            &this->Updates[piece.first], schedule);
   });
 }
 

@@ -113,7 +113,7 @@ private:
   std::vector<float> FirstMoments;
   std::vector<float> SecondMoments;
   std::vector<std::uint16_t> Updates; ///< of each parameter of the grid
-  std::vector<float> Corrections;
+  std::vector<AdamStep> Updating;     ///< by the number of the update
   std::vector<glm::vec3> Positions;
   std::vector<float> Targets;
   std::vector<float> Encoded; ///< features of the batch, then their gradients

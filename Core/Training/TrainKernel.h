@@ -42,14 +42,21 @@ struct AdamRun
   float* gradients;
   float* firstMoments;
   float* secondMoments;
-  float beta1, beta2, epsilon;
+  float beta1, epsilon;
   float decay; ///< L2 regularisation: decay * parameter joins the gradient
 };
 
-/// Adam's bias correction of the learning rate after t = 0 .. last updates; then it stays.
-struct AdamCorrections
+/// What differs from update to update.
+struct AdamStep
 {
-  const float* values;
+  float rate;  ///< learning rate, the correction of the moments' bias included
+  float beta2; ///< how much of the second moment is kept
+};
+
+/// A parameter's t-th update, t = 1 .. last, with a learning rate of 1; then it stays.
+struct AdamSchedule
+{
+  const AdamStep* steps;
   std::uint16_t last;
 };
 
@@ -68,13 +75,12 @@ struct TrainKernel
   /// fixed.
   void (*scatter)(const ModelView& model, int level, const float* xyz, std::int64_t count,
                   const float* encodedGradient, const LevelGradient& gradient);
-  /// Updates `count` parameters with one learning rate (bias correction included).
-  void (*adam)(const AdamRun& run, std::int64_t count, float learningRate);
+  void (*adam)(const AdamRun& run, std::int64_t count, AdamStep step);
   /// Updates those of `count` parameters of a level that lie in touched lines and whose gradient is
   /// not zero, and makes gradients and marks zero. The first parameter begins a line; counts[k]
   /// says how often parameter k was updated.
   void (*adamSparse)(const AdamRun& run, std::int64_t count, std::uint8_t* touched,
-                     float learningRate, std::uint16_t* counts, const AdamCorrections& corrections);
+                     float learningRate, std::uint16_t* counts, const AdamSchedule& schedule);
 };
 
 /// The kernel built for `set`, which must be usable.

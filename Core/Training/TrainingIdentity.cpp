@@ -3,6 +3,7 @@
 
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelBlobs.h"
+#include "Core/Training/AdamSchedule.h"
 
 #include <nlohmann/json.hpp>
 
@@ -46,6 +47,7 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
           {"the parameters to start from (checksum)", Text(ChecksumOf(options.start))},
           {"the number of processes", Text(processes)},
           {"the kernel family", model.training->kernel},
+          {"the optimiser", OptimiserName},
           {"Seed", Text(options.seed)},
           {"TargetPSNR", Text(options.targetPsnr)},
           {"TargetRatio", Text(options.targetRatio)},

@@ -138,7 +138,7 @@ class Trainer:
             parameter.grad = torch.zeros_like(parameter)
         self.adam = torch.optim.Adam(
             [{"params": grid.matrices, "weight_decay": 1e-6}, {"params": [grid.table]}],
-            lr=learning_rate, eps=1e-15, fused=True)
+            lr=learning_rate, betas=(0.9, 0.99), eps=1e-15, fused=True)
         # One thread: several would add to one place at a time, by a loop around compare and swap.
         self.add_gradient = torch.compile(self.add_gradient_eager, dynamic=False,
                                           options={"cpp.threads": 1})

@@ -2,7 +2,7 @@
 //
 // The updates of every kernel against the formulas of Kingma and Ba in float64.
 #include "Core/Random.h"
-#include "Core/Training/TrainKernel.h"
+#include "Core/Training/AdamSchedule.h"
 #include "Testing/Core/Kernels.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,6 @@ struct State
             this->first.data(),
             this->second.data(),
             0.9f,
-            0.999f,
             static_cast<float>(Epsilon),
             decay};
   }
@@ -55,16 +54,17 @@ struct State
   std::vector<std::uint8_t> touched;
 };
 
-void ExpectUpdated(const State& before, const State& after, std::size_t k, double rate,
-                   double decay)
+void ExpectUpdated(const State& before, const State& after, std::size_t k,
+                   const inr::AdamStep& step, double decay)
 {
+  const double kept = step.beta2;
   const double gradient = before.gradients[k] + decay * before.parameters[k];
   const double first = 0.9 * before.first[k] + 0.1 * gradient;
-  const double second = 0.999 * before.second[k] + 0.001 * gradient * gradient;
+  const double second = kept * before.second[k] + (1 - kept) * gradient * gradient;
   EXPECT_NEAR(after.first[k], first, 1e-6) << k;
   EXPECT_NEAR(after.second[k], second, 1e-6) << k;
   EXPECT_NEAR(after.parameters[k],
-              before.parameters[k] - rate * first / (std::sqrt(second) + Epsilon), 1e-5)
+              before.parameters[k] - step.rate * first / (std::sqrt(second) + Epsilon), 1e-5)
       << k;
 }
 
@@ -75,9 +75,10 @@ TEST(Adam, UpdatesAll)
     for (const std::int64_t count : {1, 7, 16, 45}) {
       const State before(count);
       State after = before;
-      train.adam(after.run(0.25f), count, Rate);
+      const inr::AdamStep step{Rate, 0.95f};
+      train.adam(after.run(0.25f), count, step);
       for (std::size_t k = 0; k < after.parameters.size(); ++k) {
-        ExpectUpdated(before, after, k, Rate, 0.25);
+        ExpectUpdated(before, after, k, step, 0.25);
       }
     }
   }
@@ -85,7 +86,8 @@ TEST(Adam, UpdatesAll)
 
 TEST(Adam, UpdatesWhatWasTouchedAndHasAGradient)
 {
-  const std::vector<float> corrections = {9.0f, 2.0f, 1.5f, 1.25f, 1.125f};
+  const std::vector<inr::AdamStep> steps = {
+      {9.0f, 0.1f}, {2.0f, 0.5f}, {1.5f, 0.8f}, {1.25f, 0.9f}, {1.125f, 0.999f}};
   for (const std::string& kernel : UsableKernels()) {
     const inr::TrainKernel& train = inr::TrainKernelFor(inr::ChooseInstructionSet(kernel));
     for (const std::int64_t count : {2, 8, 27, 160}) {
@@ -98,12 +100,14 @@ TEST(Adam, UpdatesWhatWasTouchedAndHasAGradient)
       }
       State after = before;
       train.adamSparse(after.run(0.0f), count, after.touched.data(), Rate, after.updates.data(),
-                       {corrections.data(), 4});
+                       {steps.data(), 4});
       for (std::size_t k = 0; k < after.parameters.size(); ++k) {
         if (before.gradients[k] != 0.0f) {
           const int updates = std::min(before.updates[k] + 1, 4);
           EXPECT_EQ(after.updates[k], updates);
-          ExpectUpdated(before, after, k, Rate * corrections[static_cast<std::size_t>(updates)], 0);
+          inr::AdamStep step = steps[static_cast<std::size_t>(updates)];
+          step.rate *= Rate;
+          ExpectUpdated(before, after, k, step, 0);
         } else {
           EXPECT_EQ(after.parameters[k], before.parameters[k]);
           EXPECT_EQ(after.first[k], before.first[k]);
@@ -115,6 +119,31 @@ TEST(Adam, UpdatesWhatWasTouchedAndHasAGradient)
       EXPECT_EQ(after.touched, std::vector<std::uint8_t>(after.touched.size(), 0));
     }
   }
+}
+
+TEST(Adam, GoesAsFarAsTheLearningRateWhereTheGradientStays)
+{
+  constexpr double gradient = 0.25;
+  double first = 0;
+  double second = 0;
+  const std::vector<inr::AdamStep> steps = inr::AdamUpdates();
+  ASSERT_EQ(steps.size(), inr::LastAdamUpdate + 1);
+  for (std::size_t t = 1; t < steps.size(); ++t) {
+    first = inr::FirstMomentKept * first + (1 - inr::FirstMomentKept) * gradient;
+    const double kept = steps[t].beta2;
+    second = kept * second + (1 - kept) * gradient * gradient;
+    EXPECT_NEAR(steps[t].rate * first / std::sqrt(second), 1.0, 1e-5) << t;
+  }
+}
+
+TEST(Adam, RemembersATenthOfTheUpdates)
+{
+  const std::vector<inr::AdamStep> steps = inr::AdamUpdates();
+  EXPECT_FLOAT_EQ(steps[1].beta2, 0.99f);
+  EXPECT_FLOAT_EQ(steps[1000].beta2, 0.99f);
+  EXPECT_FLOAT_EQ(steps[4000].beta2, 0.9975f);
+  EXPECT_FLOAT_EQ(steps[10000].beta2, 0.999f);
+  EXPECT_FLOAT_EQ(steps[inr::LastAdamUpdate].beta2, 0.999f);
 }
 
 } // namespace

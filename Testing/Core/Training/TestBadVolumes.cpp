@@ -188,7 +188,9 @@ template <class T> void CheckVolume(const BadVolume& volume)
   const Normalised reference(field, model->volume);
   const inr::Quality measured = reference.against(Decode(model));
   const double range = model->volume.high - model->volume.low;
-  EXPECT_NEAR(model->quality->psnr, measured.psnr, 0.01);
+  if (model->quality->psnr != measured.psnr) { // as infinite ones are
+    EXPECT_NEAR(model->quality->psnr, measured.psnr, 0.01);
+  }
   EXPECT_NEAR(model->quality->maxError, measured.maxError * range, 1e-3 * range + 5e-324);
   EXPECT_GT(model->quality->psnr, reference.ConstantPsnr - 0.05);
   const bool windows = glm::all(glm::greaterThanEqual(volume.dims, glm::i64vec3(7)));
