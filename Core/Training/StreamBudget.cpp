@@ -52,18 +52,22 @@ std::int64_t FreeBytes(const VolumeInfo& info, const TrainingOptions& options,
 
 std::int64_t LeastFreeBytes() { return (CopiesOfBlock + 1) * SmallestShare; }
 
+constexpr int MostHalvings = 40; // of the default model: by then it is the smallest
+
+Description DescriptionAt(double ratio, const VolumeInfo& info, const TrainingOptions& options)
+{
+  return ChooseDescription(info.dims, info.type, ratio, options.storedAs, options.macroCellSize);
+}
+
 Description FittingDescription(const VolumeInfo& info, const TrainingOptions& options)
 {
-  const auto choose = [&](double ratio) {
-    return ChooseDescription(info.dims, info.type, ratio, options.storedAs, options.macroCellSize);
-  };
+  const auto choose = [&](double ratio) { return DescriptionAt(ratio, info, options); };
   if (options.description || options.targetRatio > 0) {
     return options.description.value_or(choose(options.targetRatio));
   }
   constexpr int fewestHalvings = 4;
-  constexpr int mostHalvings = 40; // by then it is the smallest model
   Description description = choose(0);
-  for (int halvings = fewestHalvings; halvings < mostHalvings; ++halvings) {
+  for (int halvings = fewestHalvings; halvings < MostHalvings; ++halvings) {
     if (TrainingBytes(description) <= options.memoryLimit / 2) {
       break; // half of the memory is left to the data
     }
@@ -90,6 +94,9 @@ StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
   StreamBudget budget{FittingDescription(info, options), 0, 0};
   const std::int64_t left = FreeBytes(info, options, budget.description, processes);
   if (left < LeastFreeBytes()) {
+    const Description smallest = DescriptionAt(std::ldexp(1.0, MostHalvings), info, options);
+    const std::int64_t leftBySmallest =
+        left + TrainingBytes(budget.description) - TrainingBytes(smallest);
     const auto inMiB = [](std::int64_t bytes) { return std::to_string(bytes / MiB + 1) + " MiB"; };
     throw Error(ErrorCode::InvalidArgument,
                 "training a model of " + std::to_string(Layout(budget.description).parameterCount) +
@@ -97,8 +104,10 @@ StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
                     inMiB(options.memoryLimit - left + LeastFreeBytes()) +
                     (processes > 1 ? " in each process and its share of the MemoryLimit is "
                                    : " and the MemoryLimit is ") +
-                    inMiB(options.memoryLimit - 1) +
-                    "; raise it or ask for a smaller model (TargetRatio)");
+                    inMiB(options.memoryLimit - 1) + "; raise it" +
+                    (leftBySmallest < LeastFreeBytes()
+                         ? ", as the smallest model takes too much, too"
+                         : " or ask for a smaller model (TargetRatio, or ModelConfig)"));
   }
   const std::int64_t block = std::clamp(left / (2 * CopiesOfBlock), SmallestShare, LargestBlock);
   const std::int64_t pool = std::min(left - CopiesOfBlock * block, LargestPool);

@@ -182,6 +182,9 @@ TEST(StreamedTraining, SaysHowMuchMemoryAModelNeeds)
   options.description->grid.log2HashmapSize = 19;
   options.description->grid.levels = 16;
   ExpectError(reader, options, "raise it or ask for a smaller model");
+  options = Options(10);
+  options.memoryLimit = 30 * MiB;
+  ExpectError(reader, options, "raise it, as the smallest model takes too much");
 }
 
 TEST(StreamedTraining, MakesTheDefaultModelFit)
