@@ -12,12 +12,14 @@ where they are asked for; "half-channel": half as many along every axis. Models 
 the field itself on 10^8 random voxels. "channel-flight", after "channel" in the same FOLDER, opens
 its model in ParaView with a cache of 2 GiB, flies through it, and compares pictures at three
 distances with pictures of the field itself; "half-channel-flight" likewise. "ranks": trainings by
-1, 2 and 4 processes of pvbatch; wants a python3 with NumPy.
+1, 2 and 4 processes of pvbatch; wants a python3 with NumPy. "resumed": 1024^3 floats from a file, by
+a process that is killed soon after its first checkpoint and one that goes on.
 """
 import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import channel_flight
@@ -60,11 +62,15 @@ build = Path(sys.argv[1]).resolve()
 folder = Path(sys.argv[2]).resolve()
 
 
-def train(model, source, properties, **writer):
+def command(model, source, properties, **writer):
     given = {"plugins": str(next((build / "lib").glob("paraview-*")) / "plugins"), "source": source,
              "properties": properties, "model": str(model), "writer": writer}
-    output = subprocess.run(["pvpython", "-c", CHILD, json.dumps(given)], check=True,
-                            stdout=subprocess.PIPE, text=True).stdout
+    return ["pvpython", "-c", CHILD, json.dumps(given)]
+
+
+def train(model, *source, **writer):
+    output = subprocess.run(command(model, *source, **writer), check=True, stdout=subprocess.PIPE,
+                            text=True).stdout
     answer = json.loads(output.strip().splitlines()[-1])
     print(model.name, answer, flush=True)
     return answer
@@ -82,17 +88,21 @@ def phases(run):
     return ", ".join(f"{name} until {seconds:.0f} s" for name, seconds in run["until"].items() if name)
 
 
-def raw_file():
-    header, data = folder / "channel.mhd", folder / "channel.raw"
+def cube(edge):
+    """A raw file of the field, and what ImageReader has to know of it."""
+    header, data = folder / f"channel{edge}.mhd", folder / f"channel{edge}.raw"
     if not data.exists():
-        subprocess.run([build / "Testing/Turbulence/turbulent_channel", "2048", "2048", "2048",
-                        header], check=True)
+        subprocess.run([build / "Testing/Turbulence/turbulent_channel", *[str(edge)] * 3, header],
+                       check=True)
+    return data, {"FileNames": [str(data)], "DataScalarType": "float", "FileDimensionality": 3,
+                  "DataByteOrder": "LittleEndian", "DataExtent": [0, edge - 1] * 3}
+
+
+def raw_file():
+    data, reader = cube(2048)
     model = folder / "raw.inr"
-    run = train(model, "ImageReader",
-                {"FileNames": [str(data)], "DataScalarType": "float", "FileDimensionality": 3,
-                 "DataByteOrder": "LittleEndian",
-                 "DataExtent": [0, 2047] * 3},
-                MemoryLimit=1024, MaximumSteps=STEPS, TimeLimit=0, ModelConfig=MODEL)
+    run = train(model, "ImageReader", reader, MemoryLimit=1024, MaximumSteps=STEPS, TimeLimit=0,
+                ModelConfig=MODEL)
     streamed = truth(model)
     sample = folder / "sample.inr"
     train(sample, "TurbulentChannel", {"Dimensions": [512] * 3, "OutputScalarType": "float"},
@@ -110,6 +120,39 @@ def raw_file():
                               round(streamed["psnr"] - memory["psnr"], 2), "dB", "higher",
                               "from memory: every fourth voxel (512^3), same model and steps, "
                               f"{memory['psnr']:.2f} dB on voxels of its own", target=-0.3)
+
+
+def killed(model, source, **writer):
+    """Bytes that a training has read when a kill ends it, half a minute after its first checkpoint."""
+    process = subprocess.Popen(command(model, *source, **writer))
+    checkpoint = Path(f"{model}.checkpoint")
+    while not checkpoint.exists() and process.poll() is None:
+        time.sleep(0.1)
+    time.sleep(30)
+    read = int(Path(f"/proc/{process.pid}/io").read_text().split()[1])
+    process.kill()
+    process.wait()
+    if model.exists():
+        raise RuntimeError(f"{model} was ready before the kill")
+    return read
+
+
+def resumed():
+    data, reader = cube(1024)
+    model = folder / "resumed.inr"
+    model.unlink(missing_ok=True)
+    source = ("ImageReader", reader)
+    settings = {"MemoryLimit": 1024, "MaximumSteps": STEPS, "TimeLimit": 0, "ModelConfig": MODEL,
+                "CheckpointInterval": 10}
+    first = killed(model, source, **settings)
+    run = train(model, *source, **settings)
+    size = data.stat().st_size
+    parts = f"{first / size:.2f} before a kill -9, {run['read'] / size:.2f} after it"
+    yield results_file.result("file bytes read ratio of a resumed training",
+                              round((first + run["read"]) / size, 3), "", "lower",
+                              f"{size / 2**30:.0f} GiB raw, {STEPS} steps, {parts}", target=3)
+    yield results_file.result("PSNR of a resumed training", round(truth(model)["psnr"], 2), "dB",
+                              "higher", "10^8 random voxels")
 
 
 def channel(name, divisor):
@@ -135,7 +178,7 @@ def flight(name, divisor):
     return channel_flight.results(build, folder / "pictures", model, dims)
 
 
-PARTS = {"raw": raw_file, "half-channel": lambda: channel("half channel", 2),
+PARTS = {"raw": raw_file, "resumed": resumed, "half-channel": lambda: channel("half channel", 2),
          "half-channel-flight": lambda: flight("half channel", 2),
          "channel": lambda: channel("channel", 1),
          "channel-flight": lambda: flight("channel", 1),
