@@ -43,6 +43,9 @@ public:
   /// prepare() of one step and of the next it stays as it is. Empty = nothing worth keeping.
   virtual StateArrays survey() { return {}; }
 
+  /// Seconds that it took to learn that.
+  virtual double surveySeconds() const { return 0; }
+
   /// Whether that came out of a checkpoint: then it fits nothing but the rest of that training.
   virtual bool isFromCheckpoint() const { return false; }
 

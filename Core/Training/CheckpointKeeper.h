@@ -26,6 +26,10 @@ public:
   /// begins anew, for want of a checkpoint or of a fitting one.
   std::optional<TrainingState> resume(const StateArrays& arrays);
 
+  /// Counts `seconds` before the first step towards the interval: what the survey took is lost,
+  /// too.
+  void count(double seconds) { this->SinceWritten = TrainingClock(seconds); }
+
   /// Whether it is time to write again.
   bool isDue() const;
 

@@ -94,6 +94,7 @@ public:
   {
     this->Pool.prepare(step, check);
   }
+  double surveySeconds() const override { return this->Volume.surveySeconds(); }
   std::int64_t count() const override { return this->Pool.count(); }
   std::int64_t total() const override { return this->Pool.total(); }
   void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,

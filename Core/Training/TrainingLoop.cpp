@@ -153,6 +153,7 @@ void TrainingLoop::resume(GradientDescent& descent, BatchSource& batches)
   const Before before =
       this->Group.valueOfFirst(Before{mine.has_value(), mine.value_or(TrainingState())});
   if (!before.known) {
+    this->Keeper.count(batches.surveySeconds());
     return;
   }
   this->shareArrays(descent.state());

@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
 
 namespace {
 
@@ -129,6 +132,20 @@ TEST_F(ResumeStreaming, ReadsNothingTwice)
   constexpr double ahead = 5;
   constexpr double borders = 1.4; // of voxels that two blocks need
   EXPECT_LE(all, once + 4 * (looks + ahead) / Blocks * borders);
+}
+
+// What is lost when the process is killed is what was read, too.
+TEST_F(ResumeStreaming, KeepsWhatTookLongToReadAtOnce)
+{
+  this->Options.checkpoint.interval = 2;
+  this->Options.maximumSteps = 1;
+  EXPECT_TRUE(this->train());
+  EXPECT_FALSE(std::filesystem::exists(this->Path));
+  this->Before = [](int number) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(number == 1 ? 2100 : 0));
+  };
+  EXPECT_TRUE(this->train());
+  EXPECT_TRUE(std::filesystem::exists(this->Path));
 }
 
 TEST_F(ResumeStreaming, ReadsOnlyForTheQualityWhenAllStepsAreDone)
