@@ -71,6 +71,9 @@ void TrainingCheckpoint::remove(int rank)
   if (this->HasSurvey) {
     std::filesystem::remove(inr::SurveyPath(this->Path, rank), ignored);
   }
+  if (rank == 0 && (this->Ours || this->HasSurvey)) {
+    inr::RemoveSurveys(this->Path); // there may have been more processes, which were killed
+  }
 }
 
 inr::Error TrainingCheckpoint::complete(const inr::Error& error)
@@ -82,5 +85,7 @@ inr::Error TrainingCheckpoint::complete(const inr::Error& error)
     return error;
   }
   return inr::Error(error.code(),
-                    text + "; '" + this->Path + "' is kept, from where the same training goes on");
+                    text + "; '" + this->Path +
+                        "' is kept, from where the same training goes on (with Resume = 0 it "
+                        "begins anew)");
 }

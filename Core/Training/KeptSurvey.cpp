@@ -14,6 +14,8 @@ namespace inr {
 
 namespace {
 
+constexpr const char* RankSuffix = ".rank";
+
 TrainingIdentity IdentityOf(const TrainingRun& run, StreamedVolume& volume)
 {
   return run.identity(volume.estimate(PsnrEstimate::UsualVoxels), volume.pool());
@@ -128,7 +130,30 @@ KeptSurvey::Before KeptSurvey::before() const
 
 std::string SurveyPath(const std::string& checkpoint, int rank)
 {
-  return checkpoint + ".rank" + std::to_string(rank);
+  return checkpoint + RankSuffix + std::to_string(rank);
+}
+
+void RemoveSurveys(const std::string& checkpoint)
+{
+  namespace fs = std::filesystem;
+  const fs::path path(checkpoint);
+  const std::string begin = path.filename().string() + RankSuffix;
+  const auto isSurvey = [&](const std::string& name) {
+    return name.size() > begin.size() && name.compare(0, begin.size(), begin) == 0 &&
+           std::all_of(name.begin() + static_cast<std::ptrdiff_t>(begin.size()), name.end(),
+                       [](char c) { return c >= '0' && c <= '9'; });
+  };
+  std::error_code ignored;
+  std::vector<fs::path> surveys;
+  for (fs::directory_iterator entry(fs::absolute(path, ignored).parent_path(), ignored), end;
+       !ignored && entry != end; entry.increment(ignored)) {
+    if (isSurvey(entry->path().filename().string())) {
+      surveys.push_back(entry->path());
+    }
+  }
+  for (const fs::path& survey : surveys) {
+    fs::remove(survey, ignored);
+  }
 }
 
 } // namespace inr

@@ -55,4 +55,7 @@ private:
 /// The file beside a checkpoint that process `rank` of a group has.
 std::string SurveyPath(const std::string& checkpoint, int rank);
 
+/// Removes those of all processes, however many there were; fails silently.
+void RemoveSurveys(const std::string& checkpoint);
+
 } // namespace inr

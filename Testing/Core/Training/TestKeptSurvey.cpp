@@ -209,4 +209,23 @@ TEST_F(KeptSurvey, SaysWhereItCannotBeWritten)
   EXPECT_EQ(this->Failed, 1);
 }
 
+TEST(Surveys, OfAllProcessesAreRemovedAndNothingElse)
+{
+  const TemporaryFolder folder;
+  const std::vector<std::string> stay = {"a.checkpoint", "a.checkpoint.rank", "a.checkpoint.rank1x",
+                                         "b.checkpoint.rank0"};
+  for (const std::string& name : stay) {
+    WriteBytes(folder.file(name), "");
+  }
+  WriteBytes(folder.file("a.checkpoint.rank0"), "");
+  WriteBytes(folder.file("a.checkpoint.rank12"), "");
+  inr::RemoveSurveys(folder.file("a.checkpoint"));
+  for (const std::string& name : stay) {
+    EXPECT_TRUE(std::filesystem::exists(folder.file(name))) << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a.checkpoint.rank0")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a.checkpoint.rank12")));
+  inr::RemoveSurveys(folder.file("nowhere/a.checkpoint"));
+}
+
 } // namespace
