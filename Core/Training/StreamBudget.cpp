@@ -59,7 +59,8 @@ Description DescriptionAt(double ratio, const VolumeInfo& info, const TrainingOp
   return ChooseDescription(info.dims, info.type, ratio, options.storedAs, options.macroCellSize);
 }
 
-Description FittingDescription(const VolumeInfo& info, const TrainingOptions& options)
+Description FittingDescription(const VolumeInfo& info, const TrainingOptions& options,
+                               int processes)
 {
   const auto choose = [&](double ratio) { return DescriptionAt(ratio, info, options); };
   if (options.description || options.targetRatio > 0) {
@@ -68,8 +69,9 @@ Description FittingDescription(const VolumeInfo& info, const TrainingOptions& op
   constexpr int fewestHalvings = 4;
   Description description = choose(0);
   for (int halvings = fewestHalvings; halvings < MostHalvings; ++halvings) {
-    if (TrainingBytes(description) <= options.memoryLimit / 2) {
-      break; // half of the memory is left to the data
+    if (TrainingBytes(description) <= options.memoryLimit / 2 && // the rest is left to the data
+        FreeBytes(info, options, description, processes) >= LeastFreeBytes()) {
+      break;
     }
     description = choose(std::ldexp(1.0, halvings));
   }
@@ -91,7 +93,7 @@ std::int64_t TrainingBytes(const Description& description)
 StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
                         std::int64_t bytesPerVoxel, int processes)
 {
-  StreamBudget budget{FittingDescription(info, options), 0, 0};
+  StreamBudget budget{FittingDescription(info, options, processes), 0, 0};
   const std::int64_t left = FreeBytes(info, options, budget.description, processes);
   if (left < LeastFreeBytes()) {
     const Description smallest = DescriptionAt(std::ldexp(1.0, MostHalvings), info, options);

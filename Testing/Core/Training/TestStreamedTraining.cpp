@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Training/Quality.h"
+#include "Core/Training/StreamBudget.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/FieldReader.h"
 
@@ -185,6 +186,27 @@ TEST(StreamedTraining, SaysHowMuchMemoryAModelNeeds)
   options = Options(10);
   options.memoryLimit = 30 * MiB;
   ExpectError(reader, options, "raise it, as the smallest model takes too much");
+}
+
+TEST(StreamedTraining, FindsADefaultModelForEveryLimitThatHasRoomForOne)
+{
+  inr::VolumeInfo info;
+  info.dims = glm::i64vec3(400, 300, 200);
+  info.type = inr::ScalarType::Float32;
+  inr::TrainingOptions options;
+  int fitting = 0;
+  for (std::int64_t limit = 90; limit < 200; ++limit) {
+    options.memoryLimit = limit * MiB;
+    try {
+      inr::PlanStream(info, options, 4, 1);
+      ++fitting;
+    } catch (const inr::Error& error) {
+      EXPECT_NE(std::string(error.what()).find("the smallest model takes too much"),
+                std::string::npos)
+          << limit << " MiB: " << error.what();
+    }
+  }
+  EXPECT_GT(fitting, 70);
 }
 
 TEST(StreamedTraining, MakesTheDefaultModelFit)
