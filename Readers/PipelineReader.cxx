@@ -13,6 +13,7 @@
 #include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
+#include <vtkInformationVector.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
@@ -65,6 +66,23 @@ void Request(vtkInformation* input, const Extent& extent)
   input->Set(Pipeline::UPDATE_EXTENT(), extent.data(), 6);
 }
 
+/// Per voxel, of the arrays of which a source tells the type before it reads them.
+std::int64_t KnownBytes(vtkInformationVector* arrays)
+{
+  std::int64_t bytes = 0;
+  for (int k = 0; arrays && k < arrays->GetNumberOfInformationObjects(); ++k) {
+    vtkInformation* array = arrays->GetInformationObject(k);
+    if (array->Has(vtkDataObject::FIELD_ARRAY_TYPE())) {
+      const bool told = array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS());
+      const int components = told ? array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()) : 1;
+      bytes += std::int64_t{vtkAbstractArray::GetDataTypeSize(
+                   array->Get(vtkDataObject::FIELD_ARRAY_TYPE()))} *
+               std::max(components, 1);
+    }
+  }
+  return bytes;
+}
+
 } // namespace
 
 bool Contains(const int* outer, const int* inner)
@@ -87,12 +105,11 @@ WholeImage WholeImage::Of(vtkInformation* input)
   }
   image.isInMemory = std::equal(image.extent, image.extent + 6, data->GetExtent()) &&
                      data->GetPointData()->GetNumberOfArrays() > 0;
-  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
-      input, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-  const bool known = scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE());
-  const int type = known ? scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) : VTK_DOUBLE;
+  const std::int64_t known = KnownBytes(input->Get(vtkDataObject::POINT_DATA_VECTOR())) +
+                             KnownBytes(input->Get(vtkDataObject::CELL_DATA_VECTOR()));
   const glm::dvec3 dims(image.dims);
-  image.bytes = dims.x * dims.y * dims.z * vtkAbstractArray::GetDataTypeSize(type);
+  image.bytes = dims.x * dims.y * dims.z *
+                static_cast<double>(known > 0 ? known : std::int64_t{sizeof(double)});
   return image;
 }
 

@@ -21,7 +21,7 @@ struct WholeImage
   int extent[6] = {0, -1, 0, -1, 0, -1};
   glm::i64vec3 dims{0};
   bool isInMemory = false; ///< all of it
-  double bytes = 0;        ///< of its active scalars; of doubles where these are not known
+  double bytes = 0; ///< of all arrays whose type the source tells; of doubles where it tells none
 
   /// Of what is connected to an algorithm. No dims where that is no image.
   static WholeImage Of(vtkInformation* input);

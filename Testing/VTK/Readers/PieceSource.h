@@ -30,6 +30,7 @@ public:
   int FailingRequest = 0;     ///< by number from 1; 0 = none
   bool OnlyComplains = false; ///< and succeeds, in place of failing
   int MoreArrays = 0;         ///< besides the one
+  bool TellsOfArrays = false; ///< of these, too, before it is asked for them
   double Time = 0;            ///< of the last request
 
   int Requests = 0;
@@ -52,6 +53,12 @@ protected:
     info->Set(vtkDataObject::ORIGIN(), 1.0, 2.0, 3.0);
     info->Set(CAN_PRODUCE_SUB_EXTENT(), 1);
     vtkDataObject::SetPointDataActiveScalarInfo(info, this->Type, 1);
+    for (int k = 0; this->TellsOfArrays && k < this->MoreArrays; ++k) {
+      vtkNew<vtkInformation> array;
+      array->Set(vtkDataObject::FIELD_ARRAY_TYPE(), VTK_FLOAT);
+      array->Set(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS(), 1);
+      info->Get(vtkDataObject::POINT_DATA_VECTOR())->Append(array);
+    }
     const double times[] = {0.5, 1.5};
     info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), times, 2);
     return 1;

@@ -158,6 +158,20 @@ TEST_F(Streaming, CountsAllArraysOfTheSource)
   EXPECT_LE(8 * 4 * this->Source->LargestRequest, 8 * MiB);
 }
 
+// The one alone would fit, in 62.5 MiB.
+TEST_F(Streaming, CountsArraysThatItIsToldOf)
+{
+  this->Source->MoreArrays = 7;
+  this->Source->TellsOfArrays = true;
+  this->Writer->SetMaximumSteps(2);
+  this->Writer->SetMemoryLimit(200);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  EXPECT_GT(this->Source->Requests, 20);
+  EXPECT_LE(8 * 4 * this->Source->LargestRequest, 100 * MiB);
+}
+
 TEST_F(Streaming, WarnsOfASourceThatGivesNoParts)
 {
   this->Source->GivesParts = false;
