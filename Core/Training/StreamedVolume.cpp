@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -55,7 +56,7 @@ std::vector<std::int64_t> ChooseBars(std::int64_t bars, std::int64_t count, std:
 std::string ToText(double value)
 {
   std::ostringstream text;
-  text << value;
+  text << std::setprecision(10) << value;
   return text.str();
 }
 
@@ -142,11 +143,14 @@ double StreamedVolume::mostRereads() const
 void StreamedVolume::requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const
 {
   const VolumeStatistics now = MeasureBox(piece, box, this->Threads);
-  if (now.low < this->Statistics.low || now.high > this->Statistics.high) {
+  const double low = this->Statistics.low - this->tolerance();
+  const double high = this->Statistics.high + this->tolerance();
+  if (now.low < low || now.high > high) {
     throw Error(ErrorCode::InvalidArgument,
-                "the data changed while they were read: voxels " + ToText(box) + " were within " +
+                "the data changed while they were read: voxels " + ToText(box) + " now are " +
+                    ToText(now.low) + " to " + ToText(now.high) + ", outside " +
                     ToText(this->Statistics.low) + " to " + ToText(this->Statistics.high) +
-                    " and now are " + ToText(now.low) + " to " + ToText(now.high));
+                    ", the range of all data when they were read for the first time");
   }
 }
 

@@ -54,7 +54,7 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
           {"MaximumSteps", Text(options.maximumSteps)},
           {"PlannedSteps", Text(options.plannedSteps)},
           {"TimeLimit", Text(options.timeLimit)},
-          {"the samples", batches.name()},
+          {"the samples, which MemoryLimit decides on,", batches.name()},
           {"the precision of the file", NameOf(ParameterTypeNames, options.storedAs)}};
 }
 
