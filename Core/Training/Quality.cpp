@@ -13,6 +13,32 @@ namespace inr {
 
 namespace {
 
+/// Edge in voxels of the parts of a slice that are compared one after the other: SSIM keeps 430
+/// bytes for each of their voxels.
+constexpr std::int64_t LargestTile = 384;
+
+std::int64_t TilesAlong(std::int64_t voxels) { return (voxels + LargestTile - 1) / LargestTile; }
+
+/// One of `count` parts of a box, side by side along an axis.
+VoxelBox Cut(const VoxelBox& box, int axis, std::int64_t part, std::int64_t count)
+{
+  VoxelBox cut = box;
+  const std::int64_t begin = box.size[axis] * part / count;
+  cut.first[axis] += begin;
+  cut.size[axis] = box.size[axis] * (part + 1) / count - begin;
+  return cut;
+}
+
+/// A part of a box with what the SSIM windows that begin in it reach beyond it.
+VoxelBox WithWindows(const VoxelBox& part, const VoxelBox& box)
+{
+  if (!SliceSsim::HasWindows(box.size)) {
+    return part;
+  }
+  const glm::i64vec3 reach(SliceSsim::Window - 1, SliceSsim::Window - 1, 0);
+  return {part.first, glm::min(part.end() + reach, box.end()) - part.first};
+}
+
 /// One slice of a piece at a time: decoded and reference values in normalised units.
 class SliceComparison
 {
@@ -49,11 +75,12 @@ public:
     });
   }
 
-  QualityMeter::Errors rowErrors(std::int64_t y) const
+  /// Of the first `count` voxels of a row.
+  QualityMeter::Errors rowErrors(std::int64_t y, std::int64_t count) const
   {
     QualityMeter::Errors errors;
-    const std::int64_t width = this->Box.size.x;
-    for (std::int64_t k = y * width; k < (y + 1) * width; ++k) {
+    const std::int64_t begin = y * this->Box.size.x;
+    for (std::int64_t k = begin; k < begin + count; ++k) {
       const double difference = std::abs(this->Reference[k] - this->Decoded[k]);
       if (std::isfinite(difference)) {
         errors.squared += difference * difference;
@@ -125,15 +152,29 @@ void QualityMeter::gather(const TrainingGroup& group)
 void QualityMeter::add(const VolumePiece& piece, const VoxelBox& box, CellRanges* decoded,
                        const std::function<void(double)>& check)
 {
-  const glm::i64vec3 size = box.size;
+  const std::int64_t columns = TilesAlong(box.size.x);
+  const std::int64_t tiles = columns * TilesAlong(box.size.y);
+  for (std::int64_t tile = 0; tile < tiles; ++tile) {
+    const VoxelBox column = Cut(box, 0, tile % columns, columns);
+    const VoxelBox own = Cut(column, 1, tile / columns, tiles / columns);
+    this->addTile(piece, own, WithWindows(own, box), decoded, [&](double part) {
+      check((static_cast<double>(tile) + part) / static_cast<double>(tiles));
+    });
+  }
+}
+
+/// Of the voxels of `box`, those of `own` count, and all windows.
+void QualityMeter::addTile(const VolumePiece& piece, const VoxelBox& own, const VoxelBox& box,
+                           CellRanges* decoded, const std::function<void(double)>& check)
+{
   SliceComparison slice(this->Source, piece, box, this->Info, this->Threads, this->BandSize);
-  SliceSsim windows(size.x, size.y, this->Threads);
-  std::vector<Errors> rows(static_cast<std::size_t>(size.y));
-  for (std::int64_t z = 0; z < size.z; ++z) {
+  SliceSsim windows(box.size, this->Threads);
+  std::vector<Errors> rows(static_cast<std::size_t>(own.size.y));
+  for (std::int64_t z = 0; z < own.size.z; ++z) {
     slice.load(z, check);
-    this->Threads.forEachBlock(size.y, 16, [&](std::int64_t begin, std::int64_t end) {
+    this->Threads.forEachBlock(own.size.y, 16, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t y = begin; y < end; ++y) {
-        rows[static_cast<std::size_t>(y)] = slice.rowErrors(y);
+        rows[static_cast<std::size_t>(y)] = slice.rowErrors(y, own.size.x);
       }
     });
     for (const Errors& row : rows) { // in their order, so that threads cannot change the sum
@@ -141,9 +182,10 @@ void QualityMeter::add(const VolumePiece& piece, const VoxelBox& box, CellRanges
     }
     windows.addSlice(slice.reference().data(), slice.decoded().data());
     if (decoded != nullptr) {
-      VolumePiece layer{{slice.raw().data(), ScalarType::Float32, {size.x, size.y, 1}},
-                        box.first + glm::i64vec3(0, 0, z)};
-      decoded->add(layer, {layer.first, layer.data.dims}, this->Threads);
+      const glm::i64vec3 first = own.first + glm::i64vec3(0, 0, z);
+      const VolumePiece layer{
+          {slice.raw().data(), ScalarType::Float32, {box.size.x, box.size.y, 1}}, first};
+      decoded->add(layer, {first, {own.size.x, own.size.y, 1}}, this->Threads);
     }
   }
   this->Similarity += windows.total();

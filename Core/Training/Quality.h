@@ -21,9 +21,10 @@ public:
       : Source(evaluator), Info(info), Threads(arena), BandSize(bandSize)
   {}
 
-  /// Decodes the voxels of a piece and compares. `decoded`, if any, takes in their normalised
-  /// values. `check` receives the fraction done of the piece, after so many voxels as `bandSize`
-  /// says, in whole rows, and throws to stop; the last bit of a position may depend on that.
+  /// Decodes the voxels of a piece and compares, a part of a slice at a time. `decoded`, if any,
+  /// takes in their normalised values. `check` receives the fraction done of the piece, after so
+  /// many voxels as `bandSize` says, in whole rows, and throws to stop; the last bit of a position
+  /// may depend on that.
   void add(const VolumePiece& piece, CellRanges* decoded, const std::function<void(double)>& check)
   {
     this->add(piece, {piece.first, piece.data.dims}, decoded, check);
@@ -50,6 +51,9 @@ public:
   const Errors& errors() const { return this->All; }
 
 private:
+  void addTile(const VolumePiece& piece, const VoxelBox& own, const VoxelBox& box,
+               CellRanges* decoded, const std::function<void(double)>& check);
+
   const Evaluator& Source;
   VolumeInfo Info;
   const Arena& Threads;

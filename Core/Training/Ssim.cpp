@@ -25,12 +25,13 @@ double WindowScore(const std::array<double, 6>& sums, double n)
 
 } // namespace
 
-SliceSsim::SliceSsim(std::int64_t width, std::int64_t height, const Arena& arena)
-    : Width(width), Height(height), Threads(arena)
+SliceSsim::SliceSsim(const glm::i64vec3& size, const Arena& arena)
+    : Width(size.x), Height(size.y), Threads(arena)
 {
-  const std::int64_t columns = std::max<std::int64_t>(0, width - Window + 1) *
-                               std::max<std::int64_t>(0, height - Window + 1);
-  this->Columns.assign(static_cast<std::size_t>(columns), Sums{});
+  if (HasWindows(size)) {
+    const std::int64_t columns = (size.x - Window + 1) * (size.y - Window + 1);
+    this->Columns.assign(static_cast<std::size_t>(columns), Sums{});
+  }
 }
 
 void SliceSsim::addSlice(const double* reference, const double* decoded)

@@ -3,6 +3,8 @@
 
 #include "Core/Parallel.h"
 
+#include <glm/vec3.hpp>
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -10,11 +12,19 @@
 namespace inr {
 
 /// 3D SSIM of two volumes that arrive slice by slice (see MeasureQuality for the definition).
-/// Holds seven slices of window sums, whatever the volume's depth.
+/// Holds seven slices of window sums, whatever the volume's depth; none where no window fits.
 class SliceSsim
 {
 public:
-  SliceSsim(std::int64_t width, std::int64_t height, const Arena& arena);
+  static constexpr std::int64_t Window = 7; ///< edge in voxels
+
+  /// `size`: voxels of the volumes.
+  SliceSsim(const glm::i64vec3& size, const Arena& arena);
+
+  static bool HasWindows(const glm::i64vec3& size)
+  {
+    return size.x >= Window && size.y >= Window && size.z >= Window;
+  }
 
   /// The next slice of both volumes, normalised; a non-finite reference voxel voids its windows.
   void addSlice(const double* reference, const double* decoded);
@@ -26,7 +36,6 @@ public:
 private:
   /// Reference, decoded, their squares, their product, and the count of void voxels.
   static constexpr int SumCount = 6;
-  static constexpr std::int64_t Window = 7;
   using Sums = std::array<double, SumCount>;
   using SumPlane = std::vector<Sums>;
 
