@@ -123,8 +123,9 @@ public:
   StateArrays survey() override { return {}; }
   void prepare(const TrainingStep& step, const StopCheck& check) override
   {
-    this->Volume.readBefore(step);
-    this->PoolBatches::prepare(step, check);
+    if (this->Volume.readBefore(step, check)) {
+      this->PoolBatches::prepare(step, check);
+    }
   }
 };
 

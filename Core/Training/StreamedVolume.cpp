@@ -18,7 +18,7 @@ namespace inr {
 namespace {
 
 constexpr std::int64_t VoxelsOfBar = std::int64_t{1} << 17;
-/// What SSIM keeps of a slice is large.
+/// Small enough for all processes of a group to get as many.
 constexpr std::int64_t VoxelsOfMeasuredBlock = std::int64_t{1} << 20;
 
 constexpr double MostReadings = 3.0;
@@ -194,9 +194,22 @@ void StreamedVolume::readAgain(std::int64_t block)
   this->Pool.offer(block, this->Pool.sample(block, 1, piece, this->Threads));
 }
 
-void StreamedVolume::readBefore(const TrainingStep& step)
+/// Before what all do: none begins to read where another stops.
+bool StreamedVolume::allGoOn(const StopCheck& check) const
+{
+  bool goesOn = true;
+  this->Group.together([&] { goesOn = check.goesOn(); });
+  const std::vector<bool> all = this->Group.valuesOfAll(goesOn);
+  return std::count(all.begin(), all.end(), false) == 0;
+}
+
+/// A training that was resumed may owe most of the volume.
+bool StreamedVolume::readBefore(const TrainingStep& step, const StopCheck& check)
 {
   while (const std::optional<std::int64_t> block = this->Pool.owed(step)) {
+    if (!this->allGoOn(check)) {
+      return false;
+    }
     this->Group.together([&] {
       if (*block != SamplePool::NoBlock) {
         this->readAgain(*block);
@@ -206,6 +219,7 @@ void StreamedVolume::readBefore(const TrainingStep& step)
       }
     });
   }
+  return true;
 }
 
 /// Every n-th of the chosen boxes is of this process.

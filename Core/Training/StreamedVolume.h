@@ -59,9 +59,10 @@ public:
   /// what it was.
   void readAgain();
 
-  /// Reads the blocks again that are to be read before a step, where one thread reads and trains.
-  /// Throws as readAgain. For all.
-  void readBefore(const TrainingStep& step);
+  /// Reads the blocks again that are to be read before a step, where one thread reads and trains;
+  /// false where `check` of one process says to stop before all are read. Throws as readAgain, and
+  /// as `check` does. For all.
+  bool readBefore(const TrainingStep& step, const StopCheck& check);
 
   /// Compares all voxels, or some where they are many, with a model of them. Throws as readAgain.
   /// For all.
@@ -77,6 +78,7 @@ private:
   void sampleEstimate(std::int64_t block, const VolumePiece& piece);
   void requireKnownValues(std::int64_t block, const VolumePiece& piece) const;
   double tolerance() const;
+  bool allGoOn(const StopCheck& check) const;
   void shareEstimates();
   void readAgain(std::int64_t block);
   void measureShare(const BlockGrid& boxes, const std::vector<std::int64_t>& chosen,

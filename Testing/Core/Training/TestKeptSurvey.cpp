@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 namespace {
 
@@ -39,13 +41,13 @@ protected:
     };
   }
 
-  std::vector<Outcome> train(const Watch& watch = {})
+  std::vector<Outcome> train(const Watch& watch = {}, const Before& before = {})
   {
     this->Kept = 0;
     this->Failed = 0;
     this->Surveyed = false;
     return TrainTogether(
-        this->Size, this->Options, {},
+        this->Size, this->Options, before,
         [&](int rank, const inr::TrainingProgress& now) {
           this->Surveyed = this->Surveyed || now.phase == inr::TrainingPhase::Reading;
           return !watch || watch(rank, now);
@@ -120,6 +122,24 @@ TEST_F(KeptSurvey, FitsEveryCheckpointOfItsTraining)
   }
   this->expectModelOf(whole, this->train());
   EXPECT_FALSE(this->Surveyed);
+}
+
+// What has to be read again may be most of the volume: here five blocks, after one is looked at.
+TEST_F(KeptSurvey, IsFollowedByReadingsThatCanBeStopped)
+{
+  this->stopAfter(39);
+  bool stop = false;
+  const std::vector<Outcome> stopped = this->train(
+      [&](int rank, const inr::TrainingProgress&) { return rank != 1 || !stop; },
+      [&](int rank, int reading) {
+        if (rank == 1) {
+          stop = reading >= 2;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100)); // progress is told every 200
+      });
+  ExpectErrors(stopped, "stopped");
+  EXPECT_LE(stopped[1].reads, 4);
+  this->expectModelOf(this->trainWithoutCheckpoint(), this->train());
 }
 
 TEST_F(KeptSurvey, IsReadAgainWhereAFileIsBrokenOrMissing)
