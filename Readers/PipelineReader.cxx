@@ -83,6 +83,20 @@ std::int64_t KnownBytes(vtkInformationVector* arrays)
   return bytes;
 }
 
+/// Of all arrays.
+std::int64_t BytesPerVoxel(vtkImageData& image)
+{
+  std::int64_t bytes = 0;
+  for (vtkDataSetAttributes* data : {static_cast<vtkDataSetAttributes*>(image.GetPointData()),
+                                     static_cast<vtkDataSetAttributes*>(image.GetCellData())}) {
+    for (int k = 0; k < data->GetNumberOfArrays(); ++k) {
+      const vtkAbstractArray* array = data->GetAbstractArray(k);
+      bytes += std::int64_t{array->GetDataTypeSize()} * array->GetNumberOfComponents();
+    }
+  }
+  return bytes;
+}
+
 } // namespace
 
 bool Contains(const int* outer, const int* inner)
@@ -113,6 +127,12 @@ WholeImage WholeImage::Of(vtkInformation* input)
   return image;
 }
 
+void WholeImage::learnBytes(vtkImageData& part)
+{
+  const glm::dvec3 voxels(this->dims);
+  this->bytes = voxels.x * voxels.y * voxels.z * static_cast<double>(BytesPerVoxel(part));
+}
+
 void WholeImage::ask(vtkInformation* input, bool onlyFirst) const
 {
   Extent wanted{};
@@ -123,40 +143,41 @@ void WholeImage::ask(vtkInformation* input, bool onlyFirst) const
   Request(input, wanted);
 }
 
+vtkImageData* UpdateInput(vtkAlgorithm& consumer, const std::function<void(vtkInformation*)>& ask,
+                          bool afresh)
+{
+  const std::string rawProblem = RawFiles(&consumer).problem(); // it may have been cut since
+  if (!rawProblem.empty()) {
+    throw inr::Error(inr::ErrorCode::CannotRead, rawProblem);
+  }
+  if (afresh) {
+    ReleaseUpstream(consumer);
+  }
+  const UpstreamErrors errors(&consumer);
+  ask(consumer.GetInputInformation());
+  auto* producer = Pipeline::SafeDownCast(consumer.GetInputExecutive());
+  const int port = consumer.GetInputConnection(0, 0)->GetIndex();
+  const bool updated = producer && producer->Update(port) != 0;
+  errors.check();
+  if (!updated || producer->GetAlgorithm()->GetErrorCode() != 0) {
+    throw inr::Error(inr::ErrorCode::CannotRead,
+                     "the source failed; what it reported, if anything, says why");
+  }
+  return vtkImageData::SafeDownCast(consumer.GetInputDataObject(0, 0));
+}
+
 PipelineReader::PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
                                Finder finder, bool afresh)
     : Consumer(consumer), Whole(whole), Afresh(afresh), Type(finder(&first).data.type),
-      Find(std::move(finder))
-{
-  for (vtkDataSetAttributes* data : {static_cast<vtkDataSetAttributes*>(first.GetPointData()),
-                                     static_cast<vtkDataSetAttributes*>(first.GetCellData())}) {
-    for (int k = 0; k < data->GetNumberOfArrays(); ++k) {
-      const vtkAbstractArray* array = data->GetAbstractArray(k);
-      this->BytesPerVoxel +=
-          std::int64_t{array->GetDataTypeSize()} * array->GetNumberOfComponents();
-    }
-  }
-}
+      Bytes(BytesPerVoxel(first)), Find(std::move(finder))
+{}
 
 vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) const
 {
   const Extent extent = ExtentOf(box, this->Whole.extent);
-  const std::string rawProblem = RawFiles(&this->Consumer).problem(); // it may have been cut since
-  if (!rawProblem.empty()) {
-    throw inr::Error(inr::ErrorCode::CannotRead, rawProblem);
-  }
-  if (this->Afresh) {
-    ReleaseUpstream(this->Consumer);
-  }
-  const UpstreamErrors errors(&this->Consumer);
-  Request(this->Consumer.GetInputInformation(), extent);
-  auto* producer = Pipeline::SafeDownCast(this->Consumer.GetInputExecutive());
-  const int port = this->Consumer.GetInputConnection(0, 0)->GetIndex();
-  const bool updated = producer && producer->Update(port) != 0;
-  errors.check();
-  auto* image = vtkImageData::SafeDownCast(this->Consumer.GetInputDataObject(0, 0));
-  const unsigned long problem = producer ? producer->GetAlgorithm()->GetErrorCode() : 0;
-  if (!updated || problem != 0 || !image || !Contains(image->GetExtent(), extent.data())) {
+  const auto ask = [&](vtkInformation* input) { Request(input, extent); };
+  vtkImageData* image = UpdateInput(this->Consumer, ask, this->Afresh);
+  if (!image || !Contains(image->GetExtent(), extent.data())) {
     throw inr::Error(inr::ErrorCode::CannotRead, "the source did not give the voxels of extent " +
                                                      ToText(extent) +
                                                      "; what it reported, if anything, says why");

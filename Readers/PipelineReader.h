@@ -23,12 +23,22 @@ struct WholeImage
   bool isInMemory = false; ///< all of it
   double bytes = 0; ///< of all arrays whose type the source tells; of doubles where it tells none
 
+  /// What `part` of it has says how many bytes there are.
+  void learnBytes(vtkImageData& part);
+
   /// Of what is connected to an algorithm. No dims where that is no image.
   static WholeImage Of(vtkInformation* input);
 
   /// Has the pipeline update all of it, or the first voxel, in this process.
   void ask(vtkInformation* input, bool onlyFirst) const;
 };
+
+/// Updates an algorithm's first input from within the algorithm's own request for data, after `ask`
+/// has said what is wanted. `afresh`: sources have to read, even what they still have, since others
+/// count on it: there are some that work together in several processes. Throws
+/// inr::Error(CannotRead) when the pipeline fails.
+vtkImageData* UpdateInput(vtkAlgorithm& consumer, const std::function<void(vtkInformation*)>& ask,
+                          bool afresh);
 
 /// Reads boxes of an algorithm's first input by asking the pipeline for them, from within the
 /// algorithm's own request for data.
@@ -38,15 +48,13 @@ public:
   /// Finds what is to be trained on in an image, or throws.
   using Finder = std::function<TrainingInput(vtkImageData*)>;
 
-  /// `first`: a voxel of it, as the source gives it. `afresh`: sources have to read each time, even
-  /// what they still have, since others count on it: there are some that work together in several
-  /// processes.
+  /// `first`: a voxel of it, as the source gives it. `afresh`: see UpdateInput.
   PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
                  Finder finder, bool afresh);
 
   const glm::i64vec3& dims() const override { return this->Whole.dims; }
   inr::ScalarType type() const override { return this->Type; }
-  std::int64_t bytesPerVoxel() const override { return this->BytesPerVoxel; }
+  std::int64_t bytesPerVoxel() const override { return this->Bytes; }
 
   /// Throws inr::Error(CannotRead) when the pipeline fails.
   inr::VolumePiece read(const inr::VoxelBox& box) override;
@@ -58,7 +66,7 @@ private:
   WholeImage Whole;
   bool Afresh;
   inr::ScalarType Type;
-  std::int64_t BytesPerVoxel = 0; ///< of all arrays
+  std::int64_t Bytes; ///< per voxel, of all arrays
   Finder Find;
   TrainingInput Piece; ///< keeps the values alive
 };

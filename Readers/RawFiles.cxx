@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fstream>
 #include <system_error>
+#include <vector>
 
 namespace {
 
@@ -33,13 +34,18 @@ std::uint64_t RawBytes(vtkImageReader2* reader)
 
 } // namespace
 
-RawFiles::RawFiles(vtkAlgorithm* algorithm)
+RawFiles::RawFiles(vtkAlgorithm* algorithm, bool allSteps)
 {
   for (vtkAlgorithm* other : UpstreamOf(algorithm)) {
     auto* reader = vtkImageReader2::SafeDownCast(other);
     const std::uint64_t wanted = reader ? RawBytes(reader) : 0;
-    if (wanted > 0) {
-      this->add(reader->GetFileName(), wanted);
+    if (wanted == 0) {
+      continue;
+    }
+    this->add(reader->GetFileName(), wanted);
+    for (const std::string& file :
+         allSteps ? SeriesOf(reader, algorithm) : std::vector<std::string>()) {
+      this->add(file, wanted);
     }
   }
 }

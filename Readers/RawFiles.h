@@ -15,11 +15,12 @@ class vtkAlgorithm;
 class RawFiles
 {
 public:
-  explicit RawFiles(vtkAlgorithm* algorithm);
+  /// Of series of files those of all time steps, or the one that would be read now.
+  explicit RawFiles(vtkAlgorithm* algorithm, bool allSteps = false);
 
-  /// Says what is wrong where one cannot be read, or is shorter than its reader was told:
-  /// ParaView's complains and gives what it has, or tries for ever to read on. Empty where nothing
-  /// is wrong.
+  /// Says what is wrong where one cannot be read, or is shorter than its reader was told: VTK's
+  /// complains and gives what it has, and ParaView's, which takes what is too much for a header,
+  /// tries for ever to read from before the beginning. Empty where nothing is wrong.
   const std::string& problem() const { return this->Problem; }
 
   /// The error, which names a file that has changed since, if one has.

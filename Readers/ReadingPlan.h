@@ -16,6 +16,11 @@ class vtkAlgorithm;
 class vtkDataObject;
 class vtkInformation;
 
+/// What is wrong with the raw files that would have to be read for an algorithm's first input; the
+/// same in all processes of a group, all of which have to call this. `allSteps`: see RawFiles.
+std::string FindFileProblem(vtkAlgorithm* consumer, vtkInformation* input, bool allSteps,
+                            const ControllerGroup& group);
+
 /// How what an algorithm's first input gives comes to a training: as a whole, in a group as a piece
 /// for each process, or box by box while it trains.
 class ReadingPlan
@@ -24,8 +29,8 @@ public:
   ReadingPlan() = default;
 
   /// Asks for the whole input or, in a group, this process' piece of it, or for one voxel where the
-  /// rest is going to be read in pieces or not at all. `memoryLimit`: bytes of this machine. For
-  /// all processes of a group; throws inr::Error where others cannot be reached.
+  /// rest may have to be read in pieces, or is not going to be read at all. `memoryLimit`: bytes of
+  /// this machine. For all processes of a group; throws inr::Error where others cannot be reached.
   ReadingPlan(vtkAlgorithm* consumer, vtkInformation* input, std::int64_t memoryLimit,
               const ControllerGroup& group);
 
@@ -43,16 +48,23 @@ public:
 
   using Finder = std::function<TrainingInput(vtkDataObject*)>;
 
-  /// What is to be trained on, of what came; of what is read in pieces, a voxel of it. Throws
-  /// inr::Error as `find` and FindPiece do. For all processes of a group.
+  /// What is to be trained on, of what came or, where a voxel shows that all of it is small enough,
+  /// then comes; of what is read in pieces, a voxel of it. Throws inr::Error as `find`, FindPiece
+  /// and UpdateInput do. For all processes of a group.
   ParallelInput find(vtkDataObject* data, const Finder& find, const ControllerGroup& group);
 
 private:
-  bool isTooLarge(vtkAlgorithm* consumer, vtkInformation* input, std::int64_t memoryLimit,
-                  const ControllerGroup& group) const;
+  bool isTooLarge(double bytes, const ControllerGroup& group) const;
+  void ask(vtkInformation* input, const ControllerGroup& group) const;
+  vtkDataObject* completed(vtkDataObject* data, const ControllerGroup& group);
+
+  vtkAlgorithm* Consumer = nullptr;
+  double MostBytes = 0; ///< that this process may hold
 
   WholeImage Whole;
-  bool InPieces = false;
+  bool IsHeld = false;   ///< what this process would ask for
+  bool InParts = true;   ///< may be asked for
+  bool InPieces = false; ///< or as long as nothing but a voxel is known
   std::string Problem;
   std::string WholeReader;
   std::unique_ptr<UpstreamErrors> Errors;

@@ -13,6 +13,7 @@
 #include <vtkOutputWindow.h>
 
 #ifdef INR_WITH_PARAVIEW
+#include <vtkFileSeriesReader.h>
 #include <vtkMetaReader.h>
 #endif
 
@@ -55,6 +56,24 @@ std::vector<vtkAlgorithm*> UpstreamOf(vtkAlgorithm* algorithm)
     }
   }
   return found;
+}
+
+std::vector<std::string> SeriesOf(vtkAlgorithm* reader, vtkAlgorithm* consumer)
+{
+  std::vector<std::string> files;
+#ifdef INR_WITH_PARAVIEW
+  for (vtkAlgorithm* outer : UpstreamOf(consumer)) {
+    auto* series = vtkFileSeriesReader::SafeDownCast(outer);
+    for (unsigned int k = 0;
+         series && series->GetReader() == reader && k < series->GetNumberOfFileNames(); ++k) {
+      files.emplace_back(series->GetFileName(k));
+    }
+  }
+#else
+  (void)reader;
+  (void)consumer;
+#endif
+  return files;
 }
 
 std::string FindWholeFileReader(vtkAlgorithm* algorithm)

@@ -14,6 +14,10 @@ class vtkObject;
 /// those of file series.
 std::vector<vtkAlgorithm*> UpstreamOf(vtkAlgorithm* algorithm);
 
+/// Of a reader of one file that ParaView hides in one of a series upstream: all files of that. Of
+/// any other: none.
+std::vector<std::string> SeriesOf(vtkAlgorithm* reader, vtkAlgorithm* consumer);
+
 /// The class of a reader upstream that must not be asked for a part of its file; empty where there
 /// is none. vtkMetaImageReader says that it gives parts, but writes the whole file into the memory
 /// of the part.

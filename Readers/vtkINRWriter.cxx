@@ -132,27 +132,56 @@ std::int64_t vtkINRWriter::MemoryLimitInBytes() const
   return this->MemoryLimit > 0 ? MiB * this->MemoryLimit : PhysicalMemory() / 2;
 }
 
-void vtkINRWriter::WriteData()
+int vtkINRWriter::Write()
 {
-  this->ForgetResult();
-  std::string& fileName = this->Internal->Target;
-  fileName = this->FileName ? this->FileName : "";
-  const StopSignals signals; // hands a signal on, which may end the process, after our message
+  if (this->GetNumberOfInputConnections(0) > 0) {
+    this->SetErrorCode(vtkErrorCode::NoError);
+    this->BeginFile();
+    this->Attempt([this] { this->CheckFiles(); });
+    if (this->GetErrorCode() != vtkErrorCode::NoError) {
+      return 0;
+    }
+  }
+  return this->Superclass::Write();
+}
+
+/// Before the pipeline asks for anything: there are readers that would not come back.
+void vtkINRWriter::CheckFiles()
+{
+  this->UpdateInformation();
+  const std::string problem =
+      FindFileProblem(this, this->GetInputInformation(), this->WriteTimeSteps,
+                      ControllerGroup(this->Internal->Controller));
+  if (!problem.empty()) {
+    throw inr::Error(inr::ErrorCode::CannotRead, problem);
+  }
+}
+
+/// Tells the user of what `act` throws.
+void vtkINRWriter::Attempt(const std::function<void()>& act)
+{
   try {
-    this->WriteInput(signals);
+    act();
   } catch (const std::exception& error) { // inr::Error, or no memory
     this->SetErrorCode(vtkErrorCode::UserError);
     if (ControllerGroup(this->Internal->Controller).rank() == 0) { // others say the same
-      vtkErrorMacro("Cannot save '" << fileName
+      vtkErrorMacro("Cannot save '" << this->Internal->Target
                                     << "' as an implicit neural representation: " << error.what());
     }
   }
 }
 
+void vtkINRWriter::WriteData()
+{
+  this->BeginFile();
+  const StopSignals signals; // hands a signal on, which may end the process, after our message
+  this->Attempt([&] { this->WriteInput(signals); });
+}
+
 void vtkINRWriter::WriteInput(const StopSignals& signals)
 {
   ReadingPlan& reading = this->Internal->Reading;
-  const auto errors = reading.takeErrors();
+  auto errors = reading.takeErrors();
   std::string& fileName = this->Internal->Target;
   if (fileName.empty()) {
     throw inr::Error(inr::ErrorCode::InvalidArgument, "no FileName is set");
@@ -169,6 +198,7 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
   }
   const ControllerGroup group(this->Internal->Controller);
   group.together([&] { errors ? errors->check() : void(); });
+  errors.reset(); // who reads on watches, too
   ParallelInput input = reading.find(
       this->GetInput(), [this](vtkDataObject* data) { return this->FindInput(data); }, group);
   if (!steps.isEmpty()) {
@@ -333,8 +363,10 @@ void vtkINRWriter::SetController(vtkMultiProcessController* controller)
 
 vtkMultiProcessController* vtkINRWriter::GetController() { return this->Internal->Controller; }
 
-void vtkINRWriter::ForgetResult()
+/// Nothing is achieved yet.
+void vtkINRWriter::BeginFile()
 {
+  this->Internal->Target = this->FileName ? this->FileName : "";
   this->PSNR = this->SSIM = this->MaximumError = this->Ratio = 0;
   this->TrainingSeconds = this->WaitingSeconds = this->ExchangeSeconds = 0;
   this->Steps = 0;

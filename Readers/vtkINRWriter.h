@@ -226,6 +226,9 @@ public:
   vtkGetMacro(ExchangeSeconds, double);
   ///@}
 
+  /// 1, or 0 after an error. What is read is looked at before.
+  int Write() override;
+
 protected:
   vtkINRWriter();
   ~vtkINRWriter() override;
@@ -249,6 +252,8 @@ private:
 
   class Internals;
 
+  void Attempt(const std::function<void()>& act);
+  void CheckFiles();
   void PlanSteps(vtkInformation* input);
   void WriteInput(const StopSignals& signals);
   TrainingInput FindInput(vtkDataObject* data);
@@ -261,7 +266,7 @@ private:
                 const std::function<bool(const inr::TrainingProgress&)>& observe);
   std::shared_ptr<const inr::Model> FindStart(const inr::VolumeInfo& volume) const;
   void Train(const ParallelInput& input, const StopSignals& signals, const ControllerGroup& group);
-  void ForgetResult();
+  void BeginFile();
   void KeepResult(const inr::Model& model, vtkIdType fileSize);
 
   char* FileName = nullptr;

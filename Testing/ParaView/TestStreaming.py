@@ -80,4 +80,22 @@ with Messages() as messages:
         MemoryLimit=LIMIT, MaximumSteps=2, TimeLimit=0, ModelConfig=MODEL).UpdatePipeline()
 check("vtkMetaImageReader" in messages.text and messages.errors() == 0, messages.text)
 check(os.path.exists(output_file("streamed-mhd.inr")), "no file of a MetaImage")
+
+# ParaView's reader would try for ever to read from before the beginning of a file that is too short.
+layers = np.zeros((4, 50, 50), np.float32)
+whole, cut = output_file("whole.raw"), output_file("cut.raw")
+layers.tofile(whole)
+layers.tofile(cut)
+os.truncate(cut, layers.nbytes - 4)
+for files, limit in [([cut], LIMIT), ([cut], 0), ([whole, cut], LIMIT)]:
+    with Messages() as messages:
+        servermanager.writers.INRWriter(
+            Input=simple.ImageReader(FileNames=files, DataScalarType="float",
+                                     FileDimensionality=3, DataExtent=[0, 49, 0, 49, 0, 3]),
+            FileName=output_file("cut.inr"), MemoryLimit=limit, MaximumSteps=2, TimeLimit=0,
+            Writetimestepsasfileseries=1, ModelConfig=MODEL).UpdatePipeline()
+    check(f"'{cut}' has 39996 bytes" in messages.text, "short:", messages.text)
+    check(messages.errors() == 1, "short:", messages.text)
+for name in ("cut.inr", "cut_0.inr"):
+    check(not os.path.exists(output_file(name)), name)
 os.remove(raw)
