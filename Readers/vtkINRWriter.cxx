@@ -7,7 +7,7 @@
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Training/ParallelTraining.h"
-#include "MemoryCheck.h"
+#include "Core/UsableMemory.h"
 #include "ParallelInput.h"
 #include "PipelineReader.h"
 #include "RawFiles.h"
@@ -129,7 +129,7 @@ void vtkINRWriter::PlanSteps(vtkInformation* input)
 
 std::int64_t vtkINRWriter::MemoryLimitInBytes() const
 {
-  return this->MemoryLimit > 0 ? MiB * this->MemoryLimit : PhysicalMemory() / 2;
+  return this->MemoryLimit > 0 ? MiB * this->MemoryLimit : inr::UsableMemory() / 2;
 }
 
 int vtkINRWriter::Write()

@@ -115,7 +115,8 @@ public:
   ///@{
   /// MiB that training may take. An input that is not in memory yet and would fill more than half
   /// of it is never read as a whole but in pieces, two or three times; the default model is made to
-  /// fit. 0 (default) = half of the machine's memory. Several processes share it on each machine.
+  /// fit. 0 (default) = half of the machine's memory, or of what a batch system or container lets
+  /// the process have of it. Several processes share it on each machine.
   ///
   ///     writer = servermanager.writers.INRWriter(Input=source, FileName="model.inr",
   ///                                              MemoryLimit=1024)

@@ -5,10 +5,10 @@
 #include "Core/Error.h"
 #include "Core/Render/CachedPaths.h"
 #include "Core/Render/WorkLimit.h"
+#include "Core/UsableMemory.h"
 
 #include <algorithm>
 #include <new>
-#include <unistd.h>
 
 namespace inr {
 
@@ -56,9 +56,7 @@ StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<co
 std::int64_t DefaultCacheBytes()
 {
   constexpr std::int64_t most = std::int64_t{16} << 30;
-  const std::int64_t memory =
-      std::int64_t{sysconf(_SC_PHYS_PAGES)} * std::int64_t{sysconf(_SC_PAGE_SIZE)};
-  return std::min(memory / 4, most);
+  return std::min(UsableMemory() / 4, most);
 }
 
 CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field,

@@ -43,7 +43,7 @@ struct CacheOptions
   }
 };
 
-/// A quarter of the machine's memory, at most 16 GiB.
+/// A quarter of UsableMemory(), at most 16 GiB.
 std::int64_t DefaultCacheBytes();
 
 /// Renders through a cache of bricks, which lives from frame to frame and which all renderers of
