@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What Catalyst does with the simulation's grid: a model file every so many steps.
 
-INR_PLUGIN tells where INRVolume.so is, INR_EVERY the steps between two files (500), INR_STEPS the
+INR_PLUGIN tells where INRVolume.so is (in the build folder), INR_EVERY the steps between two files (500), INR_STEPS the
 steps of training for each (1000), INR_OUTPUT the folder (here)."""
 import os
 
 from paraview import catalyst
 from paraview.simple import CreateExtractor, LoadPlugin, TrivialProducer
 
-LoadPlugin(
-    os.environ.get("INR_PLUGIN", "build/lib/paraview-5.11/plugins/INRVolume/INRVolume.so"),
-    remote=False, ns=globals(),
-)
+BUILT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "build", "lib",
+                     "paraview-5.11", "plugins", "INRVolume", "INRVolume.so")
+LoadPlugin(os.environ.get("INR_PLUGIN", BUILT), remote=False, ns=globals())
 
 grid = TrivialProducer(registrationName="grid")
 model = CreateExtractor("INR", grid, registrationName="model")

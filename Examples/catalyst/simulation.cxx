@@ -38,19 +38,20 @@ vtkNew<vtkImageData> MakeImage(const GrayScott& simulation)
   return image;
 }
 
-void HandOver(vtkCPProcessor* catalyst, const GrayScott& simulation, int step)
+// Whether Catalyst could do what the script wants.
+bool HandOver(vtkCPProcessor* catalyst, const GrayScott& simulation, int step)
 {
   vtkNew<vtkCPDataDescription> description;
   description->SetTimeData(step, step);
   description->AddInput(Channel);
   if (!catalyst->RequestDataDescription(description)) {
-    return; // the script wants nothing of this step
+    return true; // the script wants nothing of this step
   }
   vtkCPInputDataDescription* const input = description->GetInputDescriptionByName(Channel);
   const int last = simulation.size() - 1;
   input->SetGrid(MakeImage(simulation));
   input->SetWholeExtent(0, last, 0, last, 0, last);
-  catalyst->CoProcess(description);
+  return catalyst->CoProcess(description) != 0;
 }
 
 int Run(const char* script, int size, int steps)
@@ -70,12 +71,16 @@ int Run(const char* script, int size, int steps)
   }
   catalyst->AddPipeline(pipeline);
   GrayScott simulation(size);
+  int failed = 0;
   for (int step = 1; step <= steps; ++step) {
     simulation.step();
-    HandOver(catalyst, simulation, step);
+    failed += HandOver(catalyst, simulation, step) ? 0 : 1;
   }
   catalyst->Finalize();
-  return 0;
+  if (failed > 0) {
+    std::cerr << "Catalyst failed in " << failed << " steps\n";
+  }
+  return failed > 0 ? 1 : 0;
 }
 
 } // namespace

@@ -166,14 +166,16 @@ TEST(StreamedTraining, HandsOnWhatTheReaderSaysWheneverItFails)
 
 TEST(StreamedTraining, SaysWhenTheDataChange)
 {
-  Field<float> field = LargeField();
-  FieldReader<float> reader(field);
-  reader.before = [&](int number) {
-    if (number == 5) { // the first reading of all four blocks is over
-      std::fill(field.values.begin(), field.values.end(), 7.5f);
-    }
-  };
-  ExpectError(reader, Options(200), "the data changed while they were read");
+  for (const float outside : {7.5f, -7.5f}) {
+    Field<float> field = LargeField();
+    FieldReader<float> reader(field);
+    reader.before = [&](int number) {
+      if (number == 5) { // the first reading of all four blocks is over
+        std::fill(field.values.begin(), field.values.end(), outside);
+      }
+    };
+    ExpectError(reader, Options(200), "the data changed while they were read");
+  }
 }
 
 TEST(StreamedTraining, SaysHowMuchMemoryAModelNeeds)
