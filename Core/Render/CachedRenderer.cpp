@@ -53,10 +53,10 @@ StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<co
 
 } // namespace
 
-std::int64_t DefaultCacheBytes()
+std::int64_t DefaultCacheBytes(int processes)
 {
   constexpr std::int64_t most = std::int64_t{16} << 30;
-  return std::min(UsableMemory() / 4, most);
+  return std::min(UsableMemory() / 4 / processes, most);
 }
 
 CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field,

@@ -43,8 +43,8 @@ struct CacheOptions
   }
 };
 
-/// A quarter of UsableMemory(), at most 16 GiB.
-std::int64_t DefaultCacheBytes();
+/// A quarter of UsableMemory(), which so many processes share; at most 16 GiB.
+std::int64_t DefaultCacheBytes(int processes = 1);
 
 /// Renders through a cache of bricks, which lives from frame to frame and which all renderers of
 /// the same field with the same bricks and size of the cache share. The threads that load bricks

@@ -252,7 +252,7 @@ public:
   ///@{
   /**
    * Memory for decoded bricks, their tables and those on their way in MiB. 0, the default, is a
-   * quarter of the machine's memory, at most 16 GiB; memory is taken as bricks come in. All mappers
+   * quarter of the memory that the process may use, at most 16 GiB; memory is taken as bricks come in. All mappers
    * of a process together stay within the largest CacheSize among them (or what eight bricks for
    * each volume take, should that be more): what was not looked at for longest makes room. Mappers
    * of one model that agree in this, CachePrecision and BrickSize share their bricks. What does not

@@ -43,4 +43,11 @@ int LocalRank(vtkMultiProcessController* controller)
       std::count(all.begin(), all.begin() + before, static_cast<vtkTypeUInt64>(machine)));
 }
 
+int LocalProcesses(vtkMultiProcessController* controller)
+{
+  const std::uint64_t machine = MachineKey();
+  const std::vector<vtkTypeUInt64> all = Gather(controller, machine);
+  return static_cast<int>(std::count(all.begin(), all.end(), static_cast<vtkTypeUInt64>(machine)));
+}
+
 } // namespace inr

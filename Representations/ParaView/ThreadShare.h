@@ -14,4 +14,7 @@ int ThreadShare(vtkMultiProcessController* controller);
 /// together, too.
 int LocalRank(vtkMultiProcessController* controller);
 
+/// How many they are. All must call it together, too.
+int LocalProcesses(vtkMultiProcessController* controller);
+
 } // namespace inr

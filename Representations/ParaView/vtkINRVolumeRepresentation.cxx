@@ -2,6 +2,7 @@
 #include "vtkINRVolumeRepresentation.h"
 
 #include "ClientWatch.h"
+#include "Core/Render/CachedRenderer.h"
 #include "ModelDelivery.h"
 #include "SharedDrawing.h"
 #include "ThreadShare.h"
@@ -53,6 +54,14 @@ bool MaySend()
   return serves && (!processes || processes->GetLocalProcessId() == 0);
 }
 
+/// In MiB, of the default cache for one of several processes on a machine; 0 for one alone.
+int CacheShare(int processes)
+{
+  constexpr std::int64_t least = 16; // where they are hundreds
+  const std::int64_t share = inr::DefaultCacheBytes(processes) >> 20;
+  return processes > 1 ? static_cast<int>(std::max(share, least)) : 0;
+}
+
 } // namespace
 
 vtkINRVolumeRepresentation::vtkINRVolumeRepresentation()
@@ -87,6 +96,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
       this->SharedThreads = inr::ThreadShare(controller);
       this->GetMapper()->SetLocalRank(inr::LocalRank(controller));
+      this->SharedCache = CacheShare(inr::LocalProcesses(controller));
     }
     this->FindOthers();
     this->Deliver(in, out);
@@ -100,6 +110,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());
     this->GetMapper()->SetNumberOfThreads(this->NumberOfThreads > 0 ? this->NumberOfThreads
                                                                     : this->SharedThreads);
+    this->GetMapper()->SetCacheSize(this->CacheSize > 0 ? this->CacheSize : this->SharedCache);
     this->UpdateMapper();
     vtkRenderer* renderer = vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer();
     this->GetMapper()->SetAlwaysTogether(inr::ShownVolumes(renderer).size() > 1 ||
@@ -394,10 +405,7 @@ void vtkINRVolumeRepresentation::SetBackend(int backend) { this->GetMapper()->Se
 
 void vtkINRVolumeRepresentation::SetCacheMode(int mode) { this->GetMapper()->SetCacheMode(mode); }
 
-void vtkINRVolumeRepresentation::SetCacheSize(int mebibytes)
-{
-  this->GetMapper()->SetCacheSize(mebibytes);
-}
+void vtkINRVolumeRepresentation::SetCacheSize(int mebibytes) { this->CacheSize = mebibytes; }
 
 void vtkINRVolumeRepresentation::SetInferencePrecision(int precision)
 {

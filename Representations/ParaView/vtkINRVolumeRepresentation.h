@@ -117,6 +117,8 @@ private:
   bool WantsOpacityArray = false;
   int NumberOfThreads = 0;
   int SharedThreads = 0; ///< for 0 of the above; 0 = not known yet
+  int CacheSize = 0;     ///< MiB
+  int SharedCache = 0;   ///< for 0 of the above; 0 = this process is alone on its machine
   std::unique_ptr<inr::ClientWatch> Client;
   std::unique_ptr<inr::ModelDelivery> Model;
   vtkNew<vtkPolyData> Carrier; ///< of the model to where it is drawn, if that is elsewhere
