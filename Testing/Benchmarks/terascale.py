@@ -12,7 +12,8 @@ where they are asked for; "half-channel": half as many along every axis. Models 
 the field itself on 10^8 random voxels. "channel-flight", after "channel" in the same FOLDER, opens
 its model in ParaView with a cache of 2 GiB, flies through it, and compares pictures at three
 distances with pictures of the field itself; "half-channel-flight" likewise. "ranks": trainings by
-1, 2 and 4 processes of pvbatch; wants a python3 with NumPy. "resumed": 1024^3 floats from a file, by
+1, 2 and 4 processes of pvbatch; wants a python3 with NumPy. "rank-pictures": the pictures that as many
+draw. "resumed": 1024^3 floats from a file, by
 a process that is killed soon after its first checkpoint and one that goes on.
 """
 import json
@@ -24,6 +25,7 @@ from pathlib import Path
 
 import channel_flight
 import channel_ranks
+import rank_pictures
 import results_file
 
 # In pvpython; arguments as JSON, the answer as the last line.
@@ -182,7 +184,8 @@ PARTS = {"raw": raw_file, "resumed": resumed, "half-channel": lambda: channel("h
          "half-channel-flight": lambda: flight("half channel", 2),
          "channel": lambda: channel("channel", 1),
          "channel-flight": lambda: flight("channel", 1),
-         "ranks": lambda: channel_ranks.results(build, folder, MODEL)}
+         "ranks": lambda: channel_ranks.results(build, folder, MODEL),
+         "rank-pictures": lambda: rank_pictures.results(build, folder)}
 parts = sys.argv[3:] or list(PARTS)
 folder.mkdir(parents=True, exist_ok=True)
 for part in parts:
