@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -43,6 +44,7 @@ struct Outcome
   std::optional<inr::Error> error;
   std::int64_t voxelsRead = 0;
   int reads = 0;
+  bool leftCheckpoint = false; ///< when it was told
 };
 
 using Before = std::function<void(int rank, int reading)>;
@@ -69,6 +71,7 @@ inline std::vector<Outcome> TrainTogether(int size, const inr::TrainingOptions& 
           });
     } catch (const inr::Error& error) {
       outcome.error = error;
+      outcome.leftCheckpoint = std::filesystem::exists(options.checkpoint.path);
     }
     outcome.voxelsRead = reader.voxelsRead;
     outcome.reads = reader.reads;

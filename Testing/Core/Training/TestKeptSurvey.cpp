@@ -142,6 +142,19 @@ TEST_F(KeptSurvey, IsFollowedByReadingsThatCanBeStopped)
   this->expectModelOf(this->trainWithoutCheckpoint(), this->train());
 }
 
+// Whoever started the processes may end all of them when one has ended.
+TEST_F(KeptSurvey, IsFollowedByACheckpointBeforeAnyProcessEnds)
+{
+  this->Options.checkpoint.interval = 3600; // none but the one at the stop
+  this->Size = 5;
+  const std::vector<Outcome> stopped =
+      this->train([](int, const inr::TrainingProgress& now) { return now.steps < 5; });
+  ExpectErrors(stopped, "stopped");
+  for (const Outcome& outcome : stopped) {
+    EXPECT_TRUE(outcome.leftCheckpoint);
+  }
+}
+
 TEST_F(KeptSurvey, IsReadAgainWhereAFileIsBrokenOrMissing)
 {
   const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
