@@ -32,9 +32,25 @@ std::uint64_t RawBytes(vtkImageReader2* reader)
   return bytes;
 }
 
+std::vector<std::string> FilesOf(vtkImageReader2* reader, const std::vector<std::string>& series,
+                                 const StepsToRead& steps)
+{
+  if (steps.numbers.empty() || series.empty()) {
+    return {reader->GetFileName()};
+  }
+  if (series.size() != steps.available) { // some filter has made other steps of them
+    return series;
+  }
+  std::vector<std::string> files;
+  for (const int number : steps.numbers) {
+    files.push_back(series[static_cast<std::size_t>(number)]);
+  }
+  return files;
+}
+
 } // namespace
 
-RawFiles::RawFiles(vtkAlgorithm* algorithm, bool allSteps)
+RawFiles::RawFiles(vtkAlgorithm* algorithm, const StepsToRead& steps)
 {
   for (vtkAlgorithm* other : UpstreamOf(algorithm)) {
     auto* reader = vtkImageReader2::SafeDownCast(other);
@@ -42,9 +58,7 @@ RawFiles::RawFiles(vtkAlgorithm* algorithm, bool allSteps)
     if (wanted == 0) {
       continue;
     }
-    this->add(reader->GetFileName(), wanted);
-    for (const std::string& file :
-         allSteps ? SeriesOf(reader, algorithm) : std::vector<std::string>()) {
+    for (const std::string& file : FilesOf(reader, SeriesOf(reader, algorithm), steps)) {
       this->add(file, wanted);
     }
   }
@@ -52,12 +66,13 @@ RawFiles::RawFiles(vtkAlgorithm* algorithm, bool allSteps)
 
 void RawFiles::add(const std::string& path, std::uint64_t wanted)
 {
-  std::error_code unknown; // of what is no plain file
-  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+  std::error_code noFile; // of what is no plain file
+  const std::uintmax_t bytes = std::filesystem::file_size(path, noFile);
+  std::error_code unknown;
   std::string problem;
-  if (std::filesystem::is_directory(path) || !std::ifstream(path)) {
+  if (std::filesystem::is_directory(path, unknown) || !std::ifstream(path)) {
     problem = "cannot be opened for reading";
-  } else if (!unknown && bytes < wanted) {
+  } else if (!noFile && bytes < wanted) {
     problem = "has " + std::to_string(bytes) +
               " bytes, and the reader's DataExtent, DataScalarType and NumberOfScalarComponents "
               "ask for " +

@@ -7,16 +7,25 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 class vtkAlgorithm;
+
+/// Time steps that are going to be read, by number, and of how many; no numbers = the present
+/// state.
+struct StepsToRead
+{
+  std::vector<int> numbers;
+  std::size_t available = 0;
+};
 
 /// The raw files that an algorithm's inputs are read from, as they are when this is made: nothing
 /// in them tells when they become others.
 class RawFiles
 {
 public:
-  /// Of series of files those of all time steps, or the one that would be read now.
-  explicit RawFiles(vtkAlgorithm* algorithm, bool allSteps = false);
+  /// Of series of files those of the steps; all, where steps are not files.
+  explicit RawFiles(vtkAlgorithm* algorithm, const StepsToRead& steps = {});
 
   /// Says what is wrong where one cannot be read, or is shorter than its reader was told: VTK's
   /// complains and gives what it has, and ParaView's, which takes what is too much for a header,

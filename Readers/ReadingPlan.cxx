@@ -1,49 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReadingPlan.h"
 
-#include "RawFiles.h"
-
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
+#include <vtkPointData.h>
 
 #include <algorithm>
 
 namespace {
 
 /// Times what a source tells of there may be: many tell of the active array alone.
-constexpr double MostUntold = 16;
+constexpr double MostUntold = 4;
 
 } // namespace
 
-std::string FindFileProblem(vtkAlgorithm* consumer, vtkInformation* input, bool allSteps,
-                            const ControllerGroup& group)
+std::string FindFileProblem(vtkAlgorithm* consumer, vtkInformation* input, const StepsToRead& steps,
+                            bool mayBeThere, const ControllerGroup& group)
 {
-  // Who has the data does not need the file; but none reads where others cannot.
-  const bool isThere = IsUpToDate(consumer) && IsPieceInMemory(input, WholeImage::Of(input), group);
-  return group.firstOf(isThere ? "" : RawFiles(consumer, allSteps).problem());
+  const bool isThere =
+      mayBeThere && IsUpToDate(consumer) && IsPieceInMemory(input, WholeImage::Of(input), group);
+  // None reads where others cannot.
+  return group.firstOf(isThere ? "" : RawFiles(consumer, steps).problem());
 }
 
 ReadingPlan::ReadingPlan(vtkAlgorithm* consumer, vtkInformation* input, std::int64_t memoryLimit,
-                         const ControllerGroup& group)
+                         bool mayProbe, const ControllerGroup& group)
     : Consumer(consumer), MostBytes(static_cast<double>(group.memoryShare(memoryLimit)) / 2),
       Whole(WholeImage::Of(input)), Errors(std::make_unique<UpstreamErrors>(consumer))
 {
-  const bool hasPiece = IsPieceInMemory(input, this->Whole, group);
-  this->IsHeld =
-      group.size() == 1 ? this->Whole.isInMemory : hasPiece || ComesFromApplication(consumer);
-  this->Problem = FindFileProblem(consumer, input, false, group);
+  this->IsHeld = group.size() == 1
+                     ? this->Whole.isInMemory
+                     : IsPieceInMemory(input, this->Whole, group) || ComesFromApplication(consumer);
+  this->Problem = FindFileProblem(consumer, input, {}, true, group);
   const std::string wholeReader = FindWholeFileReader(consumer);
+  const bool isLarge = this->isTooLarge(this->Whole.bytes, group);
   this->InParts = wholeReader.empty();
-  if (!this->InParts && this->isTooLarge(this->Whole.bytes, group)) {
-    this->WholeReader = wholeReader + ", the source";
+  this->WholeReader = isLarge && !this->InParts ? wholeReader + ", the source" : "";
+  this->IsToldLarge = group.any(this->InParts && isLarge);
+  const bool mayBeLarge = this->InParts && this->isTooLarge(MostUntold * this->Whole.bytes, group);
+  this->Probes = this->IsToldLarge || (mayProbe && group.size() == 1 && mayBeLarge);
+  if (this->Probes && !this->IsToldLarge) {
+    this->Errors->hold(); // who cannot give a voxel may give all
   }
-  const bool mayBeTooLarge = this->isTooLarge(MostUntold * this->Whole.bytes, group);
-  this->InPieces = group.any(this->InParts && mayBeTooLarge);
   if (this->Whole.dims.x * this->Whole.dims.y * this->Whole.dims.z == 0) {
     return;
   }
-  if (this->InPieces || !this->Problem.empty()) {
+  if (this->Probes || !this->Problem.empty()) {
     this->Whole.ask(input, true);
   } else {
     this->ask(input, group);
@@ -67,31 +70,42 @@ bool ReadingPlan::isTooLarge(double bytes, const ControllerGroup& group) const
   return !this->IsHeld && bytes / group.size() > this->MostBytes;
 }
 
-/// What came, or all of it where a voxel came which shows that it is small enough.
-vtkDataObject* ReadingPlan::completed(vtkDataObject* data, const ControllerGroup& group)
+/// The voxel that came, or all that there is where that is small enough or comes in one piece only.
+vtkDataObject* ReadingPlan::afterProbe(vtkDataObject* data, bool failed,
+                                       const ControllerGroup& group)
 {
   auto* image = vtkImageData::SafeDownCast(data);
-  const int* const extent = this->Whole.extent;
-  const bool isWhole = image && std::equal(extent, extent + 6, image->GetExtent());
-  if (image) {
+  const bool isUsable = !failed && image && image->GetPointData()->GetNumberOfArrays() > 0;
+  const bool isKnown = !group.any(!isUsable);
+  if (isKnown) {
     this->Whole.learnBytes(*image);
   }
-  const bool tooLarge = group.any(this->isTooLarge(this->Whole.bytes, group));
-  if (!group.any(!isWhole)) { // although a voxel was asked for
-    this->InPieces = false;
-    this->WholeReader = tooLarge ? "The source" : "";
-  } else if (!tooLarge) {
-    this->InPieces = false;
-    const auto all = [&](vtkInformation* input) { this->ask(input, group); };
-    group.together([&] { data = UpdateInput(*this->Consumer, all, group.size() > 1); });
+  const int* const extent = this->Whole.extent;
+  const bool isWhole = isKnown && std::equal(extent, extent + 6, image->GetExtent());
+  const bool isLarge =
+      isKnown ? group.any(this->isTooLarge(this->Whole.bytes, group)) : this->IsToldLarge;
+  const bool allWhole = !group.any(!isWhole);
+  this->InPieces = isLarge && !allWhole;
+  if (this->InPieces) {
+    return data;
   }
+  this->WholeReader = isLarge ? "The source" : "";
+  // Also where all came: a filter may have made it of the one voxel that it asked for.
+  const auto all = [&](vtkInformation* input) { this->ask(input, group); };
+  const bool afresh = allWhole || group.size() > 1;
+  group.together([&] { data = UpdateInput(*this->Consumer, all, afresh); });
   return data;
 }
 
-ParallelInput ReadingPlan::find(vtkDataObject* data, const Finder& find,
-                                const ControllerGroup& group)
+ParallelInput ReadingPlan::find(vtkDataObject* data, std::unique_ptr<UpstreamErrors> errors,
+                                const Finder& find, const ControllerGroup& group)
 {
-  vtkDataObject* const found = this->InPieces ? this->completed(data, group) : data;
+  const bool failed = group.any(errors && errors->any());
+  if (!this->Probes || this->IsToldLarge) {
+    group.together([&] { errors ? errors->check() : void(); });
+  }
+  errors.reset(); // who reads on watches, too
+  vtkDataObject* const found = this->Probes ? this->afterProbe(data, failed, group) : data;
   if (group.size() > 1 && !this->InPieces) {
     return FindPiece(found, this->Whole, find, group);
   }

@@ -4,6 +4,7 @@
 #include "ControllerGroup.h"
 #include "ParallelInput.h"
 #include "PipelineReader.h"
+#include "RawFiles.h"
 #include "Upstream.h"
 
 #include <cstdint>
@@ -17,9 +18,10 @@ class vtkDataObject;
 class vtkInformation;
 
 /// What is wrong with the raw files that would have to be read for an algorithm's first input; the
-/// same in all processes of a group, all of which have to call this. `allSteps`: see RawFiles.
-std::string FindFileProblem(vtkAlgorithm* consumer, vtkInformation* input, bool allSteps,
-                            const ControllerGroup& group);
+/// same in all processes of a group, all of which have to call this. `mayBeThere`: who has the data
+/// in memory does not need the files.
+std::string FindFileProblem(vtkAlgorithm* consumer, vtkInformation* input, const StepsToRead& steps,
+                            bool mayBeThere, const ControllerGroup& group);
 
 /// How what an algorithm's first input gives comes to a training: as a whole, in a group as a piece
 /// for each process, or box by box while it trains.
@@ -29,12 +31,18 @@ public:
   ReadingPlan() = default;
 
   /// Asks for the whole input or, in a group, this process' piece of it, or for one voxel where the
-  /// rest may have to be read in pieces, or is not going to be read at all. `memoryLimit`: bytes of
-  /// this machine. For all processes of a group; throws inr::Error where others cannot be reached.
+  /// rest is going to be read in pieces or not at all; with `mayProbe`, a process alone does so
+  /// where that is not known. `memoryLimit`: bytes of this machine. For all processes of a group;
+  /// throws inr::Error where others cannot be reached.
   ReadingPlan(vtkAlgorithm* consumer, vtkInformation* input, std::int64_t memoryLimit,
-              const ControllerGroup& group);
+              bool mayProbe, const ControllerGroup& group);
+
+  /// Whether a voxel was asked for that never came, of what might give all of it.
+  bool isUnanswered() const { return this->Errors && this->Probes && !this->IsToldLarge; }
 
   const WholeImage& whole() const { return this->Whole; }
+
+  /// After find().
   bool inPieces() const { return this->InPieces; }
 
   /// What is wrong with a raw file that had to be read; the same in all processes.
@@ -49,22 +57,24 @@ public:
   using Finder = std::function<TrainingInput(vtkDataObject*)>;
 
   /// What is to be trained on, of what came or, where a voxel shows that all of it is small enough,
-  /// then comes; of what is read in pieces, a voxel of it. Throws inr::Error as `find`, FindPiece
-  /// and UpdateInput do. For all processes of a group.
-  ParallelInput find(vtkDataObject* data, const Finder& find, const ControllerGroup& group);
+  /// then comes; of what is read in pieces, a voxel of it. Throws inr::Error as `find`, FindPiece,
+  /// UpdateInput and `errors` do. For all processes of a group.
+  ParallelInput find(vtkDataObject* data, std::unique_ptr<UpstreamErrors> errors,
+                     const Finder& find, const ControllerGroup& group);
 
 private:
   bool isTooLarge(double bytes, const ControllerGroup& group) const;
   void ask(vtkInformation* input, const ControllerGroup& group) const;
-  vtkDataObject* completed(vtkDataObject* data, const ControllerGroup& group);
+  vtkDataObject* afterProbe(vtkDataObject* data, bool failed, const ControllerGroup& group);
 
   vtkAlgorithm* Consumer = nullptr;
   double MostBytes = 0; ///< that this process may hold
-
   WholeImage Whole;
-  bool IsHeld = false;   ///< what this process would ask for
-  bool InParts = true;   ///< may be asked for
-  bool InPieces = false; ///< or as long as nothing but a voxel is known
+  bool IsHeld = false;      ///< what this process would ask for
+  bool InParts = true;      ///< may be asked for
+  bool IsToldLarge = false; ///< too large, by what the source tells before it is asked
+  bool Probes = false;      ///< asks for a voxel first
+  bool InPieces = false;    ///< after find()
   std::string Problem;
   std::string WholeReader;
   std::unique_ptr<UpstreamErrors> Errors;

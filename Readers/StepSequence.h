@@ -17,6 +17,10 @@ public:
   /// False for one that is not made of times: there is no time to ask for.
   bool isEmpty() const { return this->Numbers.empty(); }
 
+  /// Numbers of all its steps, and of how many they are chosen.
+  const std::vector<int>& numbers() const { return this->Numbers; }
+  std::size_t available() const { return this->Times.size(); }
+
   int number() const { return this->Numbers[this->Position]; } ///< of the present step
   double time() const { return this->Times[static_cast<std::size_t>(this->number())]; }
 

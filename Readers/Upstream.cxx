@@ -9,8 +9,10 @@
 #include <vtkDataObject.h>
 #include <vtkDemandDrivenPipeline.h>
 #include <vtkExecutive.h>
+#include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkOutputWindow.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 
 #ifdef INR_WITH_PARAVIEW
 #include <vtkFileSeriesReader.h>
@@ -32,6 +34,20 @@ vtkAlgorithm* InnerReader(vtkAlgorithm* algorithm)
   return nullptr;
 #endif
 }
+
+/// Whether data are known to be of the time that is asked for, where there are several.
+bool IsOfItsTime(vtkInformation& asked, vtkInformation& there)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (!asked.Has(Pipeline::TIME_RANGE()) || !asked.Has(Pipeline::UPDATE_TIME_STEP())) {
+    return true;
+  }
+  return there.Has(vtkDataObject::DATA_TIME_STEP()) &&
+         there.Get(vtkDataObject::DATA_TIME_STEP()) == asked.Get(Pipeline::UPDATE_TIME_STEP());
+}
+
+/// As VTK does, which leaves it to whoever observes.
+void Show(const char* message) { vtkOutputWindow::GetInstance()->DisplayErrorText(message); }
 
 void AddUpstream(vtkAlgorithm* algorithm, std::vector<vtkAlgorithm*>& found)
 {
@@ -97,7 +113,10 @@ bool IsUpToDate(vtkAlgorithm* algorithm)
 {
   auto* producer = vtkDemandDrivenPipeline::SafeDownCast(algorithm->GetInputExecutive());
   vtkDataObject* data = algorithm->GetInputDataObject(0, 0);
-  return producer && data && data->GetUpdateTime() > producer->GetPipelineMTime();
+  if (!producer || !data || data->GetUpdateTime() <= producer->GetPipelineMTime()) {
+    return false;
+  }
+  return IsOfItsTime(*algorithm->GetInputInformation(), *data->GetInformation());
 }
 
 UpstreamErrors::UpstreamErrors(vtkAlgorithm* algorithm)
@@ -114,9 +133,13 @@ void UpstreamErrors::watch(vtkObject* object)
   keep->SetClientData(this);
   keep->SetCallback([](vtkObject*, unsigned long, void* self, void* text) {
     const char* message = text ? static_cast<const char*>(text) : "an error without words";
-    std::string& first = static_cast<UpstreamErrors*>(self)->First;
-    first = first.empty() ? message : first;
-    vtkOutputWindow::GetInstance()->DisplayErrorText(message); // which VTK leaves to observers
+    auto* errors = static_cast<UpstreamErrors*>(self);
+    errors->First = errors->First.empty() ? message : errors->First;
+    if (errors->Holds) {
+      errors->Held.emplace_back(message);
+    } else {
+      Show(message);
+    }
   });
   this->Watched.emplace_back(object, object->AddObserver(vtkCommand::ErrorEvent, keep));
 }
@@ -134,6 +157,9 @@ void UpstreamErrors::check() const
 {
   if (this->First.empty()) {
     return;
+  }
+  for (const std::string& message : this->Held) {
+    Show(message.c_str());
   }
   std::string text = this->First;
   std::replace(text.begin(), text.end(), '\n', ' ');

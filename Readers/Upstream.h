@@ -40,6 +40,11 @@ public:
   UpstreamErrors(const UpstreamErrors&) = delete;
   UpstreamErrors& operator=(const UpstreamErrors&) = delete;
 
+  /// From now on messages wait for check(), which shows them; without it nobody sees them.
+  void hold() { this->Holds = true; }
+
+  bool any() const { return !this->First.empty(); }
+
   /// Throws inr::Error(CannotRead) with the first of them, if there was one.
   void check() const;
 
@@ -48,4 +53,6 @@ private:
 
   std::vector<std::pair<vtkWeakPointer<vtkObject>, unsigned long>> Watched;
   std::string First;
+  bool Holds = false;
+  std::vector<std::string> Held;
 };

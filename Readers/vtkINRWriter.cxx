@@ -41,6 +41,21 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 vtkStandardNewMacro(vtkINRWriter);
 
 namespace {
+
+/// The step that the input is asked for, of so many, where it is one of several.
+StepsToRead PresentStep(vtkInformation* input)
+{
+  const int count = input->Length(Pipeline::TIME_STEPS());
+  if (count < 2 || !input->Has(Pipeline::UPDATE_TIME_STEP())) {
+    return {};
+  }
+  const double* times = input->Get(Pipeline::TIME_STEPS());
+  const double* later =
+      std::upper_bound(times, times + count, input->Get(Pipeline::UPDATE_TIME_STEP()));
+  const auto number = static_cast<int>(std::max<std::ptrdiff_t>(later - times - 1, 0));
+  return {{number}, static_cast<std::size_t>(count)};
+}
+
 constexpr std::int64_t MiB = std::int64_t{1} << 20;
 } // namespace
 
@@ -51,6 +66,8 @@ public:
   std::string Problem; ///< why there are none
   std::string Target;  ///< the file that is being written
   ReadingPlan Reading; ///< of the input
+  bool MayProbe = false;
+  bool IsReached = false; ///< by the data, whatever they are
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
   inr::ModelPointer Previous; ///< what was written last, if it is of a time step
@@ -89,7 +106,8 @@ vtkTypeBool vtkINRWriter::ProcessRequest(vtkInformation* request, vtkInformation
   if (input && request->Has(Pipeline::REQUEST_UPDATE_EXTENT())) {
     try {
       const ControllerGroup group(this->Internal->Controller);
-      this->Internal->Reading = ReadingPlan(this, input, this->MemoryLimitInBytes(), group);
+      this->Internal->Reading =
+          ReadingPlan(this, input, this->MemoryLimitInBytes(), this->Internal->MayProbe, group);
     } catch (const std::exception& error) { // other processes cannot be reached
       this->Internal->Problem = error.what();
     }
@@ -98,7 +116,8 @@ vtkTypeBool vtkINRWriter::ProcessRequest(vtkInformation* request, vtkInformation
     }
   }
   if (request->Has(Pipeline::REQUEST_DATA()) && !steps.isEmpty()) {
-    if (this->GetErrorCode() == vtkErrorCode::NoError && steps.advance()) {
+    if (this->GetErrorCode() == vtkErrorCode::NoError && steps.advance() &&
+        this->CheckFiles({steps.number()})) {
       request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
     } else {
       request->Remove(Pipeline::CONTINUE_EXECUTING());
@@ -137,24 +156,44 @@ int vtkINRWriter::Write()
   if (this->GetNumberOfInputConnections(0) > 0) {
     this->SetErrorCode(vtkErrorCode::NoError);
     this->BeginFile();
-    this->Attempt([this] { this->CheckFiles(); });
-    if (this->GetErrorCode() != vtkErrorCode::NoError) {
+    this->UpdateInformation();
+    if (!this->CheckFiles(this->Internal->Steps.numbers())) {
       return 0;
     }
   }
-  return this->Superclass::Write();
+  Internals& self = *this->Internal;
+  self.Reading = ReadingPlan();
+  self.IsReached = false;
+  self.MayProbe = true;
+  int done = this->Superclass::Write();
+  self.MayProbe = false;
+  if (self.Reading.isUnanswered()) { // who cannot give a voxel may give all
+    done = this->Superclass::Write();
+  }
+  if (this->GetNumberOfInputConnections(0) > 0 && !self.IsReached) {
+    this->Attempt([] {
+      throw inr::Error(inr::ErrorCode::CannotRead, "the source failed; what it reported says why");
+    });
+    done = 0;
+  }
+  return done;
 }
 
-/// Before the pipeline asks for anything: there are readers that would not come back.
-void vtkINRWriter::CheckFiles()
+/// Before the pipeline asks for these time steps, or for the present state: there are readers that
+/// would not come back.
+bool vtkINRWriter::CheckFiles(const std::vector<int>& steps)
 {
-  this->UpdateInformation();
-  const std::string problem =
-      FindFileProblem(this, this->GetInputInformation(), this->WriteTimeSteps,
-                      ControllerGroup(this->Internal->Controller));
-  if (!problem.empty()) {
-    throw inr::Error(inr::ErrorCode::CannotRead, problem);
-  }
+  this->Attempt([&] {
+    const ControllerGroup group(this->Internal->Controller);
+    vtkInformation* input = this->GetInputInformation();
+    const StepsToRead files =
+        steps.empty() ? PresentStep(input) : StepsToRead{steps, this->Internal->Steps.available()};
+    const std::string problem = FindFileProblem(this, input, files, steps.empty(), group);
+    if (!problem.empty()) {
+      throw inr::Error(inr::ErrorCode::CannotRead, problem);
+    }
+  });
+  return this->GetErrorCode() == vtkErrorCode::NoError;
 }
 
 /// Tells the user of what `act` throws.
@@ -174,6 +213,7 @@ void vtkINRWriter::Attempt(const std::function<void()>& act)
 void vtkINRWriter::WriteData()
 {
   this->BeginFile();
+  this->Internal->IsReached = true;
   const StopSignals signals; // hands a signal on, which may end the process, after our message
   this->Attempt([&] { this->WriteInput(signals); });
 }
@@ -197,10 +237,9 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
     fileName = StepFileName(fileName, suffix, steps.number());
   }
   const ControllerGroup group(this->Internal->Controller);
-  group.together([&] { errors ? errors->check() : void(); });
-  errors.reset(); // who reads on watches, too
   ParallelInput input = reading.find(
-      this->GetInput(), [this](vtkDataObject* data) { return this->FindInput(data); }, group);
+      this->GetInput(), std::move(errors),
+      [this](vtkDataObject* data) { return this->FindInput(data); }, group);
   if (!steps.isEmpty()) {
     input.input.info.time = steps.time();
   }

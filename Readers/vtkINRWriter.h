@@ -34,6 +34,7 @@
 #include <functional> // for observers
 #include <memory>     // for Internals
 #include <string>     // for messages
+#include <vector>     // for time steps
 
 class ControllerGroup;
 class StopSignals;
@@ -115,8 +116,10 @@ public:
   ///@{
   /// MiB that training may take. An input that is not in memory yet and would fill more than half
   /// of it is never read as a whole but in pieces, two or three times; the default model is made to
-  /// fit. 0 (default) = half of the machine's memory, or of what a batch system or container lets
-  /// the process have of it. Several processes share it on each machine.
+  /// fit. Sources often do not tell of all their arrays: where four times of what one tells would
+  /// fill more than half of the limit, it is asked for one voxel first. 0 (default) = half of the
+  /// machine's memory, or of what a batch system or container lets the process have of it. Several
+  /// processes share it on each machine.
   ///
   ///     writer = servermanager.writers.INRWriter(Input=source, FileName="model.inr",
   ///                                              MemoryLimit=1024)
@@ -254,7 +257,7 @@ private:
   class Internals;
 
   void Attempt(const std::function<void()>& act);
-  void CheckFiles();
+  bool CheckFiles(const std::vector<int>& steps);
   void PlanSteps(vtkInformation* input);
   void WriteInput(const StopSignals& signals);
   TrainingInput FindInput(vtkDataObject* data);

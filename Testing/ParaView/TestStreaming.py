@@ -82,20 +82,41 @@ check("vtkMetaImageReader" in messages.text and messages.errors() == 0, messages
 check(os.path.exists(output_file("streamed-mhd.inr")), "no file of a MetaImage")
 
 # ParaView's reader would try for ever to read from before the beginning of a file that is too short.
-layers = np.zeros((4, 50, 50), np.float32)
+layers = np.arange(4 * 50 * 50, dtype=np.float32).reshape(4, 50, 50)
 whole, cut = output_file("whole.raw"), output_file("cut.raw")
 layers.tofile(whole)
 layers.tofile(cut)
 os.truncate(cut, layers.nbytes - 4)
-for files, limit in [([cut], LIMIT), ([cut], 0), ([whole, cut], LIMIT)]:
+
+
+def save_cut(files, shown, time=None, **properties):
+    """Of all steps, or one. What is said, and which files there are then."""
+    series = simple.ImageReader(FileNames=files, DataScalarType="float", FileDimensionality=3,
+                                DataExtent=[0, 49, 0, 49, 0, 3])
+    if shown:
+        series.UpdatePipeline()
+    names = [output_file(name) for name in ("cut.inr", "cut_0.inr", "cut_1.inr", "cut_2.inr")]
+    for name in names:
+        if os.path.exists(name):
+            os.remove(name)
     with Messages() as messages:
-        servermanager.writers.INRWriter(
-            Input=simple.ImageReader(FileNames=files, DataScalarType="float",
-                                     FileDimensionality=3, DataExtent=[0, 49, 0, 49, 0, 3]),
-            FileName=output_file("cut.inr"), MemoryLimit=limit, MaximumSteps=2, TimeLimit=0,
-            Writetimestepsasfileseries=1, ModelConfig=MODEL).UpdatePipeline()
+        writer = servermanager.writers.INRWriter(
+            Input=series, FileName=names[0], MaximumSteps=2, TimeLimit=0, ModelConfig=MODEL,
+            Writetimestepsasfileseries=int(time is None), **properties)
+        writer.UpdatePipeline() if time is None else writer.UpdatePipeline(time)
+    return messages, [os.path.basename(name) for name in names if os.path.exists(name)]
+
+
+for files, shown, time, limit in [([cut], False, None, LIMIT), ([cut], False, None, 0),
+                                  ([whole, cut], False, None, LIMIT), ([whole, cut], True, None, 0),
+                                  ([whole, cut], False, 1.0, 0), ([whole, cut], True, 1.0, 0)]:
+    messages, found = save_cut(files, shown, time, MemoryLimit=limit)
     check(f"'{cut}' has 39996 bytes" in messages.text, "short:", messages.text)
-    check(messages.errors() == 1, "short:", messages.text)
-for name in ("cut.inr", "cut_0.inr"):
-    check(not os.path.exists(output_file(name)), name)
+    check(messages.errors() == 1 and not found, "short:", messages.text, found)
+# Those that are not asked for may still be being written.
+for files, chosen, expected in [([whole, cut], {"Lasttimestep": 0}, ["cut_0.inr"]),
+                                ([whole, cut, whole], {"Timestepstride": 2},
+                                 ["cut_0.inr", "cut_2.inr"])]:
+    messages, found = save_cut(files, False, **chosen)
+    check(messages.errors() == 0 and found == expected, "chosen:", messages.text, found)
 os.remove(raw)

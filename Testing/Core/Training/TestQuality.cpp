@@ -159,8 +159,8 @@ void ExpectDirectRanges(const Comparison& c)
       }
     }
     const inr::ValueRange& range = cells.ranges[static_cast<std::size_t>(cell)];
-    ASSERT_NEAR(range.low, expected.low, 1e-6) << cell; // positions differ in the last bit
-    ASSERT_NEAR(range.high, expected.high, 1e-6) << cell;
+    ASSERT_EQ(range.low, expected.low) << cell;
+    ASSERT_EQ(range.high, expected.high) << cell;
   }
 }
 

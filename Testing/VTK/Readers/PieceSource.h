@@ -27,11 +27,12 @@ public:
   int Extent[6] = {10, 329, -5, 314, 0, 159};
   int Type = VTK_FLOAT;
   bool GivesParts = true;
-  int FailingRequest = 0;     ///< by number from 1; 0 = none
-  bool OnlyComplains = false; ///< and succeeds, in place of failing
-  int MoreArrays = 0;         ///< besides the one
-  bool TellsOfArrays = false; ///< of these, too, before it is asked for them
-  double Time = 0;            ///< of the last request
+  bool IsMadeOfRequest = false; ///< all of it, of as much of something else as it is asked for
+  int FailingRequest = 0;       ///< by number from 1; 0 = none
+  bool OnlyComplains = false;   ///< and succeeds, in place of failing
+  int MoreArrays = 0;           ///< besides the one
+  bool TellsOfArrays = false;   ///< of these, too, before it is asked for them
+  double Time = 0;              ///< of the last request
 
   int Requests = 0;
   vtkIdType LargestRequest = 0; ///< points
@@ -91,11 +92,14 @@ protected:
       other->SetNumberOfTuples(values->GetNumberOfTuples());
       image->GetPointData()->AddArray(other);
     }
+    int asked[6];
+    info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
+    const bool askedForAll = std::equal(asked, asked + 6, this->Extent);
     vtkIdType point = 0;
     for (int z = extent[4]; z <= extent[5]; ++z) {
       for (int y = extent[2]; y <= extent[3]; ++y) {
         for (int x = extent[0]; x <= extent[1]; ++x) {
-          values->SetTuple1(point++, Value(x, y, z));
+          values->SetTuple1(point++, this->IsMadeOfRequest && !askedForAll ? 0.0 : Value(x, y, z));
         }
       }
     }

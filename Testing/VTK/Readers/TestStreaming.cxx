@@ -118,10 +118,10 @@ TEST_F(Streaming, TellsOfASourceThatFails)
     EXPECT_NE(messages.text().find("the tape is torn"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(this->path()));
     std::filesystem::remove(this->path() + ".checkpoint");
-    if (failing > 1) { // else there is nothing to be written, and nobody to say so
-      EXPECT_NE(messages.text().find("Cannot save"), std::string::npos) << messages.text();
+    EXPECT_NE(messages.text().find("Cannot save"), std::string::npos) << messages.text();
+    EXPECT_NE(this->Writer->GetErrorCode(), 0u);
+    if (failing > 1) { // else VTK comes no further
       EXPECT_NE(messages.text().find("could not be read: "), std::string::npos);
-      EXPECT_NE(this->Writer->GetErrorCode(), 0u);
     }
   }
 }
@@ -187,6 +187,45 @@ TEST_F(Streaming, WarnsOfASourceThatGivesNoParts)
   ASSERT_EQ(messages.warnings().size(), 1u);
   EXPECT_NE(messages.warnings()[0].find("cannot give parts"), std::string::npos);
   EXPECT_EQ(this->Folder.entries(), 1);
+}
+
+// As filters that pass the request on and give all that they make of it.
+TEST_F(Streaming, IsNotOfWhatWasMadeOfAVoxel)
+{
+  this->Source->GivesParts = false;
+  this->Source->IsMadeOfRequest = true;
+  for (const int limit : {120, 200}) { // too large, or not
+    SCOPED_TRACE(limit);
+    this->Writer->SetMemoryLimit(limit);
+    this->Source->Modified();
+    const MessageCapture messages;
+    this->Writer->Write();
+    EXPECT_TRUE(messages.errors().empty()) << messages.text();
+    EXPECT_EQ(messages.warnings().size(), limit == 120 ? 1u : 0u);
+    EXPECT_GT(this->Writer->GetPSNR(), 30);
+    EXPECT_LT(this->Writer->GetPSNR(), 100); // it is not constant
+  }
+}
+
+TEST_F(Streaming, IsReadAsAWholeWhereAVoxelCannotBeGiven)
+{
+  this->Source->FailingRequest = 1;
+  this->Writer->SetMaximumSteps(2);
+  this->Writer->SetMemoryLimit(200);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  EXPECT_EQ(this->Writer->GetErrorCode(), 0u);
+  EXPECT_EQ(this->Source->Requests, 2);
+  EXPECT_TRUE(std::filesystem::exists(this->path()));
+
+  this->Source->FailingRequest = 3; // for all, which was there a moment ago
+  this->Source->Modified();
+  std::filesystem::remove(this->path());
+  this->Writer->Write();
+  EXPECT_NE(this->Writer->GetErrorCode(), 0u);
+  EXPECT_NE(messages.text().find("the tape is torn"), std::string::npos) << messages.text();
+  EXPECT_FALSE(std::filesystem::exists(this->path()));
 }
 
 TEST_F(Streaming, CanBeAborted)
