@@ -67,7 +67,8 @@ public:
   std::string Target;  ///< the file that is being written
   ReadingPlan Reading; ///< of the input
   bool MayProbe = false;
-  bool IsReached = false; ///< by the data, whatever they are
+  bool IsReached = false; ///< by what it asked for, whatever came
+  bool IsWriting = false; ///< the steps stay those that there were at the beginning
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
   inr::ModelPointer Previous; ///< what was written last, if it is of a time step
@@ -99,7 +100,7 @@ vtkTypeBool vtkINRWriter::ProcessRequest(vtkInformation* request, vtkInformation
 {
   vtkInformation* input = inputs[0]->GetInformationObject(0);
   StepSequence& steps = this->Internal->Steps;
-  if (input && request->Has(Pipeline::REQUEST_INFORMATION())) {
+  if (input && request->Has(Pipeline::REQUEST_INFORMATION()) && !this->Internal->IsWriting) {
     this->PlanSteps(input);
   }
   const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
@@ -113,15 +114,6 @@ vtkTypeBool vtkINRWriter::ProcessRequest(vtkInformation* request, vtkInformation
     }
     if (!steps.isEmpty()) {
       input->Set(Pipeline::UPDATE_TIME_STEP(), steps.time());
-    }
-  }
-  if (request->Has(Pipeline::REQUEST_DATA()) && !steps.isEmpty()) {
-    if (this->GetErrorCode() == vtkErrorCode::NoError && steps.advance() &&
-        this->CheckFiles({steps.number()})) {
-      request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
-    } else {
-      request->Remove(Pipeline::CONTINUE_EXECUTING());
-      steps.rewind();
     }
   }
   return result;
@@ -153,30 +145,49 @@ std::int64_t vtkINRWriter::MemoryLimitInBytes() const
 
 int vtkINRWriter::Write()
 {
-  if (this->GetNumberOfInputConnections(0) > 0) {
-    this->SetErrorCode(vtkErrorCode::NoError);
-    this->BeginFile();
-    this->UpdateInformation();
-    if (!this->CheckFiles(this->Internal->Steps.numbers())) {
-      return 0;
-    }
+  if (this->GetNumberOfInputConnections(0) < 1) {
+    return this->Superclass::Write(); // says so
   }
   Internals& self = *this->Internal;
+  this->SetErrorCode(vtkErrorCode::NoError);
+  this->BeginFile();
+  self.IsWriting = false;
+  this->Modified(); // so that the steps are planned anew
+  this->UpdateInformation();
+  if (!this->CheckFiles(self.Steps.numbers())) {
+    return 0;
+  }
+  self.IsWriting = true;
+  // One update for each: a pipeline that goes on by itself does so for ever where a source fails.
+  do {
+    this->WriteStep();
+  } while (this->GetErrorCode() == vtkErrorCode::NoError && self.Steps.advance() &&
+           this->CheckFiles({self.Steps.number()}));
+  self.IsWriting = false;
+  self.Steps.rewind();
+  this->SetProgressShiftScale(0.0, 1.0);
+  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
+}
+
+/// The present step, or state.
+void vtkINRWriter::WriteStep()
+{
+  Internals& self = *this->Internal;
+  const double begin = self.Steps.progress(0.0);
+  this->SetProgressShiftScale(begin, self.Steps.progress(1.0) - begin);
   self.Reading = ReadingPlan();
   self.IsReached = false;
   self.MayProbe = true;
-  int done = this->Superclass::Write();
+  this->Superclass::Write();
   self.MayProbe = false;
   if (self.Reading.isUnanswered()) { // who cannot give a voxel may give all
-    done = this->Superclass::Write();
+    this->Superclass::Write();
   }
-  if (this->GetNumberOfInputConnections(0) > 0 && !self.IsReached) {
+  if (!self.IsReached) {
     this->Attempt([] {
       throw inr::Error(inr::ErrorCode::CannotRead, "the source failed; what it reported says why");
     });
-    done = 0;
   }
-  return done;
 }
 
 /// Before the pipeline asks for these time steps, or for the present state: there are readers that
@@ -361,7 +372,7 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   TrainingReport report;
   const auto observe = [&](const inr::TrainingProgress& progress) {
     this->SetProgressText(report.text(progress).c_str());
-    this->UpdateProgress(this->Internal->Steps.progress(progress.fraction));
+    this->UpdateProgress(progress.fraction);
     checkpoint.tell();
     return !signals.Received() && !IsAborted(*this);
   };
@@ -384,7 +395,7 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   }
   checkpoint.tell();
   checkpoint.remove(group.rank());
-  this->UpdateProgress(this->Internal->Steps.progress(1.0));
+  this->UpdateProgress(1.0);
   this->Internal->Previous = model->volume.time ? model : nullptr;
   if (model->training->nonFinite > 0 && group.rank() == 0) {
     vtkWarningMacro("Array '" << input.info.arrayName << "' has " << model->training->nonFinite

@@ -256,6 +256,7 @@ private:
 
   class Internals;
 
+  void WriteStep();
   void Attempt(const std::function<void()>& act);
   bool CheckFiles(const std::vector<int>& steps);
   void PlanSteps(vtkInformation* input);

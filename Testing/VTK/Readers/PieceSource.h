@@ -29,6 +29,7 @@ public:
   bool GivesParts = true;
   bool IsMadeOfRequest = false; ///< all of it, of as much of something else as it is asked for
   int FailingRequest = 0;       ///< by number from 1; 0 = none
+  bool FailsFromThere = false;  ///< also afterwards
   bool OnlyComplains = false;   ///< and succeeds, in place of failing
   int MoreArrays = 0;           ///< besides the one
   bool TellsOfArrays = false;   ///< of these, too, before it is asked for them
@@ -62,13 +63,16 @@ protected:
     }
     const double times[] = {0.5, 1.5};
     info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), times, 2);
+    info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), times, 2);
     return 1;
   }
 
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
   {
     vtkInformation* info = outputs->GetInformationObject(0);
-    if (++this->Requests == this->FailingRequest) {
+    ++this->Requests;
+    if (this->Requests == this->FailingRequest ||
+        (this->FailsFromThere && this->Requests > this->FailingRequest)) {
       vtkErrorMacro("the tape is torn");
       if (!this->OnlyComplains) {
         return 0;

@@ -126,6 +126,20 @@ TEST_F(Streaming, TellsOfASourceThatFails)
   }
 }
 
+TEST_F(Streaming, TellsOfAStepThatFails)
+{
+  this->Writer->WriteTimeStepsOn();
+  this->Writer->SetMaximumSteps(2);
+  this->Writer->SetMemoryLimit(4096); // for each step there is one request
+  this->Source->FailingRequest = 2;
+  this->Source->FailsFromThere = true;
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_NE(messages.text().find("Cannot save"), std::string::npos) << messages.text();
+  EXPECT_NE(this->Writer->GetErrorCode(), 0u);
+  EXPECT_EQ(this->Folder.entries(), 1);
+}
+
 // As many readers do: they complain, and hand on memory that nobody has written to.
 TEST_F(Streaming, BelievesASourceThatComplainsAndSucceeds)
 {
