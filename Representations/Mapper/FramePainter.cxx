@@ -3,6 +3,7 @@
 
 #include "ComposedLight.h"
 #include "Core/Error.h"
+#include "Core/Render/PictureParts.h"
 #include "Core/Render/StoragePrecision.h"
 #include "LayerExchange.h"
 #include "MapperInput.h"
@@ -274,12 +275,14 @@ bool FramePainter::render(const Frame& scene, const Surroundings& around, int re
   Frame frame = scene;
   frame.width = around.width;
   frame.height = around.height;
-  std::vector<float> band;
+  std::vector<float> ownDepth;
   if (!this->Group.isAlone()) {
-    band = around.depth;
-    this->Group.leaveToOthers(RowsOf(frame, this->CasterModel->volume.dims), frame, band);
+    ownDepth = around.depth;
+    const PixelBox seen = PixelsOf(frame, this->CasterModel->volume.dims);
+    KeepOnly(PartOf(seen, this->Group.process(), this->Group.processes()),
+             {frame.width, frame.height}, ownDepth);
   }
-  const std::vector<float>& depth = band.empty() ? around.depth : band;
+  const std::vector<float>& depth = ownDepth.empty() ? around.depth : ownDepth;
   frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
   frame.layers = around.layers;
   if (this->showAgain(frame)) {

@@ -56,7 +56,7 @@ public:
   explicit FramePainter(std::function<bool()> mayRefine) : Refine(std::move(mayRefine)) {}
   /// Draws one frame and returns an empty text, or draws nothing and returns why. A frame aborted
   /// by the render window is not drawn and not an error. Throws what Renderer throws. Of a group,
-  /// each process keeps its own band and what that took.
+  /// each process keeps its own part and what that took.
   std::string paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                     const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Last; }

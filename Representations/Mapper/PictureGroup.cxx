@@ -6,11 +6,8 @@
 #include <vtkCommunicator.h>
 #include <vtkMultiProcessController.h>
 
-#include <glm/matrix.hpp>
-
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <exception>
 #include <utility>
 
@@ -27,30 +24,6 @@ void RequireSuccess(int succeeded)
 }
 
 } // namespace
-
-Rows RowsOf(const Frame& frame, const glm::i64vec3& dims)
-{
-  const glm::dmat4 toClip = glm::inverse(frame.worldToIndex * frame.clipToWorld);
-  double low = frame.height;
-  double high = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    glm::dvec4 index(-0.5, -0.5, -0.5, 1.0); // a single voxel is a slab
-    for (int axis = 0; axis < 3; ++axis) {
-      index[axis] += (corner >> axis & 1) != 0 ? static_cast<double>(dims[axis]) : 0.0;
-    }
-    const glm::dvec4 clip = toClip * index;
-    if (!(clip.w > 0)) { // beside or behind the eye
-      return {0, frame.height};
-    }
-    const double row = 0.5 * (clip.y / clip.w + 1.0) * frame.height;
-    low = std::min(low, row);
-    high = std::max(high, row);
-  }
-  const auto within = [&frame](double row) {
-    return static_cast<int>(std::clamp(row, 0.0, static_cast<double>(frame.height)));
-  };
-  return {within(std::floor(low)), within(std::ceil(high))};
-}
 
 PictureGroup::PictureGroup(vtkMultiProcessController* controller, std::vector<int> order)
     : Controller(controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr),
@@ -125,28 +98,13 @@ void PictureGroup::share(std::vector<float>& depth, std::size_t pixels) const
   this->reduce(depth, Reduction::Least);
 }
 
-void PictureGroup::leaveToOthers(const Rows& seen, const Frame& frame,
-                                 std::vector<float>& depth) const
-{
-  if (this->isAlone()) {
-    return;
-  }
-  const std::int64_t rows = seen.end - seen.first;
-  const std::int64_t first = seen.first + rows * this->process() / this->processes();
-  const std::int64_t end = seen.first + rows * (this->process() + 1) / this->processes();
-  depth.resize(static_cast<std::size_t>(frame.width) * frame.height, 1.0f);
-  std::fill(depth.begin(), depth.begin() + first * frame.width, 0.0f);
-  std::fill(depth.begin() + end * frame.width, depth.end(), 0.0f);
-}
-
-Image PictureGroup::whole(const Image& band) const
+Image PictureGroup::whole(const Image& part) const
 {
   Image sum;
-  this->together([&] { sum = band; });
-  const auto count = static_cast<vtkIdType>(band.pixels.size());
+  this->together([&] { sum = part; });
+  const auto count = static_cast<vtkIdType>(part.pixels.size());
   for (vtkIdType begin = 0; !this->isAlone() && begin < count; begin += Piece) {
-    // What is not in a process' band is 0 there.
-    RequireSuccess(this->Controller->Reduce(band.pixels.data() + begin, sum.pixels.data() + begin,
+    RequireSuccess(this->Controller->Reduce(part.pixels.data() + begin, sum.pixels.data() + begin,
                                             std::min(Piece, count - begin), vtkCommunicator::SUM_OP,
                                             this->drawer()));
   }

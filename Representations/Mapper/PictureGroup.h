@@ -2,9 +2,6 @@
 #pragma once
 
 #include "Core/Image/Image.h"
-#include "Core/Render/Frame.h"
-
-#include <glm/gtc/type_precision.hpp>
 
 #include <functional>
 #include <vector>
@@ -13,17 +10,7 @@ class vtkMultiProcessController;
 
 namespace inr {
 
-/// Rows of a picture, [first, end).
-struct Rows
-{
-  int first = 0;
-  int end = 0;
-};
-
-/// Those of a frame's pixels that may show a volume of `dims` voxels.
-Rows RowsOf(const Frame& frame, const glm::i64vec3& dims);
-
-/// Processes that make one picture together, each a band of its rows from the whole volume. All of
+/// Processes that make one picture together, each a part of its pixels, of the whole volume. All of
 /// them call the same functions in the same order, and wait for each other. Of a group without
 /// others, each function is about this process.
 class PictureGroup
@@ -57,12 +44,9 @@ public:
   void reduce(std::vector<float>& values, Reduction how) const;
   /// Makes window depths, as many in all processes or empty for none, the nearest of all of them.
   void share(std::vector<float>& depth, std::size_t pixels) const;
-  /// Puts something at the eye wherever rays are others' to cast: all rows but this process' part
-  /// of `seen`. An empty `depth` is one of nothing.
-  void leaveToOthers(const Rows& seen, const Frame& frame, std::vector<float>& depth) const;
-  /// What the process that draws gets: its own picture and the bands of the others. Nobody else's
-  /// is of use.
-  Image whole(const Image& band) const;
+  /// What the process that draws gets: its own part of the picture and those of the others. Nobody
+  /// else's is of use. What is not in a process' part is 0 there.
+  Image whole(const Image& part) const;
   /// Makes `numbers` those of the process that draws.
   void tellAll(std::vector<int>& numbers) const;
   /// What the process that draws gets: the bytes of all, as many each, by process.

@@ -119,21 +119,22 @@ public:
    * Processes that each have a piece of one grid and a window of the same size. What they draw is
    * blended window by window, from the furthest piece to the nearest: composite blending, by rays.
    * Values that are projected and paths, which leave a piece for others, are no such pictures, and
-   * isosurfaces would tear where pieces meet: of these each process draws a band of rows, of the
-   * whole volume and among the surfaces of all the windows, and the bands come together in the
+   * isosurfaces would tear where pieces meet: of these each process draws a part of the picture, of
+   * the whole volume and among the surfaces of all the windows, and the parts come together in the
    * window that lies over the others, of the first process in the order of drawing. Light that
    * would be more than white over a surface is limited: 8 bits overflow where windows are composed.
    * All processes must draw the same volumes with the same settings at the same time; they wait for
-   * each other. A process that cannot draw its band says why, and nothing is drawn. Null or an
+   * each other. A process that cannot draw its part says why, and nothing is drawn. Null or an
    * empty order, the default: projections of a piece are refused.
    */
   void SetController(vtkMultiProcessController* controller);
   void SetProcessOrder(const std::vector<int>& processes) { this->ProcessOrder = processes; }
   ///@}
   /**
-   * Whether such processes draw bands of rows whatever is blended: pieces of several volumes in
-   * different places, or of one whose axes are not the world's, have no order in which the windows
-   * could be, and lights may make pieces too bright to be composed. Default off.
+   * Whether such processes draw parts of the picture whatever is blended: pieces are rounded to the
+   * windows' 8 bits each; those of several volumes in different places, or of one whose axes are
+   * not the world's, have no order in which the windows could be; and lights may make pieces too
+   * bright to be composed. Default off.
    */
   void SetAlwaysTogether(bool on) { this->AlwaysTogether = on; }
   /** Whether they do so, and there is more than one such process. */
@@ -219,13 +220,13 @@ public:
    * full resolution, for 99.9 % of its pixels. Levels, distances of samples and the precision of
    * the cache (BITS16 where what that rounds cannot show, else FLOAT32) follow from it;
    * LevelOfDetailScale, AdaptiveSampling, InferencePrecision and CachePrecision do not count. 0:
-   * not at all. Below 0, the default: they do, and levels follow from the distance to the viewer. Lit, cropped (but to a box), projected
-   * and path-traced pictures, those with a SampleDistance above 1, and those of models that
-   * instantvnr or cINR wrote, whose values may leave the ranges that their files state, are as with
-   * 0. It needs the cache: CacheMode NETWORK_ONLY does without. It has to know the field where that
-   * can be seen, which the first picture waits for: up to ten times as long as decoding that;
-   * where it is more than some 450 million voxels, all are of the full resolution. Rays end at
-   * 0.999 of opacity, so below 0.3 it cannot be kept in opaque media.
+   * not at all. Below 0, the default: they do, and levels follow from the distance to the viewer.
+   * Lit, cropped (but to a box), projected and path-traced pictures, those with a SampleDistance
+   * above 1, and those of models that instantvnr or cINR wrote, whose values may leave the ranges
+   * that their files state, are as with 0. It needs the cache: CacheMode NETWORK_ONLY does without.
+   * It has to know the field where that can be seen, which the first picture waits for: up to ten
+   * times as long as decoding that; where it is more than some 450 million voxels, all are of the
+   * full resolution. Rays end at 0.999 of opacity, so below 0.3 it cannot be kept in opaque media.
    */
   vtkSetClampMacro(ErrorTolerance, double, -1.0, 255.0);
   vtkGetMacro(ErrorTolerance, double);
@@ -252,12 +253,12 @@ public:
   ///@{
   /**
    * Memory for decoded bricks, their tables and those on their way in MiB. 0, the default, is a
-   * quarter of the memory that the process may use, at most 16 GiB; memory is taken as bricks come in. All mappers
-   * of a process together stay within the largest CacheSize among them (or what eight bricks for
-   * each volume take, should that be more): what was not looked at for longest makes room. Mappers
-   * of one model that agree in this, CachePrecision and BrickSize share their bricks. What does not
-   * hold eight bricks and their tables (1 MiB by default) is refused with an error at the next
-   * frame. A change empties the cache unless another mapper shares it.
+   * quarter of the memory that the process may use, at most 16 GiB; memory is taken as bricks come
+   * in. All mappers of a process together stay within the largest CacheSize among them (or what
+   * eight bricks for each volume take, should that be more): what was not looked at for longest
+   * makes room. Mappers of one model that agree in this, CachePrecision and BrickSize share their
+   * bricks. What does not hold eight bricks and their tables (1 MiB by default) is refused with an
+   * error at the next frame. A change empties the cache unless another mapper shares it.
    */
   vtkSetClampMacro(CacheSize, int, 0, VTK_INT_MAX);
   vtkGetMacro(CacheSize, int);

@@ -124,6 +124,12 @@ bool MayOutshineWhite(vtkVolumeProperty* property, vtkRenderer* renderer)
   return !(sum <= 1.0);
 }
 
+bool ComposesOnePicture(vtkRenderer* renderer)
+{
+  vtkIceTCompositePass* pass = CompositePassOf(renderer);
+  return pass && IsOnePicture(pass);
+}
+
 bool AllHave(vtkMultiProcessController* processes, bool something)
 {
   const int mine = something ? 1 : 0;

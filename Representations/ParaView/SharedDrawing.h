@@ -32,6 +32,11 @@ bool IsTurned(vtkImageData* image, vtkMatrix4x4* matrix);
 /// 8 bits, which overflow then where pieces lie behind each other.
 bool MayOutshineWhite(vtkVolumeProperty* property, vtkRenderer* renderer);
 
+/// Whether processes' pictures are composed to one that they could as well draw parts of: pieces in
+/// front of each other are rounded to 8 bits each, and are off by up to 3 of 255 for that. On tile
+/// displays and in caves there is no such picture.
+bool ComposesOnePicture(vtkRenderer* renderer);
+
 /// Whether each of the processes has something to draw. All of them must ask, outside of drawing:
 /// there one without anything does not know its turn among several volumes.
 bool AllHave(vtkMultiProcessController* processes, bool something);

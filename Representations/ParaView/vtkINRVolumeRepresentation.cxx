@@ -113,9 +113,9 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->GetMapper()->SetCacheSize(this->CacheSize > 0 ? this->CacheSize : this->SharedCache);
     this->UpdateMapper();
     vtkRenderer* renderer = vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer();
-    this->GetMapper()->SetAlwaysTogether(inr::ShownVolumes(renderer).size() > 1 ||
-                                         this->IsTurned() ||
-                                         inr::MayOutshineWhite(this->Property, renderer));
+    this->GetMapper()->SetAlwaysTogether(
+        inr::ComposesOnePicture(renderer) || inr::ShownVolumes(renderer).size() > 1 ||
+        this->IsTurned() || inr::MayOutshineWhite(this->Property, renderer));
     this->Status->SetProcesses(this->Others);
     const bool sharesStatus = this->Others && this->Status->GetVisibility();
     if (sharesStatus || this->GetMapper()->GetDrawsTogether()) {

@@ -12,8 +12,7 @@ from pvtest import look_at, output_file, picture, show_balls, show_model
 
 PORT = int(sys.argv[1])
 PROJECTIONS = ["Maximum Intensity", "Minimum Intensity", "Average Intensity", "Additive"]
-COMPOSED = ["composite beside it", "over glass", "two volumes", "two volumes 0", "two volumes 1"]
-COMPOSED += ["composite over glass", "moved", "of one process beside it 0", "of one process beside it 1"]
+COMPOSED = ["over glass", "composite over glass"]
 FEW = output_file("few-voxels.inr")
 
 
