@@ -102,5 +102,5 @@ def results(build, folder):
             "of 255", "lower", f"{len(found)} of 512 x 384: far, near and inside, flat and shaded; at "
             f"least {min(x['same'] for x in found):.3f} of the pixels are the same, and "
             f"{sum(x['above'] for x in found)} of {sum(x['values'] for x in found)} values are off by "
-            "more than 2; pieces are composed in 8 bits",
+            "more than 2; each process draws a part of them",
             baseline="one process", target=2)
