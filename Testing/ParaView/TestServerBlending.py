@@ -123,7 +123,7 @@ with Messages() as messages:
 check(messages.errors() == 0, "drawing reported", messages.text)
 check_same(found, expected, COMPOSED)
 
-# While the mouse moves, too: bands of a picture that has fewer pixels than the window.
+# While the mouse moves, too: parts of a picture that has fewer pixels than the window.
 display.INRBlendMode = "Maximum Intensity"
 check_interactive(view, display)
 os._exit(0)
