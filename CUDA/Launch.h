@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The only door between the host's code and that of nvcc.
+// The only door between the host's code and that of nvcc. Kernels are instantiated in Launch*.cu,
+// by LaunchDefinition.cuh.
 #pragma once
-
-#include "CUDA/Kernels/BrickKernels.h"
 
 #include <cstdint>
 #include <cuda_runtime_api.h>

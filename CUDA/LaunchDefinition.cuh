@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// What Launch.h declares, for nvcc: INR_INSTANTIATE(Kernel), within namespace inr::cuda, makes a
+// kernel one that can be launched.
+#pragma once
+
+#include "CUDA/Kernels/Block.h"
 #include "CUDA/Launch.h"
 #include "CUDA/Runtime.h"
 
 namespace inr {
 namespace cuda {
-
-namespace {
 
 template <class Kernel>
 __global__ void __launch_bounds__(Kernel::Threads) Run(const __grid_constant__ Kernel kernel)
@@ -13,8 +17,6 @@ __global__ void __launch_bounds__(Kernel::Threads) Run(const __grid_constant__ K
   DeviceBlock block;
   kernel(block);
 }
-
-} // namespace
 
 template <class Kernel> std::int64_t PrepareKernel(std::int64_t sharedBytes)
 {
@@ -45,16 +47,6 @@ void LaunchKernel(const Kernel& kernel, std::int64_t blocks, std::int64_t shared
 #define INR_INSTANTIATE(Kernel)                                                                    \
   template std::int64_t PrepareKernel<Kernel>(std::int64_t);                                       \
   template void LaunchKernel<Kernel>(const Kernel&, std::int64_t, std::int64_t, cudaStream_t)
-INR_INSTANTIATE(FloatPoints);
-INR_INSTANTIATE(FloatBricks);
-INR_INSTANTIATE(FusedPoints<1>);
-INR_INSTANTIATE(FusedPoints<2>);
-INR_INSTANTIATE(FusedPoints<4>);
-INR_INSTANTIATE(FusedPoints<8>);
-INR_INSTANTIATE(FusedBricks<1>);
-INR_INSTANTIATE(FusedBricks<2>);
-INR_INSTANTIATE(FusedBricks<4>);
-INR_INSTANTIATE(FusedBricks<8>);
 
 } // namespace cuda
 } // namespace inr
