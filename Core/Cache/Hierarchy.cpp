@@ -48,7 +48,7 @@ Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize)
     this->BrickDims[axis] = static_cast<int>(side);
   }
   do {
-    Level level;
+    HierarchyLevel level;
     for (int axis = 0; axis < 3; ++axis) {
       level.size[axis] = VoxelsAtLevel(dims[axis], this->levels());
       level.bricks[axis] = BricksAlong(level.size[axis], this->BrickDims[axis] - 1);
@@ -59,17 +59,6 @@ Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize)
     level.brickBias = level.bias / glm::dvec3(this->BrickDims - 1);
     this->Levels.push_back(level);
   } while (this->Levels.back().bricks != glm::i64vec3(1));
-}
-
-Hierarchy::Location Hierarchy::locate(int level, const glm::dvec3& index) const
-{
-  const Level& at = this->at(level);
-  const glm::dvec3 place = glm::clamp(index * at.scale + at.bias, glm::dvec3(0.0),
-                                      glm::dvec3(at.size - std::int64_t{1}));
-  // Truncation is floor for what is not negative; the last voxel belongs to the brick before it.
-  const glm::i64vec3 brick(place / glm::dvec3(this->BrickDims - 1));
-  const BrickId id{level, glm::min(brick, at.bricks - std::int64_t{1})};
-  return {id, place - glm::dvec3(this->firstVoxel(id))};
 }
 
 } // namespace inr

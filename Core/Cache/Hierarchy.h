@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/BrickKey.h"
+#include "Core/Cache/HierarchyView.h"
+
 #include <glm/gtc/type_precision.hpp>
 #include <glm/vec3.hpp>
 
@@ -8,42 +11,6 @@
 #include <vector>
 
 namespace inr {
-
-/// A brick: its level (0 = full resolution) and its place among that level's bricks.
-struct BrickId
-{
-  int level;
-  glm::i64vec3 at;
-};
-
-/// A brick in 62 bits: level, z, y, x. Keys of a level sort by z, then y, then x.
-using BrickKey = std::uint64_t;
-constexpr int BrickAxisBits = 19; ///< x takes the lowest
-
-inline BrickKey KeyOf(const BrickId& id)
-{
-  const auto word = [](std::int64_t value) { return static_cast<std::uint64_t>(value); };
-  return (((word(id.level) << BrickAxisBits | word(id.at.z)) << BrickAxisBits | word(id.at.y))
-          << BrickAxisBits) |
-         word(id.at.x);
-}
-
-inline BrickId IdOf(BrickKey key)
-{
-  const auto axis = [key](int place) {
-    constexpr BrickKey mask = (BrickKey{1} << BrickAxisBits) - 1;
-    return static_cast<std::int64_t>(key >> (place * BrickAxisBits) & mask);
-  };
-  return {static_cast<int>(key >> (3 * BrickAxisBits)), {axis(0), axis(1), axis(2)}};
-}
-
-/// Voxels along an axis of a level, where level 0 has `voxels`: half as many for each level,
-/// rounded up.
-inline std::int64_t VoxelsAtLevel(std::int64_t voxels, int level)
-{
-  const std::int64_t together = std::int64_t{1} << level;
-  return (voxels + together - 1) / together; // rounding up level by level is the same
-}
 
 /// The levels of a volume and their bricks.
 ///
@@ -71,10 +38,7 @@ public:
   {
     return std::int64_t{1} * this->BrickDims.x * this->BrickDims.y * this->BrickDims.z;
   }
-  glm::i64vec3 firstVoxel(const BrickId& id) const
-  {
-    return id.at * glm::i64vec3(this->BrickDims - 1);
-  }
+  glm::i64vec3 firstVoxel(const BrickId& id) const { return this->view().firstVoxel(id); }
   BrickKey coarsest() const { return KeyOf({this->levels() - 1, glm::i64vec3(0)}); }
 
   /// Position p in voxels of level 0 (voxel i at i) is p * scale + bias in voxels of `level`.
@@ -84,28 +48,24 @@ public:
   const glm::dvec3& brickScale(int level) const { return this->at(level).brickScale; }
   const glm::dvec3& brickBias(int level) const { return this->at(level).brickBias; }
 
-  struct Location
-  {
-    BrickId brick;
-    glm::dvec3 local; ///< in the brick's voxels, in [0, brickDims - 1]
-  };
+  using Location = BrickLocation;
   /// Where `level` keeps the field at a position in voxels of level 0, clamped to the voxels.
-  Location locate(int level, const glm::dvec3& index) const;
+  Location locate(int level, const glm::dvec3& index) const
+  {
+    return this->view().locate(level, index);
+  }
+
+  /// What code that runs anywhere reads; as long as this lives.
+  HierarchyView view() const { return {this->Levels.data(), this->levels(), this->BrickDims}; }
 
 private:
-  struct Level
+  const HierarchyLevel& at(int level) const
   {
-    glm::i64vec3 size;
-    glm::i64vec3 bricks;
-    glm::dvec3 scale;
-    glm::dvec3 bias;
-    glm::dvec3 brickScale;
-    glm::dvec3 brickBias;
-  };
-  const Level& at(int level) const { return this->Levels[static_cast<std::size_t>(level)]; }
+    return this->Levels[static_cast<std::size_t>(level)];
+  }
 
   glm::ivec3 BrickDims{2};
-  std::vector<Level> Levels;
+  std::vector<HierarchyLevel> Levels;
 };
 
 } // namespace inr
