@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/HostDevice.h"
+
 #include <glm/gtc/type_precision.hpp>
 #include <glm/vec3.hpp>
 
@@ -15,8 +17,8 @@ struct ValueRange
   float low = 1.0f;
   float high = -1.0f;
 
-  bool empty() const { return this->low > this->high; }
-  void extend(float value)
+  INR_HOST_DEVICE bool empty() const { return this->low > this->high; }
+  INR_HOST_DEVICE void extend(float value)
   {
     const bool first = this->empty();
     this->low = first || value < this->low ? value : this->low;

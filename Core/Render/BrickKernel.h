@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Inference/InstructionSet.h"
+#include "Core/Render/BrickPath.h"
 
 #include <cstdint>
 
@@ -44,18 +45,6 @@ struct StepLookup
   int rows;
   float scale; ///< entry position = scale * y + bias
   float bias;
-};
-
-/// A ray's way through one brick: local coordinate = clamp(origin + along * direction, 0, last),
-/// voxel i at i; `along` counts steps.
-struct BrickPath
-{
-  const void* voxels; ///< x fastest
-  float base;         ///< value = base + quantum * stored
-  float quantum;
-  float origin[3];
-  float direction[3];
-  float last[3];
 };
 
 /// Samples on a ray's way through a brick: sample k is (start + k * spacing) + offset along it.

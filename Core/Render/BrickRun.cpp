@@ -23,32 +23,6 @@ BrickFormat FormatOf(const BrickCache& cache)
           {blocks.count.x - 1, blocks.count.y - 1, blocks.count.z - 1}};
 }
 
-BrickWay::BrickWay(const Hierarchy& hierarchy, int level, const Ray& ray)
-    : Level(level), Stride(hierarchy.brickDims() - 1),
-      LastVoxel(hierarchy.size(level) - std::int64_t{1})
-{
-  const glm::dvec3& scale = hierarchy.brickScale(level);
-  const glm::dvec3 start = ray.entry * scale + hierarchy.brickBias(level);
-  this->Bricks =
-      LatticeWalker(hierarchy.bricks(level), start, ray.direction * scale, ray.inverse / scale);
-}
-
-void BrickWay::findPath(const BrickView& view, double t, double step, BrickPath& path) const
-{
-  const glm::dvec3 cell(this->Bricks.cell());
-  const glm::dvec3 origin = (this->Bricks.at(t) - cell) * this->Stride;
-  const glm::dvec3 direction = this->Bricks.slope() * (this->Stride * step);
-  const glm::dvec3 last = glm::min(this->Stride, this->LastVoxel - cell * this->Stride);
-  path.voxels = view.voxels;
-  path.base = view.low;
-  path.quantum = view.step;
-  for (int axis = 0; axis < 3; ++axis) {
-    path.origin[axis] = static_cast<float>(origin[axis]);
-    path.direction[axis] = static_cast<float>(direction[axis]);
-    path.last[axis] = static_cast<float>(last[axis]);
-  }
-}
-
 void BrickRun::open(const BrickWay& wanted, const BrickWay& served, const BrickView& view,
                     double step)
 {
@@ -61,7 +35,10 @@ void BrickRun::open(const BrickWay& wanted, const BrickWay& served, const BrickV
   this->ServedLevel = served.level();
   this->Wish = wanted.brick();
   this->Count = 0;
-  served.findPath(view, this->Reference * step, step, this->Path);
+  served.findPath(this->Reference * step, step, this->Path);
+  this->Path.voxels = view.voxels;
+  this->Path.base = view.low;
+  this->Path.quantum = view.step;
   this->Place = -1;
   this->Shown.kind = ShownBlocks::Kind::All;
 }

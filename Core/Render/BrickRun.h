@@ -3,39 +3,12 @@
 
 #include "Core/Cache/BrickCache.h"
 #include "Core/Render/BrickKernel.h"
-#include "Core/Render/LatticeWalker.h"
-#include "Core/Render/Ray.h"
+#include "Core/Render/BrickWay.h"
 
 namespace inr {
 
 /// What kernels need to know about the bricks of a cache.
 BrickFormat FormatOf(const BrickCache& cache);
-
-/// A ray's way through the bricks of one level.
-class BrickWay
-{
-public:
-  BrickWay() = default; ///< of no level
-  BrickWay(const Hierarchy& hierarchy, int level, const Ray& ray);
-
-  int level() const { return this->Level; }
-  /// As if made anew, of no level.
-  void forget() { this->Level = -1; }
-  /// To the brick at t, which does not fall from call to call.
-  void moveTo(double t) { this->Bricks.moveTo(t); }
-  BrickKey brick() const { return KeyOf({this->Level, this->Bricks.cell()}); }
-  /// Where the ray enters and leaves it. The outermost bricks reach as far as the ray does.
-  double enter() const { return this->Bricks.enter(); }
-  double exit() const { return this->Bricks.exit(); }
-  /// The way through the brick, stored in `view`, from t on; `along` in units of `step`.
-  void findPath(const BrickView& view, double t, double step, BrickPath& path) const;
-
-private:
-  int Level = -1;
-  glm::dvec3 Stride{0};    ///< voxels from brick to brick
-  glm::dvec3 LastVoxel{0}; ///< of the level
-  LatticeWalker Bricks;
-};
 
 /// Samples of one ray that fall into one brick. Places on the ray count steps of `t`.
 class BrickRun

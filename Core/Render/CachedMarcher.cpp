@@ -16,7 +16,7 @@ constexpr int MostShaded = 64;
 
 SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t stream)
 {
-  return {scene.majorants,
+  return {scene.majorants.view(),
           scene.settings,
           ray,
           scene.frame.levelOfDetailScale,
@@ -27,7 +27,7 @@ SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t s
 } // namespace
 
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
-    : ray(scene.geometry.ray(x, y, 0)), stream(PixelStream(scene.frame, x, y)),
+    : ray(scene.geometry.ray(x, y, 0)), stream(StreamsOf(scene.frame).at(x, y)),
       samples(SamplesOf(scene, this->ray, this->stream)), x(x), y(y)
 {
   this->color.ofMany = this->samples.end() > ManySamples;

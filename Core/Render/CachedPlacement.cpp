@@ -215,7 +215,7 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
   const double t = place * this->Scene.settings.step;
   BrickWay& wanted = this->Ways[level & 1];
   if (wanted.level() != level) {
-    wanted = BrickWay(hierarchy, level, ray);
+    wanted = BrickWay(hierarchy.view(), level, ray);
   }
   wanted.moveTo(t);
   const BrickKey key = wanted.brick();
@@ -242,7 +242,7 @@ std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const Bri
   const Hierarchy& hierarchy = cache.hierarchy();
   BrickKey wish = wanted.brick();
   for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
-    BrickWay served(hierarchy, level, ray);
+    BrickWay served(hierarchy.view(), level, ray);
     served.moveTo(t);
     const std::int32_t slot = cache.find(served.brick());
     if (slot >= 0) {

@@ -5,6 +5,8 @@
 #include "Core/Render/BlockVisibility.h"
 #include "Core/Render/BrickRun.h"
 #include "Core/Render/Frame.h"
+#include "Core/Render/Majorants.h"
+#include "Core/Render/RayGeometry.h"
 #include "Core/Render/SampleShader.h"
 #include "Core/Render/SampleWalker.h"
 

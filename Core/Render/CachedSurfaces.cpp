@@ -99,9 +99,9 @@ bool CachedMarcher::drawSurface(CachedRay& state, int surface, int level, double
         !this->Probe->findGradient(state.color.transmittance, this->Requests, gradient)) {
       return false;
     }
-    const Shading& shading = *this->Scene.shading;
+    const ShadingView& lighting = this->Scene.shading->view();
     const glm::vec3 lit =
-        shading.shade(glm::vec3(color), shading.viewAlong(state.ray), state.ray.at(t), gradient);
+        lighting.shade(glm::vec3(color), lighting.toEye(state.ray), state.ray.at(t), gradient);
     color = glm::vec4(lit, color.w);
   }
   this->compositeColor(state, color, 1.0f, t);

@@ -4,7 +4,7 @@
 #include "Core/HostDevice.h"
 #include "Core/Render/GridWalker.h"
 #include "Core/Render/LevelOfDetail.h"
-#include "Core/Render/Majorants.h"
+#include "Core/Render/MajorantView.h"
 
 #include <glm/common.hpp>
 
@@ -20,17 +20,17 @@ class CellWalker
 {
 public:
   /// `scale` and `levels` are LevelOfDetail's.
-  INR_HOST_DEVICE CellWalker(const Majorants& majorants, const glm::dvec3& volumeDims,
+  INR_HOST_DEVICE CellWalker(const MajorantsView& majorants, const glm::dvec3& volumeDims,
                              const Ray& ray, double scale, int levels)
       : All(&majorants), LastLevel(levels - 1), Scale(scale)
   {
     this->follow(ray, MakeCellScale(majorants.grid(0), volumeDims));
   }
 
-  /// Begins anew on another ray; `finest` is of grid 0.
+  /// Begins anew on another ray; `finest` is that of grid 0.
   INR_HOST_DEVICE void follow(const Ray& ray, const CellScale& finest)
   {
-    this->Cells.follow(ray, finest);
+    this->Cells.follow(ray, this->All->grid(0), finest);
     this->Footprint = ray.footprint * this->Scale;
     this->Growth = ray.footprintGrowth * this->Scale;
     this->Grid = 0;
@@ -98,7 +98,7 @@ private:
     this->End = this->endOf(this->Grid);
   }
 
-  const Majorants* All;
+  const MajorantsView* All;
   GridWalker Cells;
   double Footprint = 0;
   double Growth = 0;

@@ -21,11 +21,8 @@ public:
   /// Takes cells with an extinction of 0 for empty; they are numbered x fastest.
   void update(const std::vector<float>& extinctions, const Arena& arena);
 
-  /// k of a cell's block, -1 if the cell is not empty.
-  int block(std::int64_t cell) const
-  {
-    return static_cast<int>(this->Grids[0].nodes[static_cast<std::size_t>(cell)]) - 1;
-  }
+  /// Of every cell, 0 if it is not empty, else 1 + the k of its block. They stay where they are.
+  const std::uint8_t* blocks() const { return this->Grids[0].nodes.data(); }
 
 private:
   /// Nodes of 2^k cells per axis: 0 = full, else 1 + the k of the largest empty block around.

@@ -4,6 +4,7 @@
 #include "Core/Render/Blending.h"
 #include "Core/Render/Cropping.h"
 #include "Core/Render/Lights.h"
+#include "Core/Render/Material.h"
 #include "Core/Render/PathOptions.h"
 #include "Core/Render/TranslucentLayers.h"
 #include "Core/Render/WorkDone.h"
@@ -18,21 +19,6 @@
 #include <vector>
 
 namespace inr {
-
-/// How a volume answers light; see Shading. As vtkVolumeProperty has them.
-struct Material
-{
-  float ambient = 0.1f;
-  float diffuse = 0.7f;
-  float specular = 0.2f;
-  float specularPower = 10.0f;
-
-  bool operator==(const Material& other) const
-  {
-    return this->ambient == other.ambient && this->diffuse == other.diffuse &&
-           this->specular == other.specular && this->specularPower == other.specularPower;
-  }
-};
 
 enum class RenderMode : std::uint8_t {
   RayMarching, ///< the medium emits and absorbs
@@ -101,9 +87,9 @@ struct Frame
   /// less, they come from coarser levels and are further apart wherever that stays within it; see
   /// LevelChooser. Everything else, paths, and volumes whose values may leave the ranges of their
   /// macro-cells (MacroCells::rangesHold) are drawn as with 0. What the precision of the cache
-  /// rounds comes on top (see PrecisionWithin), and up to 0.26 in opaque media, as rays end at 0.999 of opacity; and
-  /// between voxels of the full resolution the field is taken to be linear. Of pieces, all together
-  /// keep to it. Ignored without a cache.
+  /// rounds comes on top (see PrecisionWithin), and up to 0.26 in opaque media, as rays end at
+  /// 0.999 of opacity; and between voxels of the full resolution the field is taken to be linear.
+  /// Of pieces, all together keep to it. Ignored without a cache.
   std::optional<double> errorTolerance;
 
   /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones

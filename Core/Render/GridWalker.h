@@ -3,24 +3,23 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Render/LatticeWalker.h"
-#include "Core/Render/MajorantGrid.h"
+#include "Core/Render/MajorantView.h"
 #include "Core/Render/Ray.h"
 
 namespace inr {
 
-/// A grid of macro-cells over a volume.
+/// How large the cells of a grid over a volume are.
 struct CellScale
 {
-  const MajorantGrid* cells;
   glm::dvec3 edge;     ///< of a cell, in voxels
   glm::dvec3 perVoxel; ///< 1 / edge
 };
 
-INR_HOST_DEVICE inline CellScale MakeCellScale(const MajorantGrid& cells,
+INR_HOST_DEVICE inline CellScale MakeCellScale(const MajorantGridView& cells,
                                                const glm::dvec3& volumeDims)
 {
   const glm::dvec3 edge = volumeDims * cells.spacing();
-  return {&cells, edge, 1.0 / edge};
+  return {edge, 1.0 / edge};
 }
 
 /// A ray's way through a grid of macro-cells; see LatticeWalker.
@@ -28,20 +27,21 @@ class GridWalker
 {
 public:
   GridWalker() = default; ///< on no ray yet
-  INR_HOST_DEVICE GridWalker(const MajorantGrid& cells, const glm::dvec3& volumeDims,
+  /// The grid must outlive it.
+  INR_HOST_DEVICE GridWalker(const MajorantGridView& cells, const glm::dvec3& volumeDims,
                              const Ray& ray)
   {
-    this->follow(ray, MakeCellScale(cells, volumeDims));
+    this->follow(ray, cells, MakeCellScale(cells, volumeDims));
   }
   /// Begins anew on another ray.
-  INR_HOST_DEVICE void follow(const Ray& ray, const CellScale& cells)
+  INR_HOST_DEVICE void follow(const Ray& ray, const MajorantGridView& cells, const CellScale& scale)
   {
-    this->Cells = cells.cells;
-    this->Way.follow(this->Cells->dims(), (ray.entry + 0.5) * cells.perVoxel,
-                     ray.direction * cells.perVoxel, ray.inverse * cells.edge);
+    this->Cells = &cells;
+    this->Way.follow(cells.dims(), (ray.entry + 0.5) * scale.perVoxel,
+                     ray.direction * scale.perVoxel, ray.inverse * scale.edge);
   }
   /// Begins anew in another grid.
-  INR_HOST_DEVICE void changeTo(const MajorantGrid& cells)
+  INR_HOST_DEVICE void changeTo(const MajorantGridView& cells)
   {
     const glm::dvec3 scale = this->Cells->spacing() / cells.spacing();
     this->Cells = &cells;
@@ -86,7 +86,7 @@ private:
     ++this->Visited;
   }
 
-  const MajorantGrid* Cells = nullptr;
+  const MajorantGridView* Cells = nullptr;
   LatticeWalker Way;
   std::int64_t Index = 0;
   std::int64_t Visited = 0;

@@ -131,7 +131,7 @@ void LookAhead::send(const View& view, const Scene& scene, const Arena& arena)
 void LookAhead::follow(const Ray& ray, const Scene& scene, Walk& walk)
 {
   walk.start();
-  CellWalker cells(scene.majorants, scene.dims, ray, 0.0, 1);
+  CellWalker cells(scene.majorants.view(), scene.dims, ray, 0.0, 1);
   cells.moveTo(0);
   const double stepsPerVoxel = 1.0 / (scene.step * glm::length(ray.direction));
   double light = 1.0; // of what is here, that is seen

@@ -4,7 +4,7 @@
 #include "Core/Cache/LevelErrors.h"
 #include "Core/Render/Majorants.h"
 #include "Core/Render/PixelErrors.h"
-#include "Core/Render/Ray.h"
+#include "Core/Render/RayGeometry.h"
 
 #include <array>
 #include <atomic>

@@ -8,7 +8,10 @@
 namespace inr {
 
 MajorantGrid::MajorantGrid(MacroCells cells)
-    : Cells(std::move(cells)), Extinctions(this->Cells.ranges.size(), 0.0f), Empty(this->Cells.dims)
+    : Cells(std::move(cells)), Extinctions(this->Cells.ranges.size(), 0.0f),
+      Empty(this->Cells.dims),
+      View(this->Cells.dims, this->Cells.spacing, this->Cells.ranges.data(),
+           this->Extinctions.data(), this->Empty.blocks())
 {}
 
 void MajorantGrid::update(const ExtinctionRule& rule, const Arena& arena)

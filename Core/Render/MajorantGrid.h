@@ -4,6 +4,7 @@
 #include "Core/Model/MacroCells.h"
 #include "Core/Render/CellVisibility.h"
 #include "Core/Render/EmptySpace.h"
+#include "Core/Render/MajorantView.h"
 
 #include <cstdint>
 #include <vector>
@@ -18,6 +19,8 @@ class MajorantGrid
 public:
   /// `cells` must not be empty.
   explicit MajorantGrid(MacroCells cells);
+  MajorantGrid(MajorantGrid&&) noexcept = default;
+  MajorantGrid& operator=(MajorantGrid&&) noexcept = default;
 
   /// Recomputes every cell's extinction: by a rule, or for compositing.
   void update(const ExtinctionRule& rule, const Arena& arena);
@@ -26,30 +29,22 @@ public:
     this->update(VisibilityFor({}, colors), arena);
   }
 
-  const glm::i64vec3& dims() const { return this->Cells.dims; }
-  const glm::dvec3& spacing() const { return this->Cells.spacing; }
-  std::int64_t count() const { return static_cast<std::int64_t>(this->Cells.ranges.size()); }
-  /// Cells are numbered x fastest.
-  std::int64_t index(const glm::i64vec3& at) const { return this->Cells.index(at.x, at.y, at.z); }
-  const ValueRange& range(std::int64_t cell) const
-  {
-    return this->Cells.ranges[static_cast<std::size_t>(cell)];
-  }
-  /// Where opacity decides, -ln(1 - a) for the largest opacity a (per unit distance) of any value
-  /// in the cell's range; 0 = invisible.
-  float extinction(std::int64_t cell) const
-  {
-    return this->Extinctions[static_cast<std::size_t>(cell)];
-  }
+  /// What walks read, for as long as this lives, or what it is moved to.
+  const MajorantGridView& view() const { return this->View; }
 
-  /// The largest aligned block of invisible cells around a cell has 2^k cells per axis; -1 = the
-  /// cell is visible.
-  int emptyBlock(std::int64_t cell) const { return this->Empty.block(cell); }
+  const glm::i64vec3& dims() const { return this->View.dims(); }
+  const glm::dvec3& spacing() const { return this->View.spacing(); }
+  std::int64_t count() const { return this->View.count(); }
+  std::int64_t index(const glm::i64vec3& at) const { return this->View.index(at); }
+  const ValueRange& range(std::int64_t cell) const { return this->View.range(cell); }
+  float extinction(std::int64_t cell) const { return this->View.extinction(cell); }
+  int emptyBlock(std::int64_t cell) const { return this->View.emptyBlock(cell); }
 
 private:
   MacroCells Cells;
   std::vector<float> Extinctions; ///< apart: empty space is left by looking at nothing else
   EmptySpace Empty;
+  MajorantGridView View; ///< of these
 };
 
 } // namespace inr

@@ -60,7 +60,7 @@ Majorants::Majorants(const MacroCells& cells) : RangesHold(cells.rangesHold())
       this->Bounds.extend(range.high);
     }
   }
-  this->Grids.push_back({MajorantGrid(whole), EveryLevel});
+  this->add(whole, EveryLevel);
 }
 
 Majorants::Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, const Arena& arena)
@@ -69,16 +69,23 @@ Majorants::Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, co
   if (cells.empty()) {
     return;
   }
-  this->Grids.front().coarsestLevel =
-      glm::max(0, CoarsestLevelWithin(cells.apron, cells, volumeDims));
+  int reached = glm::max(0, CoarsestLevelWithin(cells.apron, cells, volumeDims));
+  this->View.boundTo(0, reached);
   MacroCells ranges = cells;
-  while (this->Grids.back().coarsestLevel != EveryLevel) {
+  while (reached != EveryLevel) {
     const int coarsest = CoarsestLevelWithin(ranges.spacing, ranges, volumeDims);
-    if (coarsest > this->Grids.back().coarsestLevel) {
-      this->Grids.push_back({MajorantGrid(Dilated(ranges, arena)), coarsest});
+    if (coarsest > reached) {
+      this->add(Dilated(ranges, arena), coarsest);
+      reached = coarsest;
     }
     ranges = Joined(ranges, arena);
   }
+}
+
+void Majorants::add(MacroCells cells, int coarsestLevel)
+{
+  this->Grids.emplace_back(std::move(cells));
+  this->View.add(this->Grids.back().view(), coarsestLevel);
 }
 
 void Majorants::update(const ColorTable& colors, const Arena& arena)
@@ -88,8 +95,8 @@ void Majorants::update(const ColorTable& colors, const Arena& arena)
 
 void Majorants::update(const ExtinctionRule& rule, const Arena& arena)
 {
-  for (Grid& grid : this->Grids) {
-    grid.cells.update(rule, arena);
+  for (MajorantGrid& grid : this->Grids) {
+    grid.update(rule, arena);
   }
 }
 

@@ -23,6 +23,8 @@ public:
   explicit Majorants(const MacroCells& cells);
   /// For all levels, in time proportional to the cells.
   Majorants(const MacroCells& cells, const glm::i64vec3& volumeDims, const Arena& arena);
+  Majorants(Majorants&&) noexcept = default;
+  Majorants& operator=(Majorants&&) noexcept = default;
 
   /// Recomputes every cell's extinction: for compositing, or by a rule.
   void update(const ColorTable& colors, const Arena& arena);
@@ -33,19 +35,20 @@ public:
   bool rangesHold() const { return this->RangesHold; } ///< see MacroCells
 
   int grids() const { return static_cast<int>(this->Grids.size()); }
-  const MajorantGrid& grid(int number) const { return this->at(number).cells; }
+  const MajorantGrid& grid(int number) const
+  {
+    return this->Grids[static_cast<std::size_t>(number)];
+  }
   /// The coarsest level that a grid bounds; it bounds all finer ones too. The last grid bounds all.
-  int coarsestLevel(int grid) const { return this->at(grid).coarsestLevel; }
+  int coarsestLevel(int grid) const { return this->View.coarsestLevel(grid); }
+  /// What walks read, for as long as this lives, or what it is moved to.
+  const MajorantsView& view() const { return this->View; }
 
 private:
-  struct Grid
-  {
-    MajorantGrid cells;
-    int coarsestLevel;
-  };
-  const Grid& at(int number) const { return this->Grids[static_cast<std::size_t>(number)]; }
+  void add(MacroCells cells, int coarsestLevel);
 
-  std::vector<Grid> Grids;
+  std::vector<MajorantGrid> Grids;
+  MajorantsView View; ///< of these
   ValueRange Bounds;
   bool RangesHold;
 };

@@ -82,7 +82,8 @@ std::uint64_t PieceNumber(const std::vector<glm::dvec4>& piece)
 class TileOfPaths
 {
 public:
-  TileOfPaths(const PathScene& scene, const Tile& tile) : Scene(scene), Place(tile)
+  TileOfPaths(const Frame& frame, const PathScene& scene, const Tile& tile)
+      : Picture(frame), Scene(scene), Place(tile)
   {
     this->Paths.reserve(static_cast<std::size_t>(tile.width) * tile.height);
     for (int k = 0; k < tile.width * tile.height; ++k) {
@@ -126,12 +127,12 @@ private:
   /// As the camera sees it: through the translucent surfaces in front of the first collision.
   glm::vec4 colorOf(const PathState& path, int k) const
   {
-    const Frame& frame = this->Scene.frame;
+    const Frame& frame = this->Picture;
     if (!path.collided || !frame.layers) {
       return {path.radiance, path.collided ? 1.0f : 0.0f};
     }
     const auto pixel = static_cast<std::size_t>(this->y(k)) * frame.width + this->x(k);
-    const double depth = this->Scene.geometry.windowDepth(path.firstCollision);
+    const double depth = this->Scene.rays.windowDepth(path.firstCollision);
     const Veil veil = frame.layers->inFrontOf(depth, pixel);
     return {veil.color + veil.passes * path.radiance, 1.0f};
   }
@@ -141,7 +142,7 @@ private:
 
   float depthOf(const PathState& path) const
   {
-    return static_cast<float>(this->Scene.geometry.windowDepth(path.firstCollision));
+    return static_cast<float>(this->Scene.rays.windowDepth(path.firstCollision));
   }
 
   void place()
@@ -176,6 +177,7 @@ private:
     this->Live.resize(alive);
   }
 
+  const Frame& Picture;
   const PathScene& Scene;
   Tile Place;
   FrameStatistics Statistics;
@@ -218,17 +220,18 @@ void Accumulator::mean(Image& picture) const
 
 PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
                        const Majorants& majorants, const ColorLookup& colors, int levels)
-    : Inner(frame, geometry, dims),
-      Lights(PathLights(this->Inner, frame.lights)), Scene{frame,
-                                                           geometry,
+    : Picture(frame), Inner(frame, geometry, dims, this->Planes),
+      Lights(PathLights(this->Inner, frame.lights)), Scene{StreamsOf(frame),
+                                                           geometry.view(),
                                                            this->Inner,
-                                                           majorants,
-                                                           MakeCellScale(majorants.grid(0),
+                                                           majorants.view(),
+                                                           MakeCellScale(majorants.view().grid(0),
                                                                          glm::dvec3(dims)),
                                                            colors,
                                                            this->Lights.data(),
                                                            static_cast<int>(this->Lights.size()),
                                                            frame.paths,
+                                                           frame.levelOfDetailScale,
                                                            glm::dvec3(dims),
                                                            geometry.worldPerUnit() /
                                                                frame.unitDistance,
@@ -242,7 +245,7 @@ PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const gl
 FrameStatistics PathTracer::trace(const Tile& tile, FieldSampler& sampler, Image& rgba,
                                   Image* depth) const
 {
-  TileOfPaths paths(this->Scene, tile);
+  TileOfPaths paths(this->Picture, this->Scene, tile);
   paths.trace(sampler);
   paths.write(rgba, depth);
   return paths.statistics();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Image/Image.h"
+#include "Core/Render/Majorants.h"
 #include "Core/Render/PathTracing.h"
 #include "Core/Render/Tiling.h"
 
@@ -54,6 +55,8 @@ public:
                         Image* depth = nullptr) const;
 
 private:
+  const Frame& Picture;
+  std::vector<glm::dvec4> Planes; ///< of Inner
   InnerRays Inner;
   std::vector<PathLight> Lights;
   PathScene Scene;

@@ -25,10 +25,10 @@
 
 namespace inr {
 
-/// A light and, of a directional one, what all points have in common.
+/// A light and, of a directional one, what all points have in common. Plain data.
 struct PathLight
 {
-  const Light& light;
+  Light light;
   Illumination illumination;
   RayDirection towards;
 };
@@ -40,34 +40,36 @@ INR_HOST_DEVICE inline PathLight MakePathLight(const InnerRays& inner, const Lig
   return {light, everywhere, inner.along(everywhere.toLight)};
 }
 
-/// What the stages share within a frame. All read-only.
+/// What the stages share within a frame. Plain data, whose arrays lie in the memory of whoever
+/// traces; it stays where it is while paths are traced.
 struct PathScene
 {
-  const Frame& frame;
-  const RayGeometry& geometry;
-  const InnerRays& inner;
-  const Majorants& majorants;
+  PixelStreams streams;
+  RayView rays;
+  InnerRays inner;
+  MajorantsView majorants;
   CellScale cells; ///< of its finest grid
-  const ColorLookup& colors;
+  ColorLookup colors;
   const PathLight* lights;
   int lightCount;
-  const PathOptions& options;
-  glm::dvec3 dims;     ///< voxels per axis
-  double unitsPerT;    ///< opacity unit distances per unit of t
-  int levels;          ///< that a point may be asked at, at least 1
-  std::uint64_t piece; ///< a number that the frame's piece has for itself, 0: the whole
+  PathOptions options;
+  double levelOfDetailScale; ///< see Frame
+  glm::dvec3 dims;           ///< voxels per axis
+  double unitsPerT;          ///< opacity unit distances per unit of t
+  int levels;                ///< that a point may be asked at, at least 1
+  std::uint64_t piece;       ///< a number that the frame's piece has for itself, 0: the whole
 };
 
 INR_HOST_DEVICE inline CellWalker WalkerFor(const PathScene& scene, const Ray& ray)
 {
-  return {scene.majorants, scene.dims, ray, scene.frame.levelOfDetailScale, scene.levels};
+  return {scene.majorants, scene.dims, ray, scene.levelOfDetailScale, scene.levels};
 }
 
 /// Of a pixel's path. Pictures of neighbouring pieces are multiplied when they are blended, and
 /// must not come from the same numbers.
 INR_HOST_DEVICE inline std::uint64_t RandomStream(const PathScene& scene, int x, int y)
 {
-  const std::uint64_t stream = PixelStream(scene.frame, x, y);
+  const std::uint64_t stream = scene.streams.at(x, y);
   return scene.piece == 0 ? stream : RandomBits(stream, scene.piece);
 }
 
@@ -76,7 +78,7 @@ struct PathState
 {
   /// At the beginning; the ray may miss the volume.
   INR_HOST_DEVICE PathState(const PathScene& scene, int x, int y)
-      : ray(scene.geometry.rayThroughPiece(x, y)), walker(WalkerFor(scene, ray)),
+      : ray(scene.rays.rayThroughPiece(x, y)), walker(WalkerFor(scene, ray)),
         stream(RandomStream(scene, x, y)), travel(scene.inner.worldDirection(ray.direction))
   {}
 
@@ -246,7 +248,7 @@ INR_HOST_DEVICE inline bool PlaceSample(const PathScene& scene, PathState& path,
       return false;
     }
   }
-  LevelOfDetail detail(path.ray, scene.frame.levelOfDetailScale, scene.levels);
+  LevelOfDetail detail(path.ray, scene.levelOfDetailScale, scene.levels);
   detail.moveTo(path.walker.enter());
   const int level = detail.isDithered()
                         ? detail.dithered(path.stream, static_cast<std::int64_t>(path.drawn++))

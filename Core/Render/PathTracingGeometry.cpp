@@ -6,7 +6,8 @@
 
 namespace inr {
 
-InnerRays::InnerRays(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims)
+InnerRays::InnerRays(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
+                     std::vector<glm::dvec4>& planes)
     : ToWorld(glm::inverse(frame.worldToIndex)), ToIndex(frame.worldToIndex),
       WorldPerUnit(geometry.worldPerUnit())
 {
@@ -19,9 +20,12 @@ InnerRays::InnerRays(const Frame& frame, const RayGeometry& geometry, const glm:
     this->Low = glm::max(this->Low, box.low);
     this->High = glm::min(this->High, box.high);
   }
+  planes.clear();
   for (const glm::dvec4& plane : frame.clippingPlanes) {
-    this->Planes.push_back(glm::transpose(this->ToWorld) * plane);
+    planes.push_back(glm::transpose(this->ToWorld) * plane);
   }
+  this->Planes = planes.data();
+  this->PlaneCount = static_cast<int>(planes.size());
 }
 
 } // namespace inr

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/HostDevice.h"
-#include "Core/Render/Ray.h"
+#include "Core/Render/RayGeometry.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -20,13 +20,23 @@ struct RayDirection
   glm::dvec3 inverse; ///< 1 / perT
 };
 
-/// Rays that start inside the volume. Directions and lengths are the world's, whatever spacing or
-/// shear lies between it and the grid.
+/// Rays that start inside the volume. Plain data. Directions and lengths are the world's, whatever
+/// spacing or shear lies between it and the grid.
 class InnerRays
 {
 public:
-  /// `geometry` has checked the frame.
-  InnerRays(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims);
+  /// `geometry` has checked the frame. `planes` becomes its clipping planes over point indices, and
+  /// must outlive this.
+  InnerRays(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
+            std::vector<glm::dvec4>& planes);
+
+  /// The same with its planes elsewhere.
+  InnerRays with(const glm::dvec4* planes) const
+  {
+    InnerRays rays = *this;
+    rays.Planes = planes;
+    return rays;
+  }
 
   /// The ray from point index `from` along the world unit vector `direction`, clipped to the
   /// visible domain (point bounds), the clipping planes and `limit`, a world length. Neither the
@@ -61,9 +71,9 @@ public:
       const double end = glm::max((face - from[axis]) * ray.inverse[axis], 0.0);
       ray.length = ray.direction[axis] != 0 && end < ray.length ? end : ray.length;
     }
-    for (const glm::dvec4& plane : this->Planes) {
-      Keep(glm::dot(plane, glm::dvec4(from, 1.0)), glm::dot(plane, glm::dvec4(ray.direction, 0.0)),
-           ray.length);
+    for (int k = 0; k < this->PlaneCount; ++k) {
+      Keep(glm::dot(this->Planes[k], glm::dvec4(from, 1.0)),
+           glm::dot(this->Planes[k], glm::dvec4(ray.direction, 0.0)), ray.length);
     }
   }
 
@@ -92,7 +102,8 @@ private:
   glm::dmat3 ToIndex;
   glm::dvec3 Low;
   glm::dvec3 High;
-  std::vector<glm::dvec4> Planes; ///< over point indices
+  const glm::dvec4* Planes; ///< over point indices
+  int PlaneCount;
   double WorldPerUnit;
 };
 

@@ -5,7 +5,7 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Random.h"
-#include "Core/Render/Ray.h"
+#include "Core/Render/RayGeometry.h"
 #include "Core/Render/SampleWalker.h"
 
 #include <glm/vec3.hpp>
@@ -31,12 +31,23 @@ struct MarchState
   float known = 0;
 };
 
-/// The random stream of a pixel's ray.
-INR_HOST_DEVICE inline std::uint64_t PixelStream(const Frame& frame, int x, int y)
+/// The random streams of a frame's pixels. Plain data.
+struct PixelStreams
 {
-  const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(frame.width) +
-                     static_cast<std::uint64_t>(x);
-  return RandomBits(RandomBits(frame.seed, frame.frameIndex), pixel);
+  std::uint64_t seed;
+  std::uint64_t width; ///< pixels
+
+  /// Of the ray through one.
+  INR_HOST_DEVICE std::uint64_t at(int x, int y) const
+  {
+    return RandomBits(this->seed,
+                      static_cast<std::uint64_t>(y) * this->width + static_cast<std::uint64_t>(x));
+  }
+};
+
+inline PixelStreams StreamsOf(const Frame& frame)
+{
+  return {RandomBits(frame.seed, frame.frameIndex), static_cast<std::uint64_t>(frame.width)};
 }
 
 /// SampleWalker's jitter: random, as noise disturbs less than bands do (its counter is one that no

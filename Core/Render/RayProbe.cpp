@@ -26,7 +26,7 @@ bool RayProbe::open(const Ray& ray, int level, double place, float contribution,
 {
   const BrickCache& cache = this->Scene.cache;
   const double step = this->Scene.settings.step;
-  BrickWay wanted(cache.hierarchy(), level, ray);
+  BrickWay wanted(cache.hierarchy().view(), level, ray);
   wanted.moveTo(place * step);
   std::int32_t slot = cache.find(wanted.brick());
   if (slot < 0) {
@@ -37,7 +37,7 @@ bool RayProbe::open(const Ray& ray, int level, double place, float contribution,
   }
   BrickWay served = wanted;
   while (slot < 0) { // the coarsest level is there
-    served = BrickWay(cache.hierarchy(), served.level() + 1, ray);
+    served = BrickWay(cache.hierarchy().view(), served.level() + 1, ray);
     served.moveTo(place * step);
     slot = cache.find(served.brick());
   }

@@ -22,11 +22,12 @@ int SampleShader::shade(const SampleBatch& batch, int count, const Request& requ
   const int found =
       std::min(seen, this->Gradients.find(batch, request.bricks, visible, seen, request.missing,
                                           request.transmittance, requests, gradients));
-  const Shading::View view = this->Lighting.viewAlong(request.ray);
+  const ShadingView& lighting = this->Lighting.view();
+  const glm::dvec3 toEye = lighting.toEye(request.ray);
   for (int k = 0; k < found; ++k) {
     glm::vec4& color = colors[visible[k]];
-    const glm::vec3 lit = this->Lighting.shade(glm::vec3(color), view,
-                                               request.ray.at(request.t[visible[k]]), gradients[k]);
+    const glm::vec3 lit = lighting.shade(glm::vec3(color), toEye,
+                                         request.ray.at(request.t[visible[k]]), gradients[k]);
     color = glm::vec4(lit, color.w);
   }
   return found < seen ? visible[found] : count;

@@ -46,7 +46,7 @@ class SampleWalker
 public:
   /// `scale` and `levels` are LevelOfDetail's; `jitter` is in [0, 1]. With 1, where samples are at
   /// the ends of what they stand for, there is one at t = 0, too.
-  INR_HOST_DEVICE SampleWalker(const Majorants& majorants, const MarchSettings& settings,
+  INR_HOST_DEVICE SampleWalker(const MajorantsView& majorants, const MarchSettings& settings,
                                const Ray& ray, double scale, int levels, double jitter)
       : Detail(ray, scale, levels), Cells(majorants, settings.dims, ray, scale, levels),
         Jitter(jitter), End(ray.length / settings.step), PieceBegin(ray.pieceBegin / settings.step),

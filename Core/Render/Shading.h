@@ -2,10 +2,7 @@
 #pragma once
 
 #include "Core/Render/Frame.h"
-#include "Core/Render/Ray.h"
-
-#include <glm/mat3x3.hpp>
-#include <glm/mat4x4.hpp>
+#include "Core/Render/ShadingView.h"
 
 #include <optional>
 #include <vector>
@@ -25,24 +22,17 @@ public:
   /// Of `frame`, which must say how to shade and have been checked by a RayGeometry.
   explicit Shading(const Frame& frame);
 
-  /// What shading needs to know about a ray.
-  struct View
-  {
-    glm::dvec3 toEye; ///< world unit vector
-  };
-  View viewAlong(const Ray& ray) const;
+  Shading(Shading&&) noexcept = default;
+  Shading& operator=(Shading&&) noexcept = default;
 
-  /// Straight RGB of a sample at point indices `index` where the field changes by `gradient` per
-  /// voxel of level 0.
-  glm::vec3 shade(const glm::vec3& color, const View& view, const glm::dvec3& index,
-                  const glm::vec3& gradient) const;
+  /// What shades: a sample's straight RGB, where the field changes by a gradient per voxel of level
+  /// 0. As long as this lives, or what it is moved to.
+  const ShadingView& view() const { return this->View; }
 
 private:
-  Material Surface;
   std::vector<Light> Lights;
   std::vector<Illumination> Constant; ///< of the directional lights, which come first
-  glm::dmat4 ToWorld;
-  glm::dmat3 GradientToWorld;
+  ShadingView View;
 };
 
 /// None when `frame` is not shaded; projected values have no surface.

@@ -39,8 +39,9 @@ void TileMarcher::generateRays(const Tile& tile)
     const int x = tile.x + k % tile.width;
     const int y = tile.y + k / tile.width;
     const Ray ray = this->Scene.geometry.ray(x, y, 0);
-    const double jitter = JitterOf(this->Scene.settings, PixelStream(frame, x, y));
-    const SampleWalker samples(this->Scene.majorants, this->Scene.settings, ray, 0, 1, jitter);
+    const double jitter = JitterOf(this->Scene.settings, StreamsOf(frame).at(x, y));
+    const SampleWalker samples(this->Scene.majorants.view(), this->Scene.settings, ray, 0, 1,
+                               jitter);
     this->Rays.push_back({ray, samples});
     if (ray.length > 0 || (frame.layers && this->Scene.geometry.ray(x, y).length > 0)) {
       this->Live.push_back(k);
@@ -120,6 +121,7 @@ void TileMarcher::inferGradients()
 
 void TileMarcher::shade()
 {
+  const ShadingView& lighting = this->Scene.shading->view();
   const glm::vec3 dims(this->Scene.settings.dims);
   std::size_t live = 0;
   for (std::size_t k = 0; k < this->Visible.size(); ++k) {
@@ -137,9 +139,8 @@ void TileMarcher::shade()
     }
     const Ray& ray = this->Rays[static_cast<std::size_t>(this->Live[live])].ray;
     glm::vec4& color = this->Lit[sample];
-    const glm::vec3 lit =
-        this->Scene.shading->shade(glm::vec3(color), this->Scene.shading->viewAlong(ray),
-                                   ray.at(this->Samples[sample].t), gradient);
+    const glm::vec3 lit = lighting.shade(glm::vec3(color), lighting.toEye(ray),
+                                         ray.at(this->Samples[sample].t), gradient);
     color = glm::vec4(lit, color.w);
   }
 }
@@ -235,8 +236,8 @@ bool TileMarcher::enterNextPart(int k, bool goesOn)
   }
   this->Statistics.work.cells += state.samples.visited();
   state.ray = this->Scene.geometry.ray(x, y, ++state.part);
-  state.samples = SampleWalker(this->Scene.majorants, this->Scene.settings, state.ray, 0, 1,
-                               JitterOf(this->Scene.settings, PixelStream(frame, x, y)));
+  state.samples = SampleWalker(this->Scene.majorants.view(), this->Scene.settings, state.ray, 0, 1,
+                               JitterOf(this->Scene.settings, StreamsOf(frame).at(x, y)));
   state.knownAt = -1;
   return state.light.passes() > 0.0f;
 }

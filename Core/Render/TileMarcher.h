@@ -3,6 +3,7 @@
 
 #include "Core/Image/Image.h"
 #include "Core/Inference/Evaluator.h"
+#include "Core/Render/Majorants.h"
 #include "Core/Render/RayMarching.h"
 #include "Core/Render/Shading.h"
 #include "Core/Render/Tiling.h"

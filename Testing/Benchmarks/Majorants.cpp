@@ -70,7 +70,7 @@ void Leave(benchmark::State& state)
     ray.direction = glm::normalize(glm::dvec3(random() - 0.5, random() - 0.5, 1.0));
     ray.inverse = 1.0 / ray.direction;
     ray.length = length;
-    inr::GridWalker walker(majorants, glm::dvec3(length), ray);
+    inr::GridWalker walker(majorants.view(), glm::dvec3(length), ray);
     walker.moveTo(0);
     benchmark::DoNotOptimize(walker.moveToVisible(ray.length));
   }

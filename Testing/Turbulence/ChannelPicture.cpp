@@ -101,7 +101,7 @@ public:
     const Frame& frame = this->Scene.frame;
     const Ray ray = this->Geometry.ray(x, y);
     const double end = ray.length / frame.sampleDistance;
-    const double jitter = JitterOf(MarchSettings(), PixelStream(frame, x, y));
+    const double jitter = JitterOf(MarchSettings(), StreamsOf(frame).at(x, y));
     this->Color = glm::dvec4(0);
     for (double first = 0; first < end && this->Color.w < 1 - Invisible; first += AtOnce) {
       this->place(ray, first, std::min(end, first + AtOnce), end, jitter);

@@ -4,11 +4,13 @@
 #include "Core/Parallel.h"
 #include "Core/Random.h"
 #include "Core/Render/GridWalker.h"
+#include "Core/Render/MajorantGrid.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace {
 
@@ -34,7 +36,7 @@ Cells MakeCells(const glm::i64vec3& dims, const glm::dvec3& spacing, std::uint64
   function.table = {{0, 0, 0, 0}, {0, 0, 0, 0}, {1, 1, 1, 0.5f}};
   inr::MajorantGrid majorants(cells);
   majorants.update(inr::ColorTable(function, inr::VolumeInfo{}), inr::Arena(1));
-  return {glm::dvec3(dims), majorants};
+  return {glm::dvec3(dims), std::move(majorants)};
 }
 
 inr::Ray MakeRay(const glm::dvec3& entry, const glm::dvec3& direction, double length)
@@ -84,16 +86,19 @@ std::int64_t CellAt(const Cells& cells, const inr::Ray& ray, double t)
 
 std::vector<Cells> AllCells()
 {
-  return {MakeCells({61, 47, 80}, glm::dvec3(16.0) / glm::dvec3(61, 47, 80)),
-          MakeCells({61, 47, 80}, {0.13, 0.21, 0.0501}), // not of whole voxels
-          MakeCells({40, 40, 1}, {0.4, 0.4, 1.0}), MakeCells({100000, 9, 9}, {0.00016, 1, 1})};
+  std::vector<Cells> all;
+  all.push_back(MakeCells({61, 47, 80}, glm::dvec3(16.0) / glm::dvec3(61, 47, 80)));
+  all.push_back(MakeCells({61, 47, 80}, {0.13, 0.21, 0.0501})); // not of whole voxels
+  all.push_back(MakeCells({40, 40, 1}, {0.4, 0.4, 1.0}));
+  all.push_back(MakeCells({100000, 9, 9}, {0.00016, 1, 1}));
+  return all;
 }
 
 TEST(GridWalker, IsWhereItShouldBe)
 {
   for (const Cells& cells : AllCells()) {
     for (const inr::Ray& ray : Rays(cells)) {
-      inr::GridWalker walker(cells.majorants, cells.dims, ray);
+      inr::GridWalker walker(cells.majorants.view(), cells.dims, ray);
       const double step = ray.length / 997;
       for (int k = 0; k < 997; ++k) {
         const double t = k * step;
@@ -114,10 +119,10 @@ TEST(GridWalker, StartsAnywhereWithTheSameCell)
 {
   for (const Cells& cells : AllCells()) {
     for (const inr::Ray& ray : Rays(cells)) {
-      inr::GridWalker steady(cells.majorants, cells.dims, ray);
+      inr::GridWalker steady(cells.majorants.view(), cells.dims, ray);
       for (int k = 0; k < 300; ++k) {
         const double t = k * ray.length / 300;
-        inr::GridWalker fresh(cells.majorants, cells.dims, ray);
+        inr::GridWalker fresh(cells.majorants.view(), cells.dims, ray);
         steady.moveTo(t);
         fresh.moveTo(t);
         ASSERT_EQ(fresh.enter(), steady.enter());
@@ -132,8 +137,9 @@ TEST(GridWalker, FollowsAnotherRayAsIfItHadNeverGoneElsewhere)
   for (const Cells& cells : AllCells()) {
     inr::GridWalker used;
     for (const inr::Ray& ray : Rays(cells)) {
-      used.follow(ray, inr::MakeCellScale(cells.majorants, cells.dims));
-      inr::GridWalker fresh(cells.majorants, cells.dims, ray);
+      used.follow(ray, cells.majorants.view(),
+                  inr::MakeCellScale(cells.majorants.view(), cells.dims));
+      inr::GridWalker fresh(cells.majorants.view(), cells.dims, ray);
       for (const double part : {0.3, 0.6}) {
         used.moveTo(part * ray.length);
         fresh.moveTo(part * ray.length);
@@ -149,7 +155,7 @@ TEST(GridWalker, SkipsNothingThatCanBeSeen)
 {
   for (const Cells& cells : AllCells()) {
     for (const inr::Ray& ray : Rays(cells)) {
-      inr::GridWalker walker(cells.majorants, cells.dims, ray);
+      inr::GridWalker walker(cells.majorants.view(), cells.dims, ray);
       walker.moveTo(0);
       double t = 0;
       while (t < ray.length) {
@@ -188,7 +194,7 @@ struct Stretch
 std::vector<Stretch> SeenCellByCell(const Cells& cells, const inr::Ray& ray, double from)
 {
   std::vector<Stretch> seen;
-  inr::GridWalker walker(cells.majorants, cells.dims, ray);
+  inr::GridWalker walker(cells.majorants.view(), cells.dims, ray);
   for (double t = from; t < ray.length; t = walker.exit()) {
     walker.moveTo(t);
     if (walker.extinction() > 0.0f) {
@@ -202,7 +208,7 @@ std::vector<Stretch> SeenCellByCell(const Cells& cells, const inr::Ray& ray, dou
 std::vector<Stretch> SeenWithLeaps(const Cells& cells, const inr::Ray& ray, double from)
 {
   std::vector<Stretch> seen;
-  inr::GridWalker walker(cells.majorants, cells.dims, ray);
+  inr::GridWalker walker(cells.majorants.view(), cells.dims, ray);
   walker.moveTo(from);
   while (walker.moveToVisible(ray.length)) {
     if (walker.exit() > walker.enter()) { // not just a corner

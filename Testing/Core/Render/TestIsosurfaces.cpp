@@ -97,8 +97,8 @@ private:
       step[axis] = 1;
       gradient[axis] = 0.5 * (this->Scene.at(ray.at(t) + step) - this->Scene.at(ray.at(t) - step));
     }
-    const glm::vec3 lit = this->Lighting->shade(glm::vec3(color), this->Lighting->viewAlong(ray),
-                                                ray.at(t), glm::vec3(gradient));
+    const glm::vec3 lit = this->Lighting->view().shade(
+        glm::vec3(color), this->Lighting->view().toEye(ray), ray.at(t), glm::vec3(gradient));
     return glm::dvec4(lit, color.w);
   }
 

@@ -287,7 +287,7 @@ void CheckWalk(const Volume& volume, const inr::Majorants& majorants, const inr:
 {
   const glm::dvec3 dims(volume.dims);
   const int levels = volume.hierarchy.levels();
-  inr::CellWalker walker(majorants, dims, ray, 1.0, levels);
+  inr::CellWalker walker(majorants.view(), dims, ray, 1.0, levels);
   inr::LevelOfDetail detail(ray, 1.0, levels);
   double skippedTo = 0;
   for (double t = 0; t < ray.length; t += 0.37) {
@@ -299,7 +299,7 @@ void CheckWalk(const Volume& volume, const inr::Majorants& majorants, const inr:
     }
     const bool skipped = t < skippedTo;
     if (!skipped) {
-      inr::CellWalker fresh(majorants, dims, ray, 1.0, levels);
+      inr::CellWalker fresh(majorants.view(), dims, ray, 1.0, levels);
       fresh.moveTo(t);
       ASSERT_EQ(&fresh.range(), &walker.range());
     }

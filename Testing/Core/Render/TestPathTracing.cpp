@@ -95,7 +95,8 @@ TEST(PathTracing, InnerRaysAreMeasuredAndClippedInTheWorld)
   const glm::dvec3 start(17.5, 8, 5);
   const glm::i64vec3 dims(9, 17, 33);
   const auto end = [&](const glm::dvec3& direction, double limit) {
-    const inr::InnerRays inner(frame, inr::RayGeometry(frame, dims), dims);
+    std::vector<glm::dvec4> planes;
+    const inr::InnerRays inner(frame, inr::RayGeometry(frame, dims), dims, planes);
     const inr::Ray ray = inner.ray(from, direction, limit);
     return inner.world(ray.at(ray.length));
   };

@@ -69,7 +69,7 @@ inr::SampleWalker WalkerOn(const inr::Ray& ray, const inr::Majorants& majorants,
                            const inr::MarchSettings& settings, double jitter)
 {
   const double scale = settings.cellSampling != nullptr ? 0.0 : 1.0; // one of them says levels
-  return {majorants, settings, ray, scale, Levels, jitter};
+  return {majorants.view(), settings, ray, scale, Levels, jitter};
 }
 
 /// All samples of a ray, taken `most` at a time.
@@ -172,7 +172,7 @@ struct CellAt
 CellAt LookAt(const inr::Ray& ray, const inr::Majorants& majorants,
               const inr::MarchSettings& settings, double t, std::int64_t steps)
 {
-  inr::CellWalker cells(majorants, settings.dims, ray, 1.0, Levels);
+  inr::CellWalker cells(majorants.view(), settings.dims, ray, 1.0, Levels);
   cells.moveTo(t);
   return {cells.extinction() > 0,
           cells.extinction() * settings.step * static_cast<double>(steps) * settings.unitsPerT};
@@ -234,7 +234,7 @@ TEST(SampleWalker, TakesWhatCellsAskFor)
       const inr::AlikeSamples alike = walker.alike();
       for (; end < walker.next(); ++end) {
         const double t = (static_cast<double>(end) + jitter) * settings.step;
-        inr::CellWalker cells(majorants, settings.dims, ray, 0.0, Levels);
+        inr::CellWalker cells(majorants.view(), settings.dims, ray, 0.0, Levels);
         cells.moveTo(t);
         EXPECT_EQ(cells.extinction(), 0.0f) << number << " " << end;
       }
@@ -247,7 +247,7 @@ TEST(SampleWalker, TakesWhatCellsAskFor)
       EXPECT_EQ(steps, std::int64_t{1} << power);
       taken[level][power] += alike.count;
       for (std::int64_t k = 0; k < steps && steps > 1; ++k) { // that the first one is taken for
-        inr::CellWalker cells(majorants, settings.dims, ray, 0.0, Levels);
+        inr::CellWalker cells(majorants.view(), settings.dims, ray, 0.0, Levels);
         cells.moveTo((static_cast<double>(end + k) + jitter) * settings.step);
         EXPECT_LE(level, sampling[static_cast<std::size_t>(cells.index())].level);
         EXPECT_LE(power, sampling[static_cast<std::size_t>(cells.index())].power);

@@ -65,14 +65,15 @@ TEST(Shading, FollowsTheFormulaWhateverTheVolumesShape)
   }
   const glm::vec3 color(0.2f, 0.6f, 1.0f);
   const glm::vec3 shaded =
-      shading.shade(color, shading.viewAlong(ray), glm::dvec3(1, 2, 3), gradient);
+      shading.view().shade(color, shading.view().toEye(ray), glm::dvec3(1, 2, 3), gradient);
   const glm::dvec3 truth = Truth(*frame.shading, glm::dvec3(color), normal, -light, toEye,
                                  glm::dvec3(frame.lights[0].color));
   EXPECT_LT(glm::length(glm::dvec3(shaded) - truth), 1e-6);
   // Both sides are lit alike, and what has no slope gets the ambient part.
-  EXPECT_LT(glm::length(shading.shade(color, shading.viewAlong(ray), {}, -gradient) - shaded),
-            1e-6f);
-  EXPECT_EQ(shading.shade(color, shading.viewAlong(ray), {}, glm::vec3(0)), 0.3f * color);
+  EXPECT_LT(
+      glm::length(shading.view().shade(color, shading.view().toEye(ray), {}, -gradient) - shaded),
+      1e-6f);
+  EXPECT_EQ(shading.view().shade(color, shading.view().toEye(ray), {}, glm::vec3(0)), 0.3f * color);
 }
 
 TEST(Shading, OfARampIsThatOfItsDirection)

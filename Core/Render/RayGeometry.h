@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Render/Frame.h"
+#include "Core/Render/RayView.h"
+
+#include <glm/gtc/type_precision.hpp>
+
+namespace inr {
+
+/// A Frame's geometry composed in double, once: rays in index space and back to window depth.
+class RayGeometry
+{
+public:
+  /// Throws Error(InvalidArgument) for singular or non-finite matrices and values out of range.
+  RayGeometry(const Frame& frame, const glm::i64vec3& dims);
+
+  /// The ray through the centre of pixel (x, y), clipped to near and far plane, the visible domain
+  /// (point bounds), the clipping planes and the opaque depth; a miss where it misses the frame's
+  /// piece.
+  Ray ray(int x, int y) const;
+  /// The part of it between two translucent layers: from layer `part` - 1, or its beginning, to
+  /// layer `part`, or its end.
+  Ray ray(int x, int y, int part) const;
+
+  /// The same ray, entering where its piece begins and leaving where it ends.
+  Ray rayThroughPiece(int x, int y) const;
+
+  /// Window-space depth in [0, 1] of a point on a ray.
+  double windowDepth(const glm::dvec3& index) const { return this->View.windowDepth(index); }
+
+  /// t that the longest ray spends in the volume, at most.
+  double longest() const;
+
+  /// World length of one unit of t: the shortest voxel edge.
+  double worldPerUnit() const { return this->View.worldPerUnit; }
+
+  /// What makes rays anywhere, as long as the frame lives: but for translucent layers.
+  const RayView& view() const { return this->View; }
+
+private:
+  const Frame& Picture;
+  RayView View;
+};
+
+} // namespace inr
