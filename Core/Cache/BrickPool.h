@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/BrickView.h"
 #include "Core/Cache/CachePrecision.h"
 #include "Core/Cache/ReservedArray.h"
 
 #include <cstdint>
 
 namespace inr {
-
-/// A brick's voxels as they are stored; value = low + step * stored, x fastest.
-struct BrickView
-{
-  const void* voxels; ///< float, uint16 or uint8
-  float low;
-  float step;
-};
 
 /// The memory of a cache: slots, each for the voxels of one brick.
 class BrickPool

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/HostDevice.h"
+
 #include <cstdint>
 
 namespace inr {
@@ -9,7 +11,7 @@ namespace inr {
 /// that a value is off by at most half a quantum, (max - min)/(2^bits - 1)/2.
 enum class CachePrecision { Float32, Bits16, Bits8 };
 
-constexpr std::int64_t BytesPerVoxel(CachePrecision precision)
+INR_HOST_DEVICE constexpr std::int64_t BytesPerVoxel(CachePrecision precision)
 {
   return precision == CachePrecision::Float32 ? 4 : (precision == CachePrecision::Bits16 ? 2 : 1);
 }
