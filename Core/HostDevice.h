@@ -7,3 +7,12 @@
 #else
 #define INR_HOST_DEVICE
 #endif
+
+#include <limits>
+
+namespace inr {
+
+/// The number, for code of both: the library's function is the host's.
+constexpr double Infinite = std::numeric_limits<double>::infinity();
+
+} // namespace inr

@@ -6,6 +6,7 @@
 #include "Core/Render/BrickRun.h"
 #include "Core/Render/Frame.h"
 #include "Core/Render/Majorants.h"
+#include "Core/Render/OnMiss.h"
 #include "Core/Render/RayGeometry.h"
 #include "Core/Render/SampleShader.h"
 #include "Core/Render/SampleWalker.h"
@@ -26,13 +27,6 @@ struct CachedScene
   MarchSettings settings;
   const Shading* shading;        ///< null: colours as the transfer function gives them
   const BlockVisibility* blocks; ///< null: of all blocks samples are taken
-};
-
-/// What a ray does where the brick it wants is not there.
-enum class OnMiss {
-  UseCoarser, ///< read the nearest coarser level that is, and wish for the wanted one
-  Approach,   ///< the same, but wish for the level after the coarser one
-  Stop        ///< wait
 };
 
 } // namespace inr

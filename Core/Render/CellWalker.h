@@ -9,7 +9,6 @@
 #include <glm/common.hpp>
 
 #include <cstdint>
-#include <limits>
 
 namespace inr {
 
@@ -77,10 +76,9 @@ private:
   /// t up to which a grid bounds what LevelOfDetail chooses.
   INR_HOST_DEVICE double endOf(int grid) const
   {
-    constexpr double never = std::numeric_limits<double>::infinity();
     const int level = this->All->coarsestLevel(grid);
     if (level >= this->LastLevel) {
-      return never;
+      return Infinite;
     }
     constexpr double early = 1.0 - 1e-12; // whatever rounding says
     const double largest =
@@ -88,7 +86,7 @@ private:
     if (this->Footprint > largest) {
       return -1;
     }
-    return this->Growth > 0 ? (largest - this->Footprint) / this->Growth : never;
+    return this->Growth > 0 ? (largest - this->Footprint) / this->Growth : Infinite;
   }
 
   INR_HOST_DEVICE void coarsen()

@@ -8,7 +8,6 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
-#include <limits>
 
 namespace inr {
 
@@ -101,8 +100,6 @@ public:
   INR_HOST_DEVICE const glm::dvec3& slope() const { return this->Slope; }
 
 private:
-  static constexpr double Never = std::numeric_limits<double>::infinity();
-
   /// t at which the ray crosses the plane below cell `plane`.
   INR_HOST_DEVICE double faceAt(int axis, std::int64_t plane) const
   {
@@ -122,7 +119,7 @@ private:
     // Which way a ray goes is anybody's guess, so better no branches.
     const bool open = static_cast<int>(this->Slope[axis] == 0) |
                       static_cast<int>(cell == (forward ? this->Last[axis] : 0));
-    return open ? Never : face;
+    return open ? Infinite : face;
   }
 
   INR_HOST_DEVICE void findAxisExit(int axis)
@@ -173,7 +170,7 @@ private:
     return exits[0] <= exits[1] ? (exits[0] <= exits[2] ? 0 : 2) : (exits[1] <= exits[2] ? 1 : 2);
   }
 
-  /// Into the next cell; there is one while Exit is not Never.
+  /// Into the next cell; there is one while Exit is not Infinite.
   INR_HOST_DEVICE void advance()
   {
     const int axis = firstOf(this->AxisExit);

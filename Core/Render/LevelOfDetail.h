@@ -6,7 +6,6 @@
 #include "Core/Render/Ray.h"
 
 #include <cstdint>
-#include <limits>
 
 namespace inr {
 
@@ -59,7 +58,7 @@ public:
   INR_HOST_DEVICE double exit() const
   {
     if (this->Level == this->Last || this->Growth <= 0.0) {
-      return std::numeric_limits<double>::infinity();
+      return Infinite;
     }
     const double footprint = (this->isDithered() ? 2.0 : MixedFrom) * this->Voxel;
     return (footprint - this->Footprint) / this->Growth;

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace inr {
 
@@ -66,7 +65,7 @@ INR_HOST_DEVICE inline double SpotFactor(const Light& light, const glm::dvec3& t
 INR_HOST_DEVICE inline Illumination IlluminationAt(const Light& light, const glm::dvec3& world)
 {
   if (light.kind == LightKind::Directional) {
-    return {-glm::normalize(light.direction), std::numeric_limits<double>::infinity(),
+    return {-glm::normalize(light.direction), Infinite,
             light.color * static_cast<float>(detail::Pi)};
   }
   const glm::dvec3 way = light.position - world;

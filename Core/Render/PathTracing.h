@@ -21,7 +21,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace inr {
 
@@ -156,7 +155,7 @@ INR_HOST_DEVICE inline void GoOn(const PathScene& scene, PathState& path)
   const double g = scene.options.anisotropy;
   path.travel = g == 0 ? AnyDirection(u, turn) : Turn(path.travel, SamplePhaseCosine(g, u), turn);
   path.towardsLight = false;
-  Follow(scene, path, scene.inner.along(path.travel), std::numeric_limits<double>::infinity());
+  Follow(scene, path, scene.inner.along(path.travel), Infinite);
 }
 
 /// Sends the path towards a light; false where that gives nothing.

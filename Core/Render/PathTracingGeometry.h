@@ -8,7 +8,6 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
-#include <limits>
 #include <vector>
 
 namespace inr {
@@ -42,7 +41,7 @@ public:
   /// visible domain (point bounds), the clipping planes and `limit`, a world length. Neither the
   /// camera's near and far planes nor opaque geometry stop it. Its footprint is left at 0.
   INR_HOST_DEVICE Ray ray(const glm::dvec3& from, const glm::dvec3& direction,
-                          double limit = std::numeric_limits<double>::infinity()) const
+                          double limit = Infinite) const
   {
     Ray ray;
     this->aim(ray, from, this->along(direction), limit);
@@ -59,7 +58,7 @@ public:
   /// Makes of `ray` the one above, where it stands: copies of what was written a moment ago wait
   /// for it.
   INR_HOST_DEVICE void aim(Ray& ray, const glm::dvec3& from, const RayDirection& direction,
-                           double limit = std::numeric_limits<double>::infinity()) const
+                           double limit = Infinite) const
   {
     ray.entry = from;
     ray.direction = direction.perT;

@@ -6,8 +6,6 @@
 #include <glm/gtc/type_precision.hpp>
 #include <glm/vec3.hpp>
 
-#include <limits>
-
 namespace inr {
 
 /// A pixel's way through the volume. Parameter t counts from the ray's own entry, in voxels of the
@@ -21,7 +19,7 @@ struct Ray
   double footprint = 0;       ///< edge of the pixel at t = 0, in units of t
   double footprintGrowth = 0; ///< of the footprint per unit of t
   double pieceBegin = 0;      ///< t between which the picture's piece of the medium is
-  double pieceEnd = std::numeric_limits<double>::infinity();
+  double pieceEnd = Infinite;
 
   INR_HOST_DEVICE glm::dvec3 at(double t) const { return this->entry + t * this->direction; }
   /// Every place belongs to one of the pieces that make up the whole.

@@ -27,7 +27,7 @@ struct LineInterval
     } else if (slope < 0) {
       this->end = glm::min(this->end, -value / slope);
     } else if (value < 0) {
-      this->end = -std::numeric_limits<double>::infinity();
+      this->end = -Infinite;
     }
   }
 };
@@ -98,7 +98,7 @@ struct RayView
       ray.length = glm::min(ray.length, ray.pieceEnd) - ray.pieceBegin;
       ray.footprint += ray.footprintGrowth * ray.pieceBegin;
       ray.pieceBegin = 0;
-      ray.pieceEnd = std::numeric_limits<double>::infinity();
+      ray.pieceEnd = Infinite;
     }
     return ray;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/HostDevice.h"
 #include "Core/Render/BrickKernel.h"
 #include "Core/Render/ColorTable.h"
 
@@ -11,11 +12,11 @@ namespace inr {
 
 /// Numbers the lengths of samples: 1, 3, 2, 6, 4, 12, 8 ... steps. This is that of `count`, 1 to 4,
 /// times 2^power steps.
-constexpr int LengthOf(int count, int power)
+INR_HOST_DEVICE constexpr int LengthOf(int count, int power)
 {
   return 2 * power + (count == 3 ? 1 : count == 4 ? 4 : 2 * (count - 1));
 }
-constexpr std::int64_t StepsOf(int length)
+INR_HOST_DEVICE constexpr std::int64_t StepsOf(int length)
 {
   return std::int64_t{length % 2 == 0 ? 1 : 3} << (length / 2);
 }

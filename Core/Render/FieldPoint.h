@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/HostDevice.h"
+
+#include <glm/vec3.hpp>
+
+namespace inr {
+
+/// A place at which a path asks for the field: native point index = voxel + fraction.
+struct FieldPoint
+{
+  glm::ivec3 voxel;
+  glm::vec3 fraction; ///< in [0, 1]
+  int level;          ///< of the hierarchy, 0 = native
+};
+
+/// `index` is a native point index, not negative and within 32 bits.
+INR_HOST_DEVICE inline FieldPoint MakeFieldPoint(const glm::dvec3& index, int level = 0)
+{
+  const glm::ivec3 voxel(index); // not negative, so truncation is floor
+  return {voxel, glm::vec3(index - glm::dvec3(voxel)), level};
+}
+
+} // namespace inr
