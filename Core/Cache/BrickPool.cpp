@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/BrickPool.h"
 
+#include "Core/Cache/Quantisation.h"
 #include "Core/Cache/RangeOfValues.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace inr {
 
@@ -14,23 +12,13 @@ namespace {
 
 constexpr std::int64_t RoomBehind = 64;
 
-/// Zero for a constant brick, else at least the smallest step whose inverse is finite.
-float StepOf(const ValueRange& range, float steps)
-{
-  const float width = range.high - range.low;
-  return width > 0 ? std::max(width / steps, std::numeric_limits<float>::min()) : 0.0f;
-}
-
 template <typename Stored>
 void Quantise(const float* values, std::int64_t count, float low, float step, unsigned char* to)
 {
-  constexpr auto most = static_cast<float>(std::numeric_limits<Stored>::max());
-  const float inverse = step > 0 ? 1.0f / step : 0.0f;
+  const float inverse = InverseOf(step);
   auto* stored = reinterpret_cast<Stored*>(to);
   for (std::int64_t k = 0; k < count; ++k) {
-    const float scaled = (values[k] - low) * inverse + 0.5f;
-    // By way of int, which vectors convert to.
-    stored[k] = static_cast<Stored>(static_cast<int>(scaled < most ? scaled : most));
+    stored[k] = Quantised<Stored>(values[k], low, inverse);
   }
 }
 
@@ -69,7 +57,7 @@ void BrickPool::store(std::int32_t slot, const float* values)
   }
   const ValueRange range = RangeOfValues(values, this->VoxelsPerBrick);
   const bool wide = this->Precision == CachePrecision::Bits16;
-  scale = {range.low, StepOf(range, wide ? 65535.0f : 255.0f)};
+  scale = {range.low, StepOf(range.low, range.high, wide ? 65535.0f : 255.0f)};
   const auto quantise = wide ? Quantise<std::uint16_t> : Quantise<std::uint8_t>;
   quantise(values, this->VoxelsPerBrick, scale.low, scale.step, this->brick(slot));
 }
