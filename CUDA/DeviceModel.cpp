@@ -153,6 +153,22 @@ void DeviceModel::inferBricks(const LaunchPlan& plan, const BrickJob* jobs, std:
   });
 }
 
+void DeviceModel::inferBricks(const LaunchPlan& plan, const BrickJob* jobs, const BrickEnd* end,
+                              float* values, float* scratch, const Stream& stream) const
+{
+  const CurrentDevice current(this->Where.ordinal);
+  if (this->Float) {
+    const FloatBricks kernel{this->Float->view, jobs, 0, values, scratch, end};
+    LaunchKernel(kernel, plan.blocks, 0, stream.get());
+    return;
+  }
+  WithTiles(this->Half->packed.neuronTiles, [&](auto tiles) {
+    const FusedBricks<decltype(tiles)::value> kernel{this->Half->view, plan.shared, jobs, 0, 0,
+                                                     values,           end};
+    LaunchKernel(kernel, plan.blocks, plan.sharedBytes, stream.get());
+  });
+}
+
 std::shared_ptr<const DeviceModel> UploadModel(ModelPointer model, const Device& device,
                                                Precision precision)
 {

@@ -39,6 +39,9 @@ public:
                    float* values, float* scratch, const Stream& stream) const;
   void inferBricks(const LaunchPlan& plan, const BrickJob* jobs, std::int64_t count,
                    std::int64_t items, float* values, float* scratch, const Stream& stream) const;
+  /// The same of as many as are found at `end` by then.
+  void inferBricks(const LaunchPlan& plan, const BrickJob* jobs, const BrickEnd* end, float* values,
+                   float* scratch, const Stream& stream) const;
 
 private:
   struct HalfCopy

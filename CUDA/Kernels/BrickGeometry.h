@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/HierarchyView.h"
 #include "Core/HostDevice.h"
 
 #include <cstdint>
@@ -46,6 +47,38 @@ INR_HOST_DEVICE inline int ItemsAlong(const BrickJob& job, int axis)
 INR_HOST_DEVICE inline std::int64_t ItemsOf(const BrickJob& job)
 {
   return std::int64_t{1} * ItemsAlong(job, 0) * ItemsAlong(job, 1) * ItemsAlong(job, 2);
+}
+
+/// Where a list of jobs ends.
+struct BrickEnd
+{
+  std::int64_t jobs;
+  std::int64_t items;  ///< of all of them
+  std::int64_t values; ///< that they write
+};
+
+/// `layers` layers of a brick, from the `z`-th of its brickDims().z on, behind other jobs.
+INR_HOST_DEVICE inline BrickJob JobOf(const HierarchyView& levels, BrickKey key, std::int64_t z,
+                                      std::int64_t layers, const BrickEnd& end)
+{
+  const BrickId id = IdOf(key);
+  const glm::i64vec3 first = levels.firstVoxel(id);
+  const glm::i64vec3& size = levels.level(id.level).size;
+  BrickJob job{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t dim = levels.brickDims()[axis];
+    const std::int64_t inside = glm::min(dim, size[axis] - first[axis]);
+    const std::int64_t begin = axis == 2 ? glm::min(z, inside - 1) : 0;
+    const std::int64_t voxels = axis == 2 ? layers : dim;
+    job.firstVoxel[axis] = first[axis] + begin;
+    job.levelSize[axis] = size[axis];
+    job.voxels[axis] = static_cast<std::int32_t>(voxels);
+    job.inside[axis] = static_cast<std::int32_t>(glm::min(inside - begin, voxels));
+  }
+  job.points = id.level == 0 ? 1 : 2;
+  job.firstItem = end.items;
+  job.firstValue = end.values;
+  return job;
 }
 
 /// A cube of samples of a job.

@@ -19,15 +19,21 @@ template <int Tiles> struct FusedBricks
   FusedShared shared;
   const BrickJob* jobs;
   std::int64_t jobCount;
-  std::int64_t items; ///< of all jobs
-  float* values;      ///< normalised; NaN where a number left the range of halves
+  std::int64_t items;            ///< of all jobs
+  float* values;                 ///< normalised; NaN where a number left the range of halves
+  const BrickEnd* end = nullptr; ///< where not null, of so many jobs and items instead
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
+    const std::int64_t jobs = this->end != nullptr ? this->end->jobs : this->jobCount;
+    const std::int64_t items = this->end != nullptr ? this->end->items : this->items;
+    if (block.index() >= items) {
+      return;
+    }
     const FusedNetwork network =
         ShareWeights(block, this->model.network, this->shared.keepsWeights);
-    for (std::int64_t k = block.index(); k < this->items; k += block.count()) {
-      const BrickItem item = FindItem(this->jobs, this->jobCount, k);
+    for (std::int64_t k = block.index(); k < items; k += block.count()) {
+      const BrickItem item = FindItem(this->jobs, jobs, k);
       this->locate(block, item);
       this->fetch(block);
       block.warps([&](auto& warp) {
@@ -172,16 +178,21 @@ struct FloatBricks
   FloatModel model;
   const BrickJob* jobs; ///< all of the same number of voxels
   std::int64_t jobCount;
-  float* values;  ///< normalised; NaN where a number left the range of floats
-  float* scratch; ///< as for FloatPoints
+  float* values;                 ///< normalised; NaN where a number left the range of floats
+  float* scratch;                ///< as for FloatPoints
+  const BrickEnd* end = nullptr; ///< where not null, of so many jobs instead
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
+    const std::int64_t jobs = this->end != nullptr ? this->end->jobs : this->jobCount;
+    if (jobs == 0) {
+      return;
+    }
     const std::int32_t* const dims = this->jobs[0].voxels;
     const std::int64_t voxels = std::int64_t{dims[0]} * dims[1] * dims[2];
     block.threads([&](int thread) {
       const ThreadScratch scratch(this->model, this->scratch, block, thread, Threads);
-      for (std::int64_t k = scratch.index(); k < this->jobCount * voxels; k += scratch.threads()) {
+      for (std::int64_t k = scratch.index(); k < jobs * voxels; k += scratch.threads()) {
         const BrickJob& job = this->jobs[k / voxels];
         const auto within = static_cast<std::int32_t>(k % voxels);
         this->values[job.firstValue + within] = this->voxel(job, within, scratch);

@@ -85,22 +85,33 @@ public:
   void inferBricks(const inr::cuda::BrickBatch& batch, float* values) const
   {
     const auto count = static_cast<std::int64_t>(batch.jobs.size());
+    this->inferBricks(batch.jobs.data(), count, batch.items, nullptr, values);
+  }
+  void inferBricks(const inr::cuda::BrickJob* jobs, const inr::cuda::BrickEnd* end,
+                   float* values) const
+  {
+    this->inferBricks(jobs, 0, 0, end, values);
+  }
+
+private:
+  void inferBricks(const inr::cuda::BrickJob* jobs, std::int64_t count, std::int64_t items,
+                   const inr::cuda::BrickEnd* end, float* values) const
+  {
     if (this->Float) {
       std::vector<float> scratch = this->scratch();
-      const inr::cuda::FloatBricks kernel{this->floatView(), batch.jobs.data(), count, values,
-                                          scratch.data()};
+      const inr::cuda::FloatBricks kernel{this->floatView(), jobs, count, values,
+                                          scratch.data(),    end};
       this->Launch.run(kernel, 0);
       return;
     }
     const inr::cuda::FusedShared shared = this->plan(true);
     inr::cuda::WithTiles(this->Half->neuronTiles, [&](auto tiles) {
       const inr::cuda::FusedBricks<decltype(tiles)::value> kernel{
-          this->Half->view(), shared, batch.jobs.data(), count, batch.items, values};
+          this->Half->view(), shared, jobs, count, items, values, end};
       this->Launch.run(kernel, shared.latticeEnd);
     });
   }
 
-private:
   inr::cuda::FusedShared plan(bool bricks) const
   {
     return inr::cuda::PlanShared(*this->Half, bricks, this->Launch.shared, 227 << 10);
