@@ -31,6 +31,11 @@ public:
   {
     return Array<T>(this->Device, Memory::Place::Device, std::max<std::int64_t>(count, 1));
   }
+  /// Throws with figures where that would be too much; see RequireFree.
+  void requireFree(std::int64_t bytes, const char* what) const
+  {
+    RequireFree(this->Device, bytes, what);
+  }
   /// Copies, from memory that may change when this has returned.
   template <class T> void toMachine(T* to, const T* from, std::int64_t count) const
   {

@@ -35,6 +35,7 @@ public:
   {
     return Array<T>(std::max<std::int64_t>(count, 1));
   }
+  void requireFree(std::int64_t /*bytes*/, const char* /*what*/) const {}
   template <class T> void toMachine(T* to, const T* from, std::int64_t count) const
   {
     this->copy(to, from, count);

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/CachePrecision.h"
+#include "Core/Cache/Hierarchy.h"
+
+#include <cstdint>
+
+namespace inr {
+namespace cuda {
+
+/// How many of what a cache in a device's memory has.
+struct CacheLayout
+{
+  static constexpr std::int64_t BytesBehind = 64; ///< the last voxel, for loads of several
+
+  std::int64_t capacity; ///< bricks
+  std::int64_t atOnce;   ///< bricks that are inferred by one launch
+  std::int64_t requests; ///< entries of their table, a power of two
+  std::int64_t pages;    ///< entries of the page table, a power of two
+  std::int64_t bytes;    ///< of everything
+};
+
+/// The largest cache within so many bytes: pool, tables, what ranks, and what infers, whose own
+/// memory takes `inference` of them. Throws Error(InvalidArgument) with figures when that does not
+/// hold BrickCache::FewestBricks.
+CacheLayout LayOutCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes,
+                        std::int64_t inference);
+
+} // namespace cuda
+} // namespace inr
