@@ -19,7 +19,8 @@ struct FrameCounts
   std::uint64_t gradients;
   std::uint64_t scatterings;
   std::uint64_t lightSteps;
-  std::uint64_t levels[32]; ///< samples, or more, of rays that met each
+  static constexpr int MostLevels = 32;
+  std::uint64_t levels[MostLevels]; ///< samples, or more, of rays that met each
 
   INR_HOST_DEVICE void add(const RayCounts& ray)
   {
@@ -30,7 +31,7 @@ struct FrameCounts
     Add(this->gradients, ray.gradients);
     Add(this->scatterings, ray.scatterings);
     Add(this->lightSteps, ray.lightSteps);
-    for (int level = 0; level < 32; ++level) {
+    for (int level = 0; level < MostLevels; ++level) {
       Add(this->levels[level], ray.levels >> level & 1u);
     }
   }

@@ -177,16 +177,15 @@ void AcceleratedField::fail(const Error& error, bool atWork)
 
 /// What cannot be made, whatever the reason, the CPU computes: of models that are wrong, it says so
 /// itself.
-template <class Device, class Make>
-std::shared_ptr<const Device> AcceleratedField::tryTo(const Make& make)
+template <class Make>
+auto AcceleratedField::tryTo(const Make& make) -> decltype(make(std::declval<bool&>()))
 {
   if (this->Failed) {
     return nullptr;
   }
   bool made = false;
   try {
-    std::shared_ptr<const Device> device = make(made);
-    return device;
+    return make(made);
   } catch (const Error& error) {
     this->Failed = Failure{error.what(), made};
     this->Owner->Failed = true;
@@ -196,11 +195,18 @@ std::shared_ptr<const Device> AcceleratedField::tryTo(const Make& make)
   }
 }
 
+std::shared_ptr<AcceleratedRenderer> AcceleratedField::makeRenderer(const glm::i64vec3& dims,
+                                                                    const CacheOptions& options)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->tryTo([&](bool&) { return this->Owner->makeRenderer(this->Source, dims, options); });
+}
+
 std::shared_ptr<const Evaluator> AcceleratedField::evaluator(const Evaluator& cpu)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (!this->Points) {
-    this->Points = this->tryTo<Evaluator>([&](bool& made) {
+    this->Points = this->tryTo([&](bool& made) {
       std::shared_ptr<const Evaluator> device = this->Owner->makeEvaluator(this->Source);
       made = true;
       RequireAgreement(*device, cpu);
@@ -232,7 +238,7 @@ std::shared_ptr<const BrickSource> AcceleratedField::bricks(const BrickSource& c
   if (bricks) {
     return bricks;
   }
-  bricks = this->tryTo<BrickSource>([&](bool& made) {
+  bricks = this->tryTo([&](bool& made) {
     auto device = this->Owner->makeBrickSource(this->Source, cpu.hierarchy());
     made = true;
     RequireAgreement(*device, cpu);

@@ -5,6 +5,7 @@
 #include "Core/Error.h"
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace inr {
@@ -30,13 +31,16 @@ public:
   /// those of `cpu`; null where it fails or has failed.
   std::shared_ptr<const Evaluator> evaluator(const Evaluator& cpu);
   std::shared_ptr<const BrickSource> bricks(const BrickSource& cpu);
+  /// What draws pictures of it; null where the accelerator does not, or fails or has failed.
+  std::shared_ptr<AcceleratedRenderer> makeRenderer(const glm::i64vec3& dims,
+                                                    const CacheOptions& options);
   /// The same, but null where it is not made.
   std::shared_ptr<const BrickSource> madeBricks(const Hierarchy& hierarchy) const;
 
   void fail(const Error& error, bool atWork);
 
 private:
-  template <class Device, class Make> std::shared_ptr<const Device> tryTo(const Make& make);
+  template <class Make> auto tryTo(const Make& make) -> decltype(make(std::declval<bool&>()));
   std::shared_ptr<const BrickSource> findBricks(const Hierarchy& hierarchy) const;
 
   const std::shared_ptr<const Accelerator> Owner;

@@ -9,6 +9,12 @@ namespace inr {
 
 Accelerator::~Accelerator() = default;
 
+std::shared_ptr<AcceleratedRenderer>
+Accelerator::makeRenderer(const ModelPointer&, const glm::i64vec3&, const CacheOptions&) const
+{
+  return nullptr;
+}
+
 std::shared_ptr<AcceleratedField> Accelerator::findLocked(const ModelPointer& model) const
 {
   for (const auto& entry : this->Open) {

@@ -14,6 +14,8 @@
 namespace inr {
 
 class AcceleratedField;
+class AcceleratedRenderer;
+struct CacheOptions;
 
 /// A processor beside the CPU that computes what networks give, such as a GPU. One object is for
 /// all renderers, on any threads, that are to share models in its memory and the bricks that come
@@ -35,6 +37,12 @@ public:
   virtual std::shared_ptr<const Evaluator> makeEvaluator(const ModelPointer& model) const = 0;
   virtual std::shared_ptr<const BrickSource> makeBrickSource(const ModelPointer& model,
                                                              const Hierarchy& hierarchy) const = 0;
+
+  /// What draws pictures of the model, shown with so many voxels, through a cache that stays with
+  /// the accelerator; null, as by default, where it only infers.
+  virtual std::shared_ptr<AcceleratedRenderer> makeRenderer(const ModelPointer& model,
+                                                            const glm::i64vec3& dims,
+                                                            const CacheOptions& options) const;
 
   /// For a renderer: the model is with the accelerator as long as somebody holds the result, which
   /// is the same for all who do.

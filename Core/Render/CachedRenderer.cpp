@@ -14,13 +14,6 @@ namespace inr {
 
 namespace {
 
-/// How many lengths samples may have: up to the coarsest level's, four times as long where it is
-/// faint, and up to what cells ask for.
-int SampleLengths(int levels)
-{
-  return std::max(LengthOf(4, levels - 1), LengthOf(1, LargestCellPower)) + 1;
-}
-
 const CacheOptions& Checked(const CacheOptions& options)
 {
   if (options.bytes < 0 || options.maximumRequests < 1) {

@@ -10,8 +10,6 @@ namespace inr {
 
 namespace {
 
-constexpr double Infinite = std::numeric_limits<double>::infinity();
-
 struct Interval
 {
   double low;

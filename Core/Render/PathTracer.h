@@ -54,6 +54,10 @@ public:
   FrameStatistics trace(const Tile& tile, FieldSampler& sampler, Image& rgba,
                         Image* depth = nullptr) const;
 
+  const Frame& frame() const { return this->Picture; }
+  /// What its paths share.
+  const PathScene& scene() const { return this->Scene; }
+
 private:
   const Frame& Picture;
   std::vector<glm::dvec4> Planes; ///< of Inner

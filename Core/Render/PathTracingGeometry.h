@@ -29,6 +29,8 @@ public:
   InnerRays(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
             std::vector<glm::dvec4>& planes);
 
+  const glm::dvec4* planes() const { return this->Planes; }
+  int planeCount() const { return this->PlaneCount; }
   /// The same with its planes elsewhere.
   InnerRays with(const glm::dvec4* planes) const
   {

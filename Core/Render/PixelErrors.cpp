@@ -12,7 +12,6 @@ namespace inr {
 namespace {
 
 constexpr std::int64_t CellsPerTask = 4096;
-constexpr double Infinite = std::numeric_limits<double>::infinity();
 static_assert(LevelErrors::Coarsest >= LargestCellPower, "what cells ask for is measured");
 
 double LargestOf(const glm::dvec3& edges) { return std::max(edges.x, std::max(edges.y, edges.z)); }

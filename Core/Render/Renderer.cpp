@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Core/Render/AcceleratedFrames.h"
 #include "Core/Render/CachedPaths.h"
 #include "Core/Render/LevelChooser.h"
 #include "Core/Render/TileLoop.h"
@@ -82,6 +83,11 @@ struct Renderer::Implementation
     }
   }
 
+  /// Whether the accelerator draws such a frame itself; it is then known to draw rightly.
+  bool isDrawnElsewhere(const Frame& frame, const std::function<bool()>& keepGoing);
+  /// A small one by both.
+  void proveDrawing(const Frame& frame, const std::function<bool()>& keepGoing);
+
   /// Has it made what frames will ask for, so that it is known beforehand whether it can.
   void tryAccelerator();
 
@@ -104,8 +110,15 @@ struct Renderer::Implementation
   bool chooseLevels(const Frame& frame, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing, MarchSettings& settings);
 
+  MarchSettings settingsFor(const Frame& frame, const RayGeometry& geometry) const;
   FrameStatistics march(const Frame& frame, const PassOutput& output,
                         const std::function<bool()>& keepGoing);
+  FrameStatistics marchCached(const Frame& frame, const RayGeometry& geometry,
+                              MarchSettings& settings, const Shading* shading,
+                              const WorkLimit& limit, const PassOutput& output,
+                              const std::function<bool()>& keepGoing);
+  TracedTiles traceRound(const PathRound& round, const WorkLimit& limit,
+                         const std::function<bool()>& keepGoing);
   FrameStatistics tracePaths(const Frame& frame, const PassOutput& output,
                              const std::function<bool()>& keepGoing);
 
@@ -120,12 +133,13 @@ struct Renderer::Implementation
   Majorants Cells;
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
-  bool Built = false;                   ///< the majorants, for the colours and for `Seen`
-  Blending Seen;                        ///< how pictures are blended that the majorants are for
-  std::vector<float> Surfaces;          ///< of these pictures
-  std::optional<CachedRenderer> Cached; ///< where there is to be a cache
-  std::optional<PathPicture> Paths;     ///< while paths are traced
-  std::optional<LevelChooser> Levels;   ///< once a frame had a tolerance
+  bool Built = false;                     ///< the majorants, for the colours and for `Seen`
+  Blending Seen;                          ///< how pictures are blended that the majorants are for
+  std::vector<float> Surfaces;            ///< of these pictures
+  std::optional<CachedRenderer> Cached;   ///< where there is to be a cache
+  std::optional<AcceleratedFrames> Drawn; ///< and an accelerator
+  std::optional<PathPicture> Paths;       ///< while paths are traced
+  std::optional<LevelChooser> Levels;     ///< once a frame had a tolerance
   std::int64_t MajorantBuilds = 0;
 };
 
@@ -147,12 +161,16 @@ std::int64_t Renderer::majorantBuilds() const { return this->Self->MajorantBuild
 
 std::int64_t Renderer::cacheBytes() const
 {
-  return this->Self->Cached ? this->Self->Cached->store().budget().bytes() : 0;
+  const std::optional<AcceleratedFrames>& drawn = this->Self->Drawn;
+  const std::int64_t elsewhere = drawn ? drawn->bytes() : 0;
+  return elsewhere + (this->Self->Cached ? this->Self->Cached->store().budget().bytes() : 0);
 }
 
 std::int64_t Renderer::cachedBricks() const
 {
-  return this->Self->Cached ? this->Self->Cached->store().mapped() : 0;
+  const std::optional<AcceleratedFrames>& drawn = this->Self->Drawn;
+  const std::int64_t elsewhere = drawn ? drawn->bricks() : 0;
+  return elsewhere + (this->Self->Cached ? this->Self->Cached->store().mapped() : 0);
 }
 
 std::shared_ptr<const KeptBricks> Renderer::keepBricks() const
@@ -196,6 +214,8 @@ void Renderer::Implementation::tryAccelerator()
   if (this->Cached) {
     const Hierarchy& levels = this->Cached->store().cache().hierarchy();
     this->Accelerated->bricks(*MakeBrickSource(this->Field, levels));
+    this->Drawn.emplace(this->Accelerated,
+                        this->Accelerated->makeRenderer(this->Volume.dims, this->Options.cache));
   } else {
     this->Accelerated->evaluator(*this->Field);
   }
@@ -212,6 +232,9 @@ void Renderer::Implementation::build()
   }
   this->Surfaces = VisibleSurfaces(this->Seen.isosurfaces, this->Volume, this->Colors->lookup());
   this->Cells.update(VisibilityFor(this->projector(), *this->Colors), this->Threads);
+  if (this->Drawn) {
+    this->Drawn->setColors(this->Cells, this->Colors->lookup());
+  }
   ++this->MajorantBuilds;
   this->Built = true;
 }
@@ -277,11 +300,9 @@ bool Renderer::Implementation::chooseLevels(const Frame& frame, const WorkLimit&
   return true;
 }
 
-FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
-                                                const std::function<bool()>& keepGoing)
+MarchSettings Renderer::Implementation::settingsFor(const Frame& frame,
+                                                    const RayGeometry& geometry) const
 {
-  this->Paths.reset();
-  const RayGeometry geometry(frame, this->Volume.dims);
   MarchSettings settings;
   settings.dims = glm::dvec3(this->Volume.dims);
   settings.step = frame.sampleDistance;
@@ -292,24 +313,94 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
     settings.crops = true;
     settings.cropping = *frame.cropping;
   }
-  const std::optional<Shading> shading = ShadingOf(frame);
-  const Shading* lit = shading ? &*shading : nullptr;
-  if (!this->Cached) {
-    return this->renderUncached(frame, geometry, settings, lit, output, keepGoing);
-  }
+  return settings;
+}
+
+FrameStatistics
+Renderer::Implementation::marchCached(const Frame& frame, const RayGeometry& geometry,
+                                      MarchSettings& settings, const Shading* shading,
+                                      const WorkLimit& limit, const PassOutput& output,
+                                      const std::function<bool()>& keepGoing)
+{
   const BrickStore::Call call = this->Cached->call();
-  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
   const std::int64_t measured = this->measuredPoints();
   const bool final = !this->choosesLevels(frame, settings) ||
                      this->chooseLevels(frame, limit, keepGoing, settings);
   Frame meanwhile = frame; // until all is measured, the picture is as by distance
   meanwhile.levelOfDetailScale = final ? frame.levelOfDetailScale : 1.0;
   FrameStatistics statistics = this->Cached->render(meanwhile, geometry, this->Cells, *this->Colors,
-                                                    settings, lit, limit, output, keepGoing);
+                                                    settings, shading, limit, output, keepGoing);
   statistics.complete = statistics.complete && final;
   statistics.work.bricks = call.done();
   statistics.work.networkSamples += this->measuredPoints() - measured;
   return statistics;
+}
+
+FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
+                                                const std::function<bool()>& keepGoing)
+{
+  this->Paths.reset();
+  const RayGeometry geometry(frame, this->Volume.dims);
+  MarchSettings settings = this->settingsFor(frame, geometry);
+  const std::optional<Shading> shading = ShadingOf(frame);
+  const Shading* lit = shading ? &*shading : nullptr;
+  if (!this->Cached) {
+    return this->renderUncached(frame, geometry, settings, lit, output, keepGoing);
+  }
+  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+  if (!this->choosesLevels(frame, settings) && this->isDrawnElsewhere(frame, keepGoing)) {
+    const std::optional<FrameStatistics> statistics = this->Drawn->march(
+        frame, geometry, settings, this->Colors->lookup(), lit, limit, output, keepGoing);
+    if (statistics) {
+      return *statistics;
+    }
+  }
+  return this->marchCached(frame, geometry, settings, lit, limit, output, keepGoing);
+}
+
+bool Renderer::Implementation::isDrawnElsewhere(const Frame& frame,
+                                                const std::function<bool()>& keepGoing)
+{
+  if (this->Drawn && this->Drawn->draws(frame) && this->Drawn->needsProof()) {
+    this->proveDrawing(frame, keepGoing);
+  }
+  return this->Drawn && this->Drawn->draws(frame);
+}
+
+void Renderer::Implementation::proveDrawing(const Frame& frame,
+                                            const std::function<bool()>& keepGoing)
+{
+  constexpr int edge = 24; // pixels: little has to be decoded for them
+  Frame small = frame;
+  small.mode = RenderMode::RayMarching;
+  small.width = small.height = edge;
+  small.opaqueDepth = nullptr;
+  small.timeLimit = 0;
+  small.levelOfDetailScale = std::max(frame.levelOfDetailScale, 1.0);
+  small.errorTolerance.reset();
+  const RayGeometry geometry(small, this->Volume.dims);
+  MarchSettings settings = this->settingsFor(small, geometry);
+  const std::optional<Shading> shading = ShadingOf(small);
+  const Shading* lit = shading ? &*shading : nullptr;
+  const WorkLimit limit(0, this->Options.deterministic);
+  Image drawn(edge, edge, 4);
+  if (this->Drawn->march(small, geometry, settings, this->Colors->lookup(), lit, limit,
+                         {drawn, nullptr}, keepGoing)) {
+    Image truth(edge, edge, 4);
+    this->marchCached(small, geometry, settings, lit, limit, {truth, nullptr}, keepGoing);
+    this->Drawn->prove(drawn, truth);
+  }
+}
+
+TracedTiles Renderer::Implementation::traceRound(const PathRound& round, const WorkLimit& limit,
+                                                 const std::function<bool()>& keepGoing)
+{
+  if (this->Drawn && this->Drawn->draws(round.tracer.frame())) {
+    if (std::optional<TracedTiles> traced = this->Drawn->tracePaths(round, limit, keepGoing)) {
+      return std::move(*traced);
+    }
+  }
+  return this->Cached->tracePaths(round, limit, keepGoing);
 }
 
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
@@ -319,19 +410,18 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
     this->Paths.emplace();
   }
   PathMedium medium{this->Volume.dims, this->Cells, this->Colors->lookup()};
+  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
   if (!this->Cached) {
     const TraceTiles trace = [&](const PathRound& round) {
       return TraceWithNetwork(round, *this->Samples, this->Volume.dims, this->Threads, keepGoing);
     };
-    const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
     return this->Paths->advance(frame, medium, trace, limit, output);
   }
-  CachedRenderer& cached = *this->Cached;
-  const BrickStore::Call call = cached.call();
-  medium.levels = cached.store().cache().hierarchy().levels();
-  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+  this->isDrawnElsewhere(frame, keepGoing); // is found out beforehand
+  const BrickStore::Call call = this->Cached->call();
+  medium.levels = this->Cached->store().cache().hierarchy().levels();
   const TraceTiles trace = [&](const PathRound& round) {
-    return cached.tracePaths(round, limit, keepGoing);
+    return this->traceRound(round, limit, keepGoing);
   };
   FrameStatistics statistics = this->Paths->advance(frame, medium, trace, limit, output);
   statistics.work.bricks = call.done();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/StepTable.h"
 
+#include "Core/Render/CellBlock.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -51,6 +53,11 @@ glm::vec4 Corrected(const glm::vec4& entry, double length)
 }
 
 } // namespace
+
+int SampleLengths(int levels)
+{
+  return std::max(LengthOf(4, levels - 1), LengthOf(1, LargestCellPower)) + 1;
+}
 
 StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
     : StepLength(stepLength), Lengths(lengths)

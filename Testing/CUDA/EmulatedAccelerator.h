@@ -3,15 +3,28 @@
 // The GPU's kernels as an accelerator for renderers, run on the host.
 #pragma once
 
+#include "CUDA/DeviceCache.h"
+#include "CUDA/DeviceRenderer.h"
 #include "Core/Cache/Accelerator.h"
 #include "Testing/CUDA/Emulated.h"
+#include "Testing/CUDA/EmulatedInference.h"
+#include "Testing/CUDA/HostMachine.h"
 
 #include <string>
+
+/// What an accelerator does.
+enum class Duty {
+  Infers,        ///< bricks and samples
+  InfersAndDraws ///< and pictures, too
+};
 
 class EmulatedAccelerator : public inr::Accelerator
 {
 public:
-  explicit EmulatedAccelerator(inr::cuda::Precision precision) : Kind(precision) {}
+  explicit EmulatedAccelerator(inr::cuda::Precision precision, Duty duty = Duty::Infers,
+                               HostLaunch launch = {})
+      : Kind(precision), Does(duty), Launch(launch)
+  {}
 
   std::string name() const override { return "CUDA, emulated"; }
 
@@ -24,12 +37,29 @@ public:
   {
     return std::make_shared<EmulatedBricks>(this->on(model), hierarchy);
   }
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeRenderer(const inr::ModelPointer& model, const glm::i64vec3& dims,
+               const inr::CacheOptions& options) const override
+  {
+    if (this->Does == Duty::Infers) {
+      return nullptr;
+    }
+    using Cache = inr::cuda::DeviceCache<HostMachine, EmulatedInference>;
+    using Store = inr::cuda::DeviceStore<HostMachine, Cache>;
+    auto store = std::make_shared<Store>(
+        this->Launch, EmulatedInference(this->on(model)),
+        inr::Hierarchy(dims, options.brickSize), options.precision, options.bytes);
+    return std::make_shared<inr::cuda::DeviceRenderer<HostMachine, Cache>>(std::move(store),
+                                                                           options);
+  }
 
 private:
   std::shared_ptr<const EmulatedModel> on(const inr::ModelPointer& model) const
   {
-    return std::make_shared<EmulatedModel>(model, this->Kind, HostLaunch());
+    return std::make_shared<EmulatedModel>(model, this->Kind, this->Launch);
   }
 
   inr::cuda::Precision Kind;
+  Duty Does;
+  HostLaunch Launch;
 };

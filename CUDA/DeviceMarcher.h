@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "CUDA/DeviceColors.h"
+#include "CUDA/DevicePicture.h"
+#include "CUDA/Kernels/MarchKernels.h"
+#include "CUDA/WindowedRays.h"
+#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/CachedRenderer.h"
+#include "Core/Render/KeptFrame.h"
+#include "Core/Render/WorkLimit.h"
+
+namespace inr {
+namespace cuda {
+
+/// Ray-marched frames by a machine's kernels; see AcceleratedRenderer.
+template <class Machine, class Cache> class DeviceMarcher
+{
+public:
+  DeviceMarcher(Machine& machine, Cache& cache, const CacheOptions& options)
+      : Where(machine), Bricks(cache), Options(options), Picture(machine),
+        Scene(machine.template allocate<RenderScene>(1)), Rays(machine, cache, MostRays)
+  {}
+
+  FrameStatistics march(const MarchJob& job, const DeviceColors<Machine>& colors,
+                        const WorkLimit& limit, const PassOutput& output,
+                        const std::function<bool()>& keepGoing)
+  {
+    Belongings<Machine> arrays;
+    const RenderScene scene = this->sceneOf(job, colors, arrays);
+    this->Where.toMachine(this->Scene.data(), &scene, 1);
+    this->Picture.resize(std::int64_t{job.frame.width} * job.frame.height);
+    const bool inTime = limit.isLimited() || this->Options.onlyWhatFits;
+    // What wants more than the cache holds never comes to its end by what is loaded in between.
+    const bool again = this->Overfull && this->Overfull->isOf(job.frame);
+    FrameStatistics statistics = inTime && !(again && !this->Options.onlyWhatFits)
+                                     ? this->marchInTime(job.frame, limit, keepGoing)
+                                     : this->marchComplete(job.frame, keepGoing);
+    this->Picture.copyTo(output.rgba.pixels.data(),
+                         output.depth != nullptr ? output.depth->pixels.data() : nullptr,
+                         output.samples != nullptr ? output.samples->pixels.data() : nullptr);
+    return statistics;
+  }
+
+  /// For when colours change.
+  void forget() { this->Overfull.reset(); }
+
+private:
+  static constexpr std::int64_t MostRays = 1 << 18; ///< some 50 MB of their progress
+
+  RenderScene sceneOf(const MarchJob& job, const DeviceColors<Machine>& colors,
+                      Belongings<Machine>& arrays)
+  {
+    const Frame& frame = job.frame;
+    RenderScene scene{};
+    scene.rays = job.geometry.view();
+    scene.rays.opaqueDepth =
+        arrays.put(this->Where, frame.opaqueDepth, std::int64_t{frame.width} * frame.height);
+    scene.rays.planes = arrays.put(this->Where, scene.rays.planes, scene.rays.planeCount);
+    scene.rays.piece = arrays.put(this->Where, scene.rays.piece, scene.rays.pieceCount);
+    scene.streams = StreamsOf(frame);
+    scene.majorants = colors.majorants();
+    scene.colors = colors.lookup();
+    scene.settings = job.settings;
+    scene.steps = job.steps.lookup();
+    scene.steps.entries = arrays.put(this->Where, scene.steps.entries, 4 * job.steps.count());
+    scene.levelOfDetailScale = frame.levelOfDetailScale;
+    scene.lit = job.shading != nullptr;
+    if (scene.lit) {
+      scene.shading = job.shading->view();
+      scene.shading.lights =
+          arrays.put(this->Where, scene.shading.lights, scene.shading.lightCount);
+      scene.shading.constant =
+          arrays.put(this->Where, scene.shading.constant, scene.shading.constantCount);
+    }
+    return scene;
+  }
+
+  MarchRays kernel(OnMiss onMiss) const
+  {
+    MarchRays kernel{};
+    kernel.scene = this->Scene.data();
+    kernel.onMiss = onMiss;
+    kernel.picture = this->Picture.view();
+    kernel.counts = this->Picture.counts();
+    return kernel;
+  }
+
+  FrameStatistics marchComplete(const Frame& frame, const std::function<bool()>& keepGoing)
+  {
+    const Timer timer;
+    this->Picture.clearCounts();
+    this->Rays.runToEnd(this->kernel(OnMiss::Stop), {frame.width, frame.height, nullptr, 0},
+                        keepGoing);
+    FrameStatistics statistics = this->Picture.statistics();
+    statistics.complete = true;
+    statistics.marchSeconds = timer.seconds();
+    return statistics;
+  }
+
+  /// As far as the bricks are there; then some more come in, and once more while there is time.
+  FrameStatistics marchInTime(const Frame& frame, const WorkLimit& limit,
+                              const std::function<bool()>& keepGoing)
+  {
+    const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
+    const std::int64_t most =
+        limit.isLimited() ? this->Options.maximumRequests : this->Bricks.capacity();
+    while (true) {
+      RequireGoingOn(keepGoing);
+      const Timer timer;
+      this->Picture.clearCounts();
+      this->Bricks.beginFrame();
+      this->Rays.runOnce(this->kernel(onMiss), {frame.width, frame.height, nullptr, 0});
+      FrameStatistics statistics = this->Picture.statistics();
+      statistics.marchSeconds = timer.seconds();
+      const auto loaded = this->Bricks.load(most, this->Options.ranking);
+      const bool full = loaded.full && loaded.loaded == 0;
+      statistics.complete = loaded.requested == 0 || (this->Options.onlyWhatFits && full);
+      if (full && !this->Options.onlyWhatFits) {
+        this->Overfull.emplace(frame);
+      }
+      if (statistics.complete || full || limit.endsWithin(statistics.marchSeconds)) {
+        return statistics;
+      }
+    }
+  }
+
+  Machine& Where;
+  Cache& Bricks;
+  CacheOptions Options;
+  DevicePicture<Machine> Picture;
+  typename Machine::template Array<RenderScene> Scene;
+  WindowedRays<Machine, Cache, RayProgress> Rays;
+  std::optional<KeptFrame> Overfull; ///< the latest frame that wanted more than the cache holds
+};
+
+} // namespace cuda
+} // namespace inr

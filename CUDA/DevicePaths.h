@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "CUDA/DeviceColors.h"
+#include "CUDA/DevicePicture.h"
+#include "CUDA/Kernels/PathKernels.h"
+#include "CUDA/WindowedRays.h"
+#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/CachedRenderer.h"
+#include "Core/Render/WorkLimit.h"
+
+#include <vector>
+
+namespace inr {
+namespace cuda {
+
+/// Path-traced frames by a machine's kernels; see AcceleratedRenderer.
+template <class Machine, class Cache> class DevicePaths
+{
+public:
+  DevicePaths(Machine& machine, Cache& cache, const CacheOptions& options)
+      : Where(machine), Bricks(cache), Options(options), Picture(machine),
+        Scene(machine.template allocate<PathScene>(1)), Paths(machine, cache, MostPaths)
+  {}
+
+  TracedTiles trace(const PathRound& round, const DeviceColors<Machine>& colors,
+                    const WorkLimit& limit, const std::function<bool()>& keepGoing)
+  {
+    const PathScene& given = round.tracer.scene();
+    Belongings<Machine> arrays;
+    const PathScene scene = this->sceneOf(given, colors, arrays);
+    this->Where.toMachine(this->Scene.data(), &scene, 1);
+    const int width = given.rays.width;
+    const int height = given.rays.height;
+    const Tiling tiling(width, height);
+    this->Picture.resize(std::int64_t{width} * height);
+    this->Picture.clearCounts();
+    const std::vector<std::uint32_t> pixels = PixelsOf(round, tiling, width);
+    const RayOrder order{width, height, this->listed(pixels, arrays),
+                         static_cast<std::int64_t>(pixels.size())};
+    std::vector<std::uint32_t> misses(static_cast<std::size_t>(tiling.count()), 0);
+    TracePaths kernel = this->kernel();
+    kernel.tileMisses = arrays.put(this->Where, misses.data(), tiling.count());
+    this->Overfull = this->Overfull && !round.first;
+    const bool waits = !this->Options.onlyWhatFits && (!limit.isLimited() || this->Overfull);
+    const Timer timer;
+    TracedTiles traced =
+        waits ? this->traceToEnd(kernel, order, keepGoing) : this->traceOnce(kernel, order, limit);
+    traced.seconds = timer.seconds();
+    this->Where.toHost(misses.data(), kernel.tileMisses, tiling.count());
+    this->finish(round, tiling, misses, traced);
+    return traced;
+  }
+
+  /// For when colours change.
+  void forget() { this->Overfull = false; }
+
+private:
+  static constexpr std::int64_t MostPaths = 1 << 17; ///< some 100 MB of their progress
+
+  PathScene sceneOf(const PathScene& given, const DeviceColors<Machine>& colors,
+                    Belongings<Machine>& arrays)
+  {
+    PathScene scene = given;
+    const std::int64_t pixels = std::int64_t{given.rays.width} * given.rays.height;
+    scene.rays.opaqueDepth = arrays.put(this->Where, given.rays.opaqueDepth, pixels);
+    scene.rays.planes = arrays.put(this->Where, given.rays.planes, given.rays.planeCount);
+    scene.rays.piece = arrays.put(this->Where, given.rays.piece, given.rays.pieceCount);
+    scene.inner =
+        given.inner.with(arrays.put(this->Where, given.inner.planes(), given.inner.planeCount()));
+    scene.majorants = colors.majorants();
+    scene.colors = colors.lookup();
+    scene.lights = arrays.put(this->Where, given.lights, given.lightCount);
+    return scene;
+  }
+
+  TracePaths kernel() const
+  {
+    TracePaths kernel{};
+    kernel.scene = this->Scene.data();
+    kernel.picture = this->Picture.view();
+    kernel.tileEdge = Tiling::Edge;
+    kernel.counts = this->Picture.counts();
+    return kernel;
+  }
+
+  /// The pixels of a round's tiles; none where these are all.
+  static std::vector<std::uint32_t> PixelsOf(const PathRound& round, const Tiling& tiling,
+                                             int width)
+  {
+    std::vector<std::uint32_t> pixels;
+    if (round.whole) {
+      return pixels;
+    }
+    for (const std::int64_t number : round.tiles) {
+      const Tile tile = tiling.tile(number);
+      for (int y = tile.y; y < tile.y + tile.height; ++y) {
+        for (int x = tile.x; x < tile.x + tile.width; ++x) {
+          pixels.push_back(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) +
+                           static_cast<std::uint32_t>(x));
+        }
+      }
+    }
+    return pixels;
+  }
+
+  const std::uint32_t* listed(const std::vector<std::uint32_t>& pixels, Belongings<Machine>& arrays)
+  {
+    return arrays.put(this->Where, pixels.data(), static_cast<std::int64_t>(pixels.size()));
+  }
+
+  TracedTiles traceToEnd(TracePaths kernel, const RayOrder& order,
+                         const std::function<bool()>& keepGoing)
+  {
+    kernel.onMiss = OnMiss::Stop;
+    this->Paths.runToEnd(kernel, order, keepGoing);
+    return {};
+  }
+
+  /// With what is there, and then some more comes in.
+  TracedTiles traceOnce(TracePaths kernel, const RayOrder& order, const WorkLimit& limit)
+  {
+    kernel.onMiss =
+        this->Options.preloading && limit.isLimited() ? OnMiss::Approach : OnMiss::UseCoarser;
+    this->Bricks.beginFrame();
+    this->Paths.runOnce(kernel, order);
+    const std::int64_t most =
+        limit.isLimited() ? this->Options.maximumRequests : this->Bricks.capacity();
+    const auto loaded = this->Bricks.load(most, this->Options.ranking);
+    const bool full = loaded.full && loaded.loaded == 0;
+    this->Overfull = this->Overfull || full;
+    TracedTiles traced;
+    traced.final = full && this->Options.onlyWhatFits;
+    return traced;
+  }
+
+  /// The tiles' pixels to the host, and what was counted: all of it with the first tile.
+  void finish(const PathRound& round, const Tiling& tiling,
+              const std::vector<std::uint32_t>& misses, TracedTiles& traced)
+  {
+    traced.tiles.resize(round.tiles.size());
+    if (!traced.tiles.empty()) {
+      traced.tiles.front() = this->Picture.statistics();
+    }
+    Image rgba(round.output.rgba.width, round.output.rgba.height, 4);
+    Image depth(rgba.width, rgba.height, 1);
+    this->Picture.copyTo(rgba.pixels.data(), depth.pixels.data(), nullptr);
+    for (std::size_t k = 0; k < round.tiles.size(); ++k) {
+      traced.tiles[k].missed = misses[static_cast<std::size_t>(round.tiles[k])];
+      const Tile tile = tiling.tile(round.tiles[k]);
+      CopyTile(rgba, tile, round.output.rgba);
+      if (round.output.depth != nullptr) {
+        CopyTile(depth, tile, *round.output.depth);
+      }
+    }
+  }
+
+  static void CopyTile(const Image& from, const Tile& tile, Image& to)
+  {
+    for (int y = tile.y; y < tile.y + tile.height; ++y) {
+      std::copy_n(from.pixel(tile.x, y), std::int64_t{from.channels} * tile.width,
+                  to.pixel(tile.x, y));
+    }
+  }
+
+  Machine& Where;
+  Cache& Bricks;
+  CacheOptions Options;
+  DevicePicture<Machine> Picture;
+  typename Machine::template Array<PathScene> Scene;
+  WindowedRays<Machine, Cache, PathProgress> Paths;
+  bool Overfull = false; ///< the present picture wants more than the cache holds
+};
+
+} // namespace cuda
+} // namespace inr

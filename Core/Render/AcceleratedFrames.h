@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/AcceleratedField.h"
+#include "Core/Render/AcceleratedRenderer.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace inr {
+
+/// A renderer's frames, as far as an accelerator draws them: until that fails. Then, within the
+/// call, all is left to the CPU.
+class AcceleratedFrames
+{
+public:
+  /// `renderer` may be null: nothing is drawn then.
+  AcceleratedFrames(std::shared_ptr<AcceleratedField> field,
+                    std::shared_ptr<AcceleratedRenderer> renderer)
+      : Field(std::move(field)), Device(std::move(renderer))
+  {}
+
+  /// Whether it draws such a frame: what is composited or projected, or traced, without translucent
+  /// layers.
+  bool draws(const Frame& frame) const;
+  /// See AcceleratedRenderer.
+  void setColors(const Majorants& majorants, const ColorLookup& colors);
+
+  /// A picture, or nothing where the accelerator has failed. `shading` may be null.
+  std::optional<FrameStatistics> march(const Frame& frame, const RayGeometry& geometry,
+                                       const MarchSettings& settings, const ColorLookup& colors,
+                                       const Shading* shading, const WorkLimit& limit,
+                                       const PassOutput& output,
+                                       const std::function<bool()>& keepGoing);
+  std::optional<TracedTiles> tracePaths(const PathRound& round, const WorkLimit& limit,
+                                        const std::function<bool()>& keepGoing);
+
+  /// Kernels that nobody has seen at work on a device like this one are not to be trusted unseen:
+  /// before the first picture, a small one is drawn twice.
+  bool needsProof() const { return this->Device && !this->Proven; }
+  /// That by both; gives the accelerator up where it drew another one.
+  void prove(const Image& drawn, const Image& cpu);
+
+  std::int64_t bytes() const { return this->Device ? this->Device->bytes() : 0; }
+  std::int64_t bricks() const { return this->Device ? this->Device->bricks() : 0; }
+
+private:
+  /// Whether call() has succeeded.
+  bool succeeds(const std::function<void()>& call);
+
+  std::shared_ptr<AcceleratedField> Field;
+  std::shared_ptr<AcceleratedRenderer> Device;
+  std::optional<StepTable> Steps;
+  bool Proven = false;
+};
+
+} // namespace inr

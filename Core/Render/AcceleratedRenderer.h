@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Render/PathPicture.h"
+#include "Core/Render/StepTable.h"
+
+#include <cstdint>
+#include <functional>
+
+namespace inr {
+
+class WorkLimit;
+
+/// A frame whose rays are to be marched.
+struct MarchJob
+{
+  const Frame& frame;
+  const RayGeometry& geometry;
+  const MarchSettings& settings;
+  const StepTable& steps;
+  const Shading* shading; ///< null: colours as the transfer function gives them
+};
+
+/// Draws frames of a model through a cache of its own, in the CPU's place: an accelerator's, on
+/// which cache, rays and paths stay. For one renderer, and one call at a time.
+///
+/// Pictures are those of the CPU but for rounding, and for what is missing in pictures that a time
+/// limit cuts short. All throw Error(Device) where the accelerator fails, or has no memory; it is
+/// of no use any more then.
+class AcceleratedRenderer
+{
+public:
+  virtual ~AcceleratedRenderer() = default;
+
+  /// Copies what follows is drawn with. `majorants` are of `colors` and how frames are blended.
+  virtual void setColors(const Majorants& majorants, const ColorLookup& colors) = 0;
+
+  /// As Renderer::render, of frames without translucent layers that are composited or projected.
+  virtual FrameStatistics march(const MarchJob& job, const WorkLimit& limit,
+                                const PassOutput& output,
+                                const std::function<bool()>& keepGoing) = 0;
+  /// See TraceTiles; no translucent layers either.
+  virtual TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,
+                                 const std::function<bool()>& keepGoing) = 0;
+
+  /// The levels that there are.
+  virtual int levels() const = 0;
+  /// Of the accelerator's memory, by its cache, and bricks in there.
+  virtual std::int64_t bytes() const = 0;
+  virtual std::int64_t bricks() const = 0;
+};
+
+} // namespace inr
