@@ -33,7 +33,7 @@ constexpr std::int64_t SelectionSharedBytes = SelectionChunk * sizeof(RankEntry)
 
 INR_HOST_DEVICE inline std::int64_t SelectionChunks(std::int64_t entries)
 {
-  return (entries + SelectionChunk - 1) / SelectionChunk;
+  return entries > SelectionChunk ? (entries + SelectionChunk - 1) / SelectionChunk : 1;
 }
 
 /// Entries that a pass leaves where each chunk leaves `most`.
