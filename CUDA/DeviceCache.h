@@ -21,7 +21,8 @@ namespace cuda {
 ///
 /// As with Core's BrickCache, time runs in frames: during one, kernels find, view, touch and
 /// request; between frames load changes what is mapped. What is done is done in the machine's
-/// order, and only load waits for it. After an Error(Device) it is of no use any more.
+/// order, and only load and finishLoad wait for it. After an Error(Device) it is of no use any
+/// more.
 template <class Machine, class Inference> class DeviceCache
 {
 public:
@@ -90,20 +91,48 @@ public:
   /// are more to begin with, and that no voxel is left for Core to compute.
   Loaded load(std::int64_t most, bool byContribution)
   {
+    this->finishLoad();
     Loaded all{};
     for (bool more = true; more;) {
       const std::int64_t wanted = std::min(most - all.loaded, this->Layout.atOnce);
-      this->rank(wanted, byContribution);
-      const CacheCounts counts = this->loadRanked(wanted);
-      all.requested = static_cast<std::int64_t>(counts.requests.bricks);
-      all.overflowed = static_cast<std::int64_t>(counts.requests.overflowed);
-      all.loaded += counts.end.jobs;
-      all.repaired += static_cast<std::int64_t>(counts.marked);
-      all.full = counts.end.jobs < counts.wanted;
-      more = counts.end.jobs == wanted && all.loaded < most;
+      this->list(wanted, byContribution);
+      this->infer(this->Where);
+      const Loaded some = this->storeListed(wanted);
+      more = some.loaded == wanted && all.loaded + wanted < most;
+      all = {some.requested, some.overflowed, all.loaded + some.loaded,
+             all.repaired + some.repaired, some.full};
     }
     this->clearRequests();
     return all;
+  }
+
+  /// The same, of at most CacheLayout::atOnce bricks, in two steps: `beside`, another machine with
+  /// the same memory, infers while this one goes on with frames. Nothing is waited for. Bricks
+  /// that are on their way are not known to be: who still wants them asks for them again, which
+  /// does no harm.
+  void beginLoad(Machine& beside, std::int64_t most, bool byContribution)
+  {
+    this->finishLoad();
+    this->Listed = std::min(most, this->Layout.atOnce);
+    this->list(this->Listed, byContribution);
+    this->clearRequests();
+    beside.after(this->Where);
+    this->infer(beside);
+    this->Beside = &beside;
+  }
+  bool isLoading() const { return this->Beside != nullptr; } ///< begun and not finished
+  /// Whether finishLoad would not wait for bricks to be inferred.
+  bool hasInferred() const { return !this->isLoading() || this->Beside->isIdle(); }
+  /// Maps what was begun, if anything was, in the place of nothing that the present frame uses.
+  /// Waits for it, as load does.
+  Loaded finishLoad()
+  {
+    if (!this->isLoading()) {
+      return {};
+    }
+    this->Where.after(*std::exchange(this->Beside, nullptr));
+    this->findSlots(this->Listed); // others than they were: frames have used some since
+    return this->storeListed(this->Listed);
   }
 
   /// Forgets all bricks but the coarsest, those of the present frame included.
@@ -172,34 +201,52 @@ private:
     return levels;
   }
 
-  /// Which bricks come in and which slots may take them.
-  void rank(std::int64_t most, bool byContribution)
+  /// Slots that may take other bricks.
+  void findSlots(std::int64_t most)
   {
-    const Selector<Machine>& selector = this->Tables.selector;
-    selector.select(this->Where, WantedBricks{this->view(), byContribution}, this->Layout.requests,
-                    most, this->Tables.bricks.data());
-    selector.select(this->Where, ReplaceableSlots{this->Tables.uses.data(), this->Frame, Pinned},
-                    this->Layout.capacity, most, this->Tables.slots.data());
+    this->Tables.selector.select(this->Where,
+                                 ReplaceableSlots{this->Tables.uses.data(), this->Frame, Pinned},
+                                 this->Layout.capacity, most, this->Tables.slots.data());
   }
 
-  CacheCounts loadRanked(std::int64_t most)
+  /// The bricks that are to come in, as long as there are slots for them.
+  void list(std::int64_t most, bool byContribution)
   {
-    const ListBricks list{this->view().hierarchy,    this->Tables.bricks.data(),
-                          this->Tables.slots.data(), most,
-                          this->Tables.jobs.data(),  this->Tables.counts.data()};
-    this->Where.run(list, ListBricks::Threads, ListBricks::SharedBytes);
-    this->Infer.infer(this->Where, this->Tables.jobs.data(), &this->Tables.counts.data()->end,
+    this->Tables.selector.select(this->Where, WantedBricks{this->view(), byContribution},
+                                 this->Layout.requests, most, this->Tables.bricks.data());
+    this->findSlots(most);
+    this->listRanked(most);
+  }
+
+  void listRanked(std::int64_t most)
+  {
+    const ListBricks kernel{this->view().hierarchy,    this->Tables.bricks.data(),
+                            this->Tables.slots.data(), most,
+                            this->Tables.jobs.data(),  this->Tables.counts.data()};
+    this->Where.run(kernel, ListBricks::Threads, ListBricks::SharedBytes);
+  }
+
+  void infer(Machine& machine)
+  {
+    this->Infer.infer(machine, this->Tables.jobs.data(), &this->Tables.counts.data()->end,
                       this->Tables.values.data());
+  }
+
+  Loaded storeListed(std::int64_t most)
+  {
     this->store(most);
     this->map();
     CacheCounts counts{};
     this->Where.toHost(&counts, this->Tables.counts.data(), 1);
+    const auto stored = static_cast<std::int64_t>(counts.stored);
     if (counts.marked > 0) {
-      this->repair(counts.end.jobs);
+      this->repair(stored);
       this->store(most);
     }
-    this->Mapped = std::min(this->Mapped + counts.end.jobs, this->Layout.capacity);
-    return counts;
+    this->Mapped = std::min(this->Mapped + stored, this->Layout.capacity);
+    return {static_cast<std::int64_t>(counts.listed.bricks),
+            static_cast<std::int64_t>(counts.listed.overflowed), stored,
+            static_cast<std::int64_t>(counts.marked), stored < counts.wanted};
   }
 
   void store(std::int64_t most)
@@ -215,7 +262,7 @@ private:
 
   void map()
   {
-    this->Where.fill(this->Tables.pages.data(), 0xff, this->Layout.pages); // NoBrick
+    this->Where.fill(this->Tables.pages.data(), 0xff, this->Layout.pages); // NoBrick, and -1
     this->Where.run(MapSlots{this->view()}, this->Layout.capacity);
   }
 
@@ -253,7 +300,9 @@ private:
     const RankEntry slot{0, 0};
     this->Where.toMachine(this->Tables.bricks.data(), &brick, 1);
     this->Where.toMachine(this->Tables.slots.data(), &slot, 1);
-    this->loadRanked(1);
+    this->listRanked(1);
+    this->infer(this->Where);
+    this->storeListed(1);
   }
 
   Machine& Where;
@@ -264,6 +313,8 @@ private:
   Storage Tables;
   std::uint64_t Frame = 1;
   std::int64_t Mapped = 0;
+  Machine* Beside = nullptr;               ///< that infers what was begun
+  std::int64_t Listed = 0;                 ///< bricks of that, at most
   std::shared_ptr<const BrickSource> Core; ///< once it was needed
 };
 

@@ -71,6 +71,9 @@ public:
   }
 
   void wait() const { this->Work.wait(); }
+  /// What is begun here from now on waits for what the other one has been told so far.
+  void after(const GpuMachine& other) const;
+  bool isIdle() const; ///< all is done that was begun
   int device() const { return this->Device; }
   const Stream& stream() const { return this->Work; }
 

@@ -15,11 +15,12 @@ namespace cuda {
 /// What the host is told of a round.
 struct CacheCounts
 {
-  RequestCounts requests;
-  std::int64_t wanted;  ///< bricks, at most as many as it may load
-  BrickEnd end;         ///< of what is inferred: as many as there are slots for
-  std::uint64_t stored; ///< bricks
-  std::uint64_t marked; ///< voxels of them that are no numbers
+  RequestCounts requests; ///< by now
+  RequestCounts listed;   ///< when bricks were listed
+  std::int64_t wanted;    ///< bricks, at most as many as may come in
+  BrickEnd end;           ///< of what is inferred: as many as there are slots for
+  std::uint64_t stored;   ///< bricks
+  std::uint64_t marked;   ///< voxels of them that are no numbers
 };
 
 constexpr int CacheThreads = 256; ///< of a block
@@ -97,6 +98,7 @@ private:
     const std::int64_t wanted = Length(this->bricks, this->most);
     const std::int64_t places = Length(this->slots, this->most);
     const std::int64_t listed = wanted < places ? wanted : places;
+    this->counts->listed = this->counts->requests;
     this->counts->wanted = wanted;
     this->counts->end = {listed, listed > 0 ? items[listed - 1] : 0, listed * this->voxels()};
     this->counts->stored = 0;

@@ -16,8 +16,8 @@ namespace cuda {
 /// Where a brick is.
 struct alignas(16) PageEntry
 {
-  BrickKey key; ///< NoBrick where it is free
-  std::int32_t slot;
+  BrickKey key;      ///< NoBrick where it is free
+  std::int32_t slot; ///< -1 there
   std::int32_t unused;
 };
 
@@ -59,13 +59,12 @@ struct CacheView
   INR_HOST_DEVICE std::int32_t find(BrickKey key) const
   {
     auto place = static_cast<std::uint32_t>(MixBits(key)) & this->pageMask;
-    while (this->pages[place].key != key) {
-      if (this->pages[place].key == NoBrick) {
-        return Unmapped;
+    for (;; place = (place + 1) & this->pageMask) {
+      const PageEntry entry = this->pages[place]; // by a single load
+      if (entry.key == key || entry.key == NoBrick) {
+        return entry.slot;
       }
-      place = (place + 1) & this->pageMask;
     }
-    return this->pages[place].slot;
   }
 
   INR_HOST_DEVICE BrickView view(std::int32_t slot) const

@@ -43,6 +43,12 @@ public:
 
   Loaded load(std::int64_t most, bool byContribution)
   {
+    return this->store(this->list(most, byContribution));
+  }
+
+  /// What is to come in; forgets all wishes.
+  std::vector<inr::BrickKey> list(std::int64_t most, bool byContribution)
+  {
     std::vector<inr::BrickKey> keys = this->ranking().ranked(this->wishes(), byContribution);
     if (!byContribution) {
       std::sort(keys.begin(), keys.end(), [](inr::BrickKey a, inr::BrickKey b) {
@@ -51,19 +57,26 @@ public:
         return levelA != levelB ? levelA > levelB : a < b;
       });
     }
-    keys.resize(std::min(keys.size(), static_cast<std::size_t>(most)));
+    const auto isMapped = [this](inr::BrickKey key) { return this->Slots.count(key) > 0; };
+    keys.erase(std::remove_if(keys.begin(), keys.end(), isMapped), keys.end());
+    this->Wanted = std::min(keys.size(), static_cast<std::size_t>(most));
+    keys.resize(std::min(this->Wanted, this->replaceable()));
     this->Wishes = {};
-    Loaded loaded;
+    return keys;
+  }
+
+  Loaded store(const std::vector<inr::BrickKey>& keys)
+  {
+    std::int64_t stored = 0;
     for (const inr::BrickKey key : keys) {
       const std::size_t slot = this->oldest();
-      loaded.full = slot == 0;
-      if (loaded.full) {
+      if (slot == 0) {
         break;
       }
       this->put(slot, key);
-      ++loaded.loaded;
+      ++stored;
     }
-    return loaded;
+    return {stored, stored < static_cast<std::int64_t>(this->Wanted)};
   }
 
   void clear()
@@ -78,6 +91,12 @@ private:
     inr::RequestRanking ranking;
     ranking.add(this->Wishes);
     return ranking;
+  }
+
+  std::size_t replaceable() const
+  {
+    const auto mayGo = [this](std::uint64_t use) { return use < this->Frame; };
+    return static_cast<std::size_t>(std::count_if(this->Uses.begin() + 1, this->Uses.end(), mayGo));
   }
 
   /// 0 where there is none: that one stays.
@@ -108,4 +127,5 @@ private:
   std::vector<inr::BrickKey> Owners;
   std::map<inr::BrickKey, std::size_t> Slots;
   inr::RequestList Wishes;
+  std::size_t Wanted = 0; ///< of what was listed last, before slots were counted
 };

@@ -60,6 +60,8 @@ public:
     }
   }
   void wait() const {}
+  void after(const HostMachine& /*other*/) const {}
+  bool isIdle() const { return true; }
 
 private:
   HostLaunch Launch;

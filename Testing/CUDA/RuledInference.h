@@ -56,25 +56,54 @@ inline std::vector<float> RuledBrick(const inr::Hierarchy& levels, inr::BrickKey
   return values;
 }
 
+/// By the first thread.
+struct RuledBricks
+{
+  static constexpr int Threads = 32;
+
+  const inr::cuda::BrickJob* jobs;
+  const inr::cuda::BrickEnd* end;
+  float* values;
+
+  template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
+  {
+    if (block.index() == 0) {
+      block.threads([&](int thread) {
+        if (thread == 0) {
+          this->inferAll();
+        }
+      });
+    }
+  }
+
+private:
+  void inferAll() const
+  {
+    std::int64_t items = 0;
+    std::int64_t written = 0;
+    for (std::int64_t k = 0; k < this->end->jobs; ++k) {
+      const inr::cuda::BrickJob& job = this->jobs[k];
+      EXPECT_EQ(job.firstItem, items);
+      EXPECT_EQ(job.firstValue, written);
+      RuledBrick(job, this->values + job.firstValue);
+      items += ItemsOf(job);
+      written += std::int64_t{job.voxels[0]} * job.voxels[1] * job.voxels[2];
+    }
+    EXPECT_EQ(this->end->items, items);
+    EXPECT_EQ(this->end->values, written);
+  }
+};
+
 class RuledInference
 {
 public:
   static inr::ModelPointer source() { return nullptr; } // nothing is Core's to compute
   static std::int64_t bytes() { return 0; }
 
-  static void infer(const HostMachine& /*machine*/, const inr::cuda::BrickJob* jobs,
+  template <class Machine>
+  static void infer(Machine& machine, const inr::cuda::BrickJob* jobs,
                     const inr::cuda::BrickEnd* end, float* values)
   {
-    std::int64_t items = 0;
-    std::int64_t written = 0;
-    for (std::int64_t k = 0; k < end->jobs; ++k) {
-      EXPECT_EQ(jobs[k].firstItem, items);
-      EXPECT_EQ(jobs[k].firstValue, written);
-      RuledBrick(jobs[k], values + jobs[k].firstValue);
-      items += ItemsOf(jobs[k]);
-      written += std::int64_t{jobs[k].voxels[0]} * jobs[k].voxels[1] * jobs[k].voxels[2];
-    }
-    EXPECT_EQ(end->items, items);
-    EXPECT_EQ(end->values, written);
+    machine.run(RuledBricks{jobs, end, values}, 1);
   }
 };

@@ -7,6 +7,7 @@
 #include "Testing/CUDA/AskFor.h"
 #include "Testing/CUDA/CacheModel.h"
 #include "Testing/CUDA/EmulatedInference.h"
+#include "Testing/CUDA/LateMachine.h"
 #include "Testing/CUDA/RuledInference.h"
 #include "Testing/Core/RandomModel.h"
 
@@ -69,6 +70,7 @@ void ExpectStored(const inr::BrickView& view, const Hierarchy& levels, CachePrec
   pool.store(0, values.data());
   const inr::BrickView expected = pool.view(0);
   EXPECT_EQ(view.low, expected.low);
+  EXPECT_FALSE(std::signbit(view.low)); // which of two zeros Core's is, depends on their order
   EXPECT_EQ(view.step, expected.step);
   const auto bytes =
       static_cast<std::size_t>(levels.voxelsPerBrick() * inr::BytesPerVoxel(precision));
@@ -76,7 +78,7 @@ void ExpectStored(const inr::BrickView& view, const Hierarchy& levels, CachePrec
 }
 
 /// Those bricks are mapped, and no other ones.
-void ExpectSame(const RuledCache& cache, const CacheModel& model)
+template <class Cache> void ExpectSame(const Cache& cache, const CacheModel& model)
 {
   const inr::cuda::CacheView view = cache.view();
   ASSERT_EQ(cache.mapped(), static_cast<std::int64_t>(model.slots().size()));
@@ -92,7 +94,7 @@ void ExpectSame(const RuledCache& cache, const CacheModel& model)
   }
 }
 
-void ExpectContents(const RuledCache& cache, const CacheModel& model)
+template <class Cache> void ExpectContents(const Cache& cache, const CacheModel& model)
 {
   for (const auto& [key, slot] : model.slots()) {
     ExpectStored(cache.view().view(static_cast<std::int32_t>(slot)), cache.hierarchy(),
@@ -101,7 +103,8 @@ void ExpectContents(const RuledCache& cache, const CacheModel& model)
 }
 
 /// A frame of random wishes for near and far bricks, by both.
-void AskBoth(HostMachine& machine, RuledCache& cache, CacheModel& model, std::uint64_t frame)
+template <class Machine, class Cache>
+void AskBoth(Machine& machine, Cache& cache, CacheModel& model, std::uint64_t frame)
 {
   std::vector<Wish> wishes;
   const std::uint64_t bricks = 1 + inr::RandomBits(frame, 1) % 60;
@@ -123,6 +126,19 @@ std::int64_t BytesFor(const Hierarchy& levels, CachePrecision precision, std::in
     bytes += 1 << 10;
   }
   return bytes;
+}
+
+/// All that is mapped, but for two bricks, is used.
+template <class Machine, class Cache>
+void UseAlmostAll(Machine& machine, Cache& cache, CacheModel& model)
+{
+  std::vector<Wish> wishes;
+  const std::map<BrickKey, std::size_t> slots = model.slots();
+  for (auto slot = std::next(slots.begin(), 2); slot != slots.end(); ++slot) {
+    wishes.push_back({slot->first, 1.0f});
+    model.ask(slot->first, 1.0f);
+  }
+  Ask(machine, cache.view(), wishes);
 }
 
 /// Precision, and how the threads take turns.
@@ -168,6 +184,59 @@ TEST_P(DeviceCacheTrace, IsThatOfASimpleCache)
 
 INSTANTIATE_TEST_SUITE_P(Kernels, DeviceCacheTrace,
                          testing::Combine(testing::ValuesIn(AllPrecisions), testing::Range(0, 4)));
+
+/// What infers beside the frames is as early as can be, or as late.
+TEST(DeviceCache, LoadsBesideFrames)
+{
+  const Hierarchy levels({50, 40, 30}, 6);
+  for (const HostLaunch& launch : Launches()) {
+    for (const bool late : {false, true}) {
+      LateMachine machine(false, launch);
+      LateMachine beside(late, launch);
+      inr::cuda::DeviceCache<LateMachine, RuledInference> cache(
+          machine, {}, levels, CachePrecision::Bits16,
+          BytesFor(levels, CachePrecision::Bits16, 60));
+      CacheModel model(levels, cache.capacity());
+      const std::int64_t atOnce =
+          inr::cuda::LayOutCache(levels, CachePrecision::Bits16, cache.bytes(), 0).atOnce;
+      std::vector<BrickKey> listed;
+      std::int64_t wishes = 0;
+      std::int64_t dropped = 0;
+      for (std::uint64_t frame = 0; frame < 150; ++frame) {
+        if (frame % 9 < 6) {
+          cache.beginFrame();
+          model.beginFrame();
+        }
+        AskBoth(machine, cache, model, frame);
+        if (frame % 11 == 10) {
+          UseAlmostAll(machine, cache, model);
+        }
+        if (cache.isLoading() && frame % 5 < 3) {
+          EXPECT_EQ(cache.hasInferred(), !late);
+          const auto loaded = cache.finishLoad();
+          const CacheModel::Loaded expected = model.store(listed);
+          ASSERT_EQ(loaded.requested, wishes) << frame;
+          ASSERT_EQ(loaded.loaded, expected.loaded) << frame;
+          ASSERT_EQ(loaded.full, expected.full) << frame;
+          dropped += static_cast<std::int64_t>(listed.size()) - loaded.loaded;
+        }
+        if (!cache.isLoading()) {
+          wishes = model.wishes();
+          listed = model.list(std::min<std::int64_t>(atOnce, 9), true);
+          cache.beginLoad(beside, 9, true);
+          EXPECT_TRUE(cache.isLoading());
+        }
+        ExpectSame(cache, model);
+      }
+      EXPECT_GT(dropped, 0);
+      cache.load(0, true);
+      model.store(listed);
+      ExpectSame(cache, model);
+      ExpectContents(cache, model);
+      EXPECT_FALSE(cache.isLoading());
+    }
+  }
+}
 
 TEST(DeviceCache, KeepsWhatTheFrameUsesAndTheCoarsest)
 {
