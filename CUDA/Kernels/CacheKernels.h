@@ -280,14 +280,14 @@ struct MapSlots
       for (std::int64_t slot = std::int64_t{block.index()} * Threads + thread;
            slot < this->cache.capacity; slot += stride) {
         if (this->cache.uses[slot] > 0) {
-          this->enter(this->cache.owners[slot], static_cast<std::int32_t>(slot));
+          this->enter(this->cache.owners[slot], slot);
         }
       }
     });
   }
 
 private:
-  INR_HOST_DEVICE void enter(BrickKey key, std::int32_t slot) const
+  INR_HOST_DEVICE void enter(BrickKey key, std::int64_t slot) const
   {
     auto place = static_cast<std::uint32_t>(MixBits(key)) & this->cache.pageMask;
     while (AtomicExchangeIf(this->cache.pages[place].key, NoBrick, key) != NoBrick) {

@@ -13,12 +13,11 @@
 namespace inr {
 namespace cuda {
 
-/// Where a brick is.
+/// Where a brick is; as wide as one load.
 struct alignas(16) PageEntry
 {
   BrickKey key;      ///< NoBrick where it is free
-  std::int32_t slot; ///< -1 there
-  std::int32_t unused;
+  std::int64_t slot; ///< -1 there
 };
 
 /// value = low + step * stored.
@@ -60,9 +59,9 @@ struct CacheView
   {
     auto place = static_cast<std::uint32_t>(MixBits(key)) & this->pageMask;
     for (;; place = (place + 1) & this->pageMask) {
-      const PageEntry entry = this->pages[place]; // by a single load
+      const PageEntry entry = this->pages[place];
       if (entry.key == key || entry.key == NoBrick) {
-        return entry.slot;
+        return static_cast<std::int32_t>(entry.slot);
       }
     }
   }
