@@ -37,6 +37,13 @@ public:
     return MakeBrickSource(this->uploaded(model), hierarchy);
   }
 
+  std::shared_ptr<AcceleratedRenderer> makeRenderer(const ModelPointer& model,
+                                                    const glm::i64vec3& dims,
+                                                    const CacheOptions& options) const override
+  {
+    return MakeRenderer(this->uploaded(model), dims, options);
+  }
+
 private:
   /// One copy for all that is made of a model.
   std::shared_ptr<const DeviceModel> uploaded(const ModelPointer& model) const

@@ -17,8 +17,9 @@ namespace cuda {
 template <class Machine, class Cache> class DeviceMarcher
 {
 public:
-  DeviceMarcher(Machine& machine, Cache& cache, const CacheOptions& options)
-      : Where(machine), Bricks(cache), Options(options), Picture(machine),
+  /// `beside`: infers bricks while frames go on.
+  DeviceMarcher(Machine& machine, Machine& beside, Cache& cache, const CacheOptions& options)
+      : Where(machine), Beside(beside), Bricks(cache), Options(options), Picture(machine),
         Scene(machine.template allocate<RenderScene>(1)), Rays(machine, cache, MostRays)
   {}
 
@@ -103,8 +104,7 @@ private:
                               const std::function<bool()>& keepGoing)
   {
     const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
-    const std::int64_t most =
-        limit.isLimited() ? this->Options.maximumRequests : this->Bricks.capacity();
+    bool full = this->Bricks.hasInferred() && IsFull(this->Bricks.finishLoad());
     while (true) {
       RequireGoingOn(keepGoing);
       const Timer timer;
@@ -113,19 +113,42 @@ private:
       this->Rays.runOnce(this->kernel(onMiss), {frame.width, frame.height, nullptr, 0});
       FrameStatistics statistics = this->Picture.statistics();
       statistics.marchSeconds = timer.seconds();
-      const auto loaded = this->Bricks.load(most, this->Options.ranking);
-      const bool full = loaded.full && loaded.loaded == 0;
-      statistics.complete = loaded.requested == 0 || (this->Options.onlyWhatFits && full);
-      if (full && !this->Options.onlyWhatFits) {
+      if (statistics.missed > 0) {
+        full = this->loadMore(limit) || full;
+      }
+      statistics.complete = statistics.missed == 0 || (full && this->Options.onlyWhatFits);
+      if (full && !statistics.complete) {
         this->Overfull.emplace(frame);
       }
       if (statistics.complete || full || limit.endsWithin(statistics.marchSeconds)) {
         return statistics;
       }
+      full = IsFull(this->Bricks.finishLoad()); // else nothing would be new
     }
   }
 
+  /// Begins to bring bricks that were missed: behind the frames where there is to be a background,
+  /// as many as one launch infers. Whether the cache is found to have no room for any.
+  bool loadMore(const WorkLimit& limit)
+  {
+    const std::int64_t most =
+        limit.isLimited() ? this->Options.maximumRequests : this->Bricks.capacity();
+    if (limit.isLimited() && this->Options.background) {
+      if (!this->Bricks.isLoading()) {
+        this->Bricks.beginLoad(this->Beside, most, this->Options.ranking);
+      }
+      return false;
+    }
+    return IsFull(this->Bricks.load(most, this->Options.ranking));
+  }
+
+  template <class Loaded> static bool IsFull(const Loaded& loaded)
+  {
+    return loaded.full && loaded.loaded == 0;
+  }
+
   Machine& Where;
+  Machine& Beside;
   Cache& Bricks;
   CacheOptions Options;
   DevicePicture<Machine> Picture;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/DeviceModel.h"
 
+#include "CUDA/DeviceStores.h"
 #include "CUDA/Launch.h"
 
 #include <algorithm>
@@ -71,7 +72,7 @@ DeviceModel::FloatCopy::FloatCopy(const Model& model, int device, const Stream& 
 }
 
 DeviceModel::DeviceModel(ModelPointer model, const Device& device, Precision precision)
-    : Source(std::move(model)), Where(device)
+    : Source(std::move(model)), Where(device), Stores(std::make_unique<DeviceStores>())
 {
   const CurrentDevice current(device.ordinal);
   RequireRoom(*this->Source, device.ordinal, precision);
@@ -83,6 +84,8 @@ DeviceModel::DeviceModel(ModelPointer model, const Device& device, Precision pre
     this->Float.emplace(*this->Source, device.ordinal, stream);
   }
 }
+
+DeviceModel::~DeviceModel() = default;
 
 LaunchPlan DeviceModel::plan(bool bricks) const
 {

@@ -20,10 +20,16 @@ struct LaunchPlan
   std::int64_t scratch; ///< floats that float32 kernels want, for all of these blocks
 };
 
+class DeviceStores;
+
 class DeviceModel
 {
 public:
   DeviceModel(ModelPointer model, const Device& device, Precision precision);
+  ~DeviceModel();
+
+  /// What its renderers share.
+  DeviceStores& stores() const { return *this->Stores; }
 
   const ModelPointer& source() const { return this->Source; }
   const Device& device() const { return this->Where; }
@@ -74,6 +80,7 @@ private:
   Device Where;
   std::optional<HalfCopy> Half; ///< one of the two
   std::optional<FloatCopy> Float;
+  std::unique_ptr<DeviceStores> Stores;
 };
 
 } // namespace cuda

@@ -18,7 +18,8 @@ public:
   using Store = DeviceStore<Machine, Cache>;
 
   DeviceRenderer(std::shared_ptr<Store> store, const CacheOptions& options)
-      : Shared(std::move(store)), Marcher(this->Shared->machine, this->Shared->cache, options),
+      : Shared(std::move(store)),
+        Marcher(this->Shared->machine, this->Shared->beside, this->Shared->cache, options),
         Paths(this->Shared->machine, this->Shared->cache, options)
   {}
 

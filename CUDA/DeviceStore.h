@@ -18,7 +18,7 @@ template <class Machine, class Cache> struct DeviceStore
   /// `where`: of the machine; `arguments`: of the cache behind it.
   template <class Where, class... Arguments>
   explicit DeviceStore(const Where& where, Arguments&&... arguments)
-      : machine(where), cache(this->machine, std::forward<Arguments>(arguments)...)
+      : machine(where), beside(where), cache(this->machine, std::forward<Arguments>(arguments)...)
   {}
 
   /// The time of one call that draws: others wait.
@@ -48,6 +48,7 @@ template <class Machine, class Cache> struct DeviceStore
   };
 
   Machine machine;
+  Machine beside; ///< the same, for what goes on at the same time
   Cache cache;
 
 private:

@@ -4,6 +4,8 @@
 #include "CUDA/Device.h"
 #include "CUDA/Precision.h"
 #include "Core/Cache/BrickSource.h"
+#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/CachedRenderer.h"
 
 #include <memory>
 
@@ -27,6 +29,13 @@ std::shared_ptr<const Evaluator> MakeEvaluator(std::shared_ptr<const DeviceModel
 /// The same otherwise.
 std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const DeviceModel> model,
                                                    const Hierarchy& hierarchy);
+
+/// What draws pictures of the model, shown with so many voxels: cache, rays and paths are on the
+/// GPU. Renderers that could share a cache do. Throws Error(Device) where the GPU fails or has too
+/// little memory.
+std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>& model,
+                                                  const glm::i64vec3& dims,
+                                                  const CacheOptions& options);
 
 } // namespace cuda
 } // namespace inr

@@ -30,12 +30,14 @@ bool GpuMachine::isIdle() const
 
 void GpuMachine::copyBytes(void* to, const void* from, std::int64_t bytes) const
 {
+  const CurrentDevice current(this->Device);
   INR_CUDA(cudaMemcpyAsync(to, from, static_cast<std::size_t>(bytes), cudaMemcpyDeviceToDevice,
                            this->Work.get()));
 }
 
 void GpuMachine::fillBytes(void* to, int byte, std::int64_t bytes) const
 {
+  const CurrentDevice current(this->Device);
   INR_CUDA(cudaMemsetAsync(to, byte, static_cast<std::size_t>(bytes), this->Work.get()));
 }
 

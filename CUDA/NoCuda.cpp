@@ -29,5 +29,11 @@ std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const DeviceM
   Refuse();
 }
 
+std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>&,
+                                                  const glm::i64vec3&, const CacheOptions&)
+{
+  Refuse();
+}
+
 } // namespace cuda
 } // namespace inr

@@ -46,7 +46,8 @@ public:
   {
     const std::int64_t now = this->limit();
     const int next = 1 - this->Current;
-    this->keepBack(now, next);
+    this->setCount(Now, now);
+    this->setCount(WaitingOf + next, 0);
     kernel.lists = RayLists{this->Order,
                             this->First,
                             this->Begins ? nullptr : this->Waiters[this->Current].data(),
@@ -70,7 +71,7 @@ public:
     }
     std::uint64_t waiting = 0;
     this->Where.toHost(&waiting, this->count(WaitingOf + next), 1);
-    this->Waiting = static_cast<std::int64_t>(waiting);
+    this->append(now, next, static_cast<std::int64_t>(waiting));
     this->Current = next;
     this->Begins = false;
   }
@@ -87,15 +88,16 @@ private:
     const auto value = static_cast<std::uint64_t>(to);
     this->Where.toMachine(this->count(which), &value, 1);
   }
-  /// Those behind the first `now` go on waiting.
-  void keepBack(std::int64_t now, int next)
+  /// Those behind the first `now` go on waiting, behind those that wait again: else none would ever
+  /// find what it has waited for, where there is little room.
+  void append(std::int64_t now, int next, std::int64_t waiting)
   {
     const std::int64_t rest = this->Waiting - now;
-    this->setCount(Now, now);
-    this->setCount(WaitingOf + next, rest);
     if (rest > 0) {
-      this->Where.copy(this->Waiters[next].data(), this->Waiters[this->Current].data() + now, rest);
+      this->Where.copy(this->Waiters[next].data() + waiting,
+                       this->Waiters[this->Current].data() + now, rest);
     }
+    this->Waiting = waiting + rest;
   }
 
   Machine& Where;

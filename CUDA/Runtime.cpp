@@ -90,6 +90,16 @@ Memory::~Memory()
   }
 }
 
+std::int64_t FreeMemory(int device)
+{
+  const CurrentDevice current(device);
+  std::size_t free = 0;
+  std::size_t total = 0;
+  INR_CUDA(cudaMemGetInfo(&free, &total));
+  return std::max<std::int64_t>(
+      static_cast<std::int64_t>(free) - static_cast<std::int64_t>(total / 16), 0);
+}
+
 void RequireFree(int device, std::int64_t bytes, const char* what)
 {
   const CurrentDevice current(device);

@@ -97,6 +97,8 @@ template <class T> void CopyToHost(T* to, const T* from, std::int64_t count, con
                            cudaMemcpyDeviceToHost, stream.get()));
 }
 
+/// Bytes that may be taken: a sixteenth of the device's memory stays for whoever draws with it.
+std::int64_t FreeMemory(int device);
 /// Throws Error(Device) with figures unless so many bytes, and a sixteenth of the device's memory
 /// for whoever draws with it, are free. `what`: "the model".
 void RequireFree(int device, std::int64_t bytes, const char* what);

@@ -77,13 +77,12 @@ private:
   void load()
   {
     const auto loaded = this->Bricks.load(this->Bricks.capacity(), true);
-    const bool alone = this->Turns->limit() == 1;
-    if (loaded.loaded == 0 && alone) {
+    const std::int64_t atOnce = this->Turns->limit();
+    if (loaded.loaded == 0 && atOnce == 1) {
       this->Bricks.clear();
     }
-    const std::int64_t waiting = this->Turns->waiting();
     const bool crowded = loaded.full && 4 * loaded.loaded < this->Bricks.capacity();
-    this->Turns->limit(crowded ? this->Turns->limit() / 2 : waiting);
+    this->Turns->limit(crowded ? atOnce / 2 : 2 * atOnce);
   }
 
   void reserve(std::int64_t rays)

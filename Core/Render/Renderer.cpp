@@ -376,7 +376,9 @@ void Renderer::Implementation::proveDrawing(const Frame& frame,
   small.width = small.height = edge;
   small.opaqueDepth = nullptr;
   small.timeLimit = 0;
-  small.levelOfDetailScale = std::max(frame.levelOfDetailScale, 1.0);
+  // Where pictures make do with what fits, that is nowhere the same, but for the coarsest level.
+  small.levelOfDetailScale =
+      this->Options.cache.onlyWhatFits ? 1e9 : std::max(frame.levelOfDetailScale, 1.0);
   small.errorTolerance.reset();
   const RayGeometry geometry(small, this->Volume.dims);
   MarchSettings settings = this->settingsFor(small, geometry);

@@ -209,6 +209,125 @@ TEST(Drawing, GivesDepthsAndSamplesToo)
   EXPECT_EQ(drawn.statistics.samples, truth.statistics.samples + truth.statistics.hidden);
 }
 
+/// Paths meet the same random numbers; a few may part ways for rounding.
+TEST(Drawing, TracesThePathsOfTheCpu)
+{
+  for (const double scale : {0.0, 2.5}) {
+    inr::Frame frame = PlainFrame();
+    frame.mode = inr::RenderMode::PathTracing;
+    frame.samplesPerPixel = 3;
+    frame.levelOfDetailScale = scale;
+    frame.paths.ambientLight = glm::vec3(0.3f, 0.4f, 0.5f);
+    frame.paths.anisotropy = 0.4;
+    frame.clippingPlanes = {PlaneAcross({1, 0.3, -0.2})};
+    frame.opaqueDepth = SomeDepth().data();
+    LightUp(frame);
+    const Drawn truth = Draw(frame, OptionsWith(nullptr));
+    const Drawn drawn = Draw(frame, OptionsWith(Device()));
+    std::size_t others = 0;
+    for (std::size_t k = 0; k < truth.rgba.pixels.size(); ++k) {
+      others += std::abs(truth.rgba.pixels[k] - drawn.rgba.pixels[k]) > 1e-3f ? 1 : 0;
+    }
+    EXPECT_LT(others, truth.rgba.pixels.size() / 100);
+    EXPECT_EQ(drawn.statistics.paths, 3);
+    EXPECT_TRUE(drawn.statistics.complete);
+    EXPECT_GT(drawn.statistics.work.scatterings, 100); // the CPU follows some paths twice
+  }
+}
+
+/// Small bricks, more than a hundred of them, and a cache for so many; 0: for all.
+inr::RendererOptions RoomFor(std::int64_t bricks)
+{
+  inr::RendererOptions options = OptionsWith(Device());
+  options.cache.brickSize = 5;
+  const inr::Hierarchy levels(TrainedModel()->volume.dims, options.cache.brickSize);
+  std::int64_t bytes = 14000; // the CPU wants so many for eight
+  while (bricks > 0) {
+    try {
+      if (inr::cuda::LayOutCache(levels, options.cache.precision, bytes, 0).capacity >= bricks) {
+        options.cache.bytes = bytes;
+        break;
+      }
+    } catch (const inr::Error&) { // less than it must have
+    }
+    bytes += 1000;
+  }
+  return options;
+}
+
+inr::Frame FullResolution(inr::RenderMode mode)
+{
+  inr::Frame frame = PlainFrame();
+  frame.mode = mode;
+  frame.samplesPerPixel = 1;
+  frame.levelOfDetailScale = 0;
+  frame.width = 24;
+  frame.height = 18;
+  return frame;
+}
+
+/// Room for few bricks is enough for every picture; it only takes longer.
+TEST(Drawing, NeedsNoMoreThanTheSmallestCache)
+{
+  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+    inr::Frame frame = FullResolution(mode);
+    frame.shading = inr::Material();
+    LightUp(frame);
+    const Drawn truth = Draw(frame, RoomFor(0));
+    for (const std::int64_t bricks : {9, 20, 60}) {
+      const Drawn drawn = Draw(frame, RoomFor(bricks));
+      EXPECT_TRUE(drawn.statistics.complete);
+      EXPECT_EQ(drawn.rgba.pixels, truth.rgba.pixels) << bricks;
+    }
+  }
+}
+
+/// As often as it takes.
+inr::Image Finish(inr::Renderer& renderer, const inr::Frame& frame, int& calls)
+{
+  inr::Image image;
+  calls = 1;
+  while (!renderer.render(frame, image).complete && calls < 1000) {
+    ++calls;
+  }
+  return image;
+}
+
+TEST(Drawing, ComesToTheSamePictureInTime)
+{
+  for (const bool deterministic : {true, false}) {
+    for (const std::int64_t bricks : {0, 20}) {
+      for (const inr::RenderMode mode :
+           {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+        inr::Frame frame = FullResolution(mode);
+        inr::RendererOptions options = RoomFor(bricks);
+        options.cache.maximumRequests = 5;
+        options.deterministic = deterministic;
+        const Drawn truth = Draw(frame, options);
+        inr::Renderer renderer = RendererOf(options);
+        frame.timeLimit = 1e-3;
+        int calls = 0;
+        EXPECT_EQ(Finish(renderer, frame, calls).pixels, truth.rgba.pixels)
+            << deterministic << " " << bricks << " " << static_cast<int>(mode);
+        EXPECT_GT(calls, 1);
+        EXPECT_LT(calls, 1000);
+      }
+    }
+  }
+}
+
+TEST(Drawing, MakesDoWithWhatFits)
+{
+  inr::RendererOptions options = RoomFor(20);
+  options.cache.onlyWhatFits = true;
+  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+    const Drawn drawn = Draw(FullResolution(mode), options);
+    EXPECT_TRUE(drawn.statistics.complete);
+    EXPECT_GT(drawn.statistics.levels.coarsest, 0);
+    EXPECT_GT(drawn.statistics.samples, 0);
+  }
+}
+
 /// In which order threads come makes no difference, nor how many there are.
 TEST(Drawing, DoesNotDependOnTheOrderOfThreads)
 {
