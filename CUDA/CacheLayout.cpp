@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/CacheLayout.h"
 
-#include "CUDA/Kernels/CacheKernels.h"
+#include "CUDA/Kernels/ListBricks.h"
 #include "Core/Cache/BrickCache.h"
 #include "Core/Error.h"
 

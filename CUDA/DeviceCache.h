@@ -5,7 +5,8 @@
 #pragma once
 
 #include "CUDA/CacheLayout.h"
-#include "CUDA/Kernels/CacheKernels.h"
+#include "CUDA/Kernels/CacheTables.h"
+#include "CUDA/Kernels/StoreBricks.h"
 #include "CUDA/Overflow.h"
 #include "CUDA/Selector.h"
 
@@ -34,8 +35,7 @@ public:
         Layout(LayOutCache(hierarchy, precision, bytes, this->Infer.bytes())), Precision(precision),
         Tables(Available(machine, this->Layout), this->Layout, hierarchy, precision)
   {
-    const std::vector<HierarchyLevel> levels = LevelsOf(hierarchy);
-    machine.toMachine(this->Tables.levels.data(), levels.data(), hierarchy.levels());
+    machine.toMachine(this->Tables.levels.data(), &hierarchy.view().level(0), hierarchy.levels());
     machine.fill(this->Tables.uses.data(), 0, this->Layout.capacity);
     this->clearRequests();
     this->map();
@@ -135,7 +135,8 @@ public:
     return this->storeListed(this->Listed);
   }
 
-  /// Forgets all bricks but the coarsest, those of the present frame included.
+  /// Forgets all bricks but the coarsest, those of the present frame included. What was begun still
+  /// comes in.
   void clear()
   {
     this->Where.fill(this->Tables.uses.data() + Pinned, 0, this->Layout.capacity - Pinned);
@@ -190,15 +191,6 @@ private:
   {
     machine.requireFree(layout.bytes, "the cache of bricks");
     return machine;
-  }
-
-  static std::vector<HierarchyLevel> LevelsOf(const Hierarchy& hierarchy)
-  {
-    std::vector<HierarchyLevel> levels;
-    for (int level = 0; level < hierarchy.levels(); ++level) {
-      levels.push_back(hierarchy.view().level(level));
-    }
-    return levels;
   }
 
   /// Slots that may take other bricks.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CUDA/Kernels/CacheKernels.h"
+#include "CUDA/Kernels/CacheTables.h"
+#include "CUDA/Kernels/StoreBricks.h"
 #include "CUDA/LaunchDefinition.cuh"
 
 namespace inr {
