@@ -45,6 +45,7 @@ public:
     FrameCounts counts{};
     this->Where.toHost(&counts, this->Counts.data(), 1);
     FrameStatistics statistics;
+    statistics.accelerated = true;
     statistics.rays = static_cast<std::int64_t>(counts.rays);
     statistics.samples = static_cast<std::int64_t>(counts.samples);
     statistics.missed = static_cast<std::int64_t>(counts.missed);

@@ -137,6 +137,8 @@ struct FrameStatistics
   bool complete = true;
   std::int64_t paths = 0;  ///< of path tracing: through each pixel, in the picture shown
   LevelSpan levels;        ///< of the cache, that samples came from
+  /// Whether an accelerator has drawn it, or part of it; else the CPU did, of what that inferred.
+  bool accelerated = false;
   double seconds = 0;      ///< wall time
   double marchSeconds = 0; ///< of these, without what was loaded into the cache in between
   WorkDone work;           ///< of the call
@@ -157,6 +159,7 @@ struct FrameStatistics
     this->hidden += part.hidden;
     this->clamped += part.clamped;
     this->levels.add(part.levels);
+    this->accelerated = this->accelerated || part.accelerated;
     this->work.add(part.work);
   }
 };

@@ -317,12 +317,16 @@ bool FramePainter::render(const Frame& scene, const Surroundings& around, int re
 void FramePainter::noteBackend()
 {
   const int threads = this->Caster->threads();
-  std::string& backend = this->Last.backend;
-  backend = "CPU " + this->Caster->kernel() + ", " + std::to_string(threads) +
-            (threads == 1 ? " thread" : " threads");
+  const std::string cpu = "CPU " + this->Caster->kernel() + ", " + std::to_string(threads) +
+                          (threads == 1 ? " thread" : " threads");
   const std::string accelerator = this->Caster->accelerator();
-  if (!accelerator.empty()) {
-    backend += (this->CasterOptions.cached ? "; bricks by " : "; samples by ") + accelerator;
+  std::string& backend = this->Last.backend;
+  if (accelerator.empty()) {
+    backend = cpu;
+  } else if (this->Last.statistics.accelerated) {
+    backend = accelerator + "; beside it " + cpu;
+  } else {
+    backend = cpu + (this->CasterOptions.cached ? "; bricks by " : "; samples by ") + accelerator;
   }
   const auto failure = this->acceleratorFailure();
   if (failure && failure->atWork) {

@@ -39,7 +39,7 @@ struct PaintedFrame
   Image depth;
   Image samples; ///< empty unless asked for and known
   FrameStatistics statistics;
-  std::string backend; ///< "CPU avx512, 2 threads; bricks by CUDA float32, NVIDIA A100", ...
+  std::string backend; ///< see vtkINRVolumeMapper::GetBackendInUse
   double seconds = 0;  ///< from the mapper's call to the blended picture
   int reduction = 0;   ///< viewport size / image size
   bool depthRead = false;

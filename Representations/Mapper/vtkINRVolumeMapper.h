@@ -93,13 +93,14 @@ public:
   };
   ///@{
   /**
-   * What asks the network for voxels of bricks or, with CacheMode NETWORK_ONLY, for samples; one of
-   * Backends, anything else is refused. The rest of a picture is computed by the CPU. A GPU's
-   * values are float32, as the CPU's are, but for the order of summation. One that fails, at
-   * whatever time, is given up for the CPU with a warning, without loss of a brick or change in a
-   * picture, until this is called again, if only with the same. So is one whose memory is short, of
-   * which AUTO says nothing. A change empties the cache. GetBackendInUse() says what is at work.
-   * Default AUTO.
+   * What draws; one of Backends, anything else is refused. A GPU has the model, the cache
+   * (CacheSize at most, and half of its free memory), the rays and the paths; but of isosurfaces,
+   * of pictures with translucent surfaces or an ErrorTolerance and of those with CacheMode
+   * NETWORK_ONLY, the CPU draws what the GPU infers. Its values are float32, as the CPU's are, but
+   * for the order of summation. One that fails, at whatever time, or draws another picture than the
+   * CPU, is given up for the CPU with a warning, without change in a picture, until this is called
+   * again, if only with the same. So is one whose memory is short, of which AUTO says nothing. A
+   * change empties the cache. GetBackendInUse() says what is at work. Default AUTO.
    */
   void SetBackend(int backend);
   vtkGetMacro(Backend, int);
@@ -431,9 +432,9 @@ public:
   vtkIdType GetNumberOfPaths() const;
 
   /**
-   * What computed the last frame, such as "CPU avx512, 2 threads", and what inferred its bricks or
-   * samples if that was not the CPU: "...; bricks by CUDA float32, NVIDIA H200". Empty before the
-   * first.
+   * What computed the last frame: "CPU avx512, 2 threads", or, of what a GPU inferred, "CPU avx512,
+   * 2 threads; bricks by CUDA float32, NVIDIA H200", or, if that has drawn it itself, "CUDA
+   * float32, NVIDIA H200; beside it CPU avx512, 2 threads". Empty before the first.
    */
   const char* GetBackendInUse() const;
 

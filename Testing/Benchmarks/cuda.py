@@ -42,8 +42,8 @@ def results_of(measured, failed):
 
 
 def frames_of(lines):
-    """What bench_cuda_frames prints: the GPU infers, the CPU's cores draw."""
-    note = "768 x 768, default model as 256^3 voxels; drawn by all of the CPU's cores"
+    """What bench_cuda_frames prints."""
+    note = "768 x 768, default model, as 256^3 voxels unless said otherwise; the CPU draws with all cores"
     for line in lines.splitlines():
         measured = json.loads(line)
         yield {**measured, "value": float(f"{measured['value']:.4g}"), "note": note}
