@@ -27,8 +27,7 @@ public:
                         const WorkLimit& limit, const PassOutput& output,
                         const std::function<bool()>& keepGoing)
   {
-    Belongings<Machine> arrays;
-    const RenderScene scene = this->sceneOf(job, colors, arrays);
+    const RenderScene scene = this->sceneOf(job, colors);
     this->Where.toMachine(this->Scene.data(), &scene, 1);
     this->Picture.resize(std::int64_t{job.frame.width} * job.frame.height);
     const bool inTime = limit.isLimited() || this->Options.onlyWhatFits;
@@ -49,10 +48,11 @@ public:
 private:
   static constexpr std::int64_t MostRays = 1 << 18; ///< some 50 MB of their progress
 
-  RenderScene sceneOf(const MarchJob& job, const DeviceColors<Machine>& colors,
-                      Belongings<Machine>& arrays)
+  RenderScene sceneOf(const MarchJob& job, const DeviceColors<Machine>& colors)
   {
     const Frame& frame = job.frame;
+    Belongings<Machine>& arrays = this->OfFrame;
+    arrays.clear();
     RenderScene scene{};
     scene.rays = job.geometry.view();
     scene.rays.opaqueDepth =
@@ -64,7 +64,7 @@ private:
     scene.colors = colors.lookup();
     scene.settings = job.settings;
     scene.steps = job.steps.lookup();
-    scene.steps.entries = arrays.put(this->Where, scene.steps.entries, 4 * job.steps.count());
+    scene.steps.entries = this->stepEntries(job.steps);
     scene.levelOfDetailScale = frame.levelOfDetailScale;
     scene.lit = job.shading != nullptr;
     if (scene.lit) {
@@ -75,6 +75,17 @@ private:
           arrays.put(this->Where, scene.shading.constant, scene.shading.constantCount);
     }
     return scene;
+  }
+
+  /// Copied when they are others than before: they are megabytes.
+  const float* stepEntries(const StepTable& steps)
+  {
+    if (this->Steps != steps.number()) {
+      this->OfSteps.clear();
+      this->Entries = this->OfSteps.put(this->Where, steps.lookup().entries, 4 * steps.count());
+      this->Steps = steps.number();
+    }
+    return this->Entries;
   }
 
   MarchRays kernel(OnMiss onMiss) const
@@ -154,6 +165,10 @@ private:
   DevicePicture<Machine> Picture;
   typename Machine::template Array<RenderScene> Scene;
   WindowedRays<Machine, Cache, RayProgress> Rays;
+  Belongings<Machine> OfFrame;
+  Belongings<Machine> OfSteps;
+  const float* Entries = nullptr;
+  std::uint64_t Steps = 0;           ///< number of the table that Entries are of
   std::optional<KeptFrame> Overfull; ///< the latest frame that wanted more than the cache holds
 };
 

@@ -27,7 +27,8 @@ public:
                     const WorkLimit& limit, const std::function<bool()>& keepGoing)
   {
     const PathScene& given = round.tracer.scene();
-    Belongings<Machine> arrays;
+    Belongings<Machine>& arrays = this->OfRound;
+    arrays.clear();
     const PathScene scene = this->sceneOf(given, colors, arrays);
     this->Where.toMachine(this->Scene.data(), &scene, 1);
     const int width = given.rays.width;
@@ -169,6 +170,7 @@ private:
   DevicePicture<Machine> Picture;
   typename Machine::template Array<PathScene> Scene;
   WindowedRays<Machine, Cache, PathProgress> Paths;
+  Belongings<Machine> OfRound;
   bool Overfull = false; ///< the present picture wants more than the cache holds
 };
 

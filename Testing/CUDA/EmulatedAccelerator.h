@@ -44,13 +44,21 @@ public:
     if (this->Does == Duty::Infers) {
       return nullptr;
     }
-    using Cache = inr::cuda::DeviceCache<HostMachine, EmulatedInference>;
-    using Store = inr::cuda::DeviceStore<HostMachine, Cache>;
-    auto store = std::make_shared<Store>(
-        this->Launch, EmulatedInference(this->on(model)),
-        inr::Hierarchy(dims, options.brickSize), options.precision, options.bytes);
-    return std::make_shared<inr::cuda::DeviceRenderer<HostMachine, Cache>>(std::move(store),
-                                                                           options);
+    return this->makeRendererOn<HostMachine>(this->Launch, model, dims, options);
+  }
+
+protected:
+  /// `where`: of what the machine is made.
+  template <class Machine, class Where>
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeRendererOn(const Where& where, const inr::ModelPointer& model, const glm::i64vec3& dims,
+                 const inr::CacheOptions& options) const
+  {
+    using Cache = inr::cuda::DeviceCache<Machine, EmulatedInference>;
+    auto store = std::make_shared<inr::cuda::DeviceStore<Machine, Cache>>(
+        where, EmulatedInference(this->on(model)), inr::Hierarchy(dims, options.brickSize),
+        options.precision, options.bytes);
+    return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options);
   }
 
 private:

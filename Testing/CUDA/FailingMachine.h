@@ -12,7 +12,7 @@ struct FailingOrders
 {
   int failsAt = std::numeric_limits<int>::max(); ///< that order and all that follow; 0 = the first
   int orders = 0;                                ///< so far
-  bool lies = false;                             ///< what is copied to the host is not what there is
+  bool lies = false; ///< what is copied to the host is not what there is
 };
 
 /// A machine that is lost at some order, and does nothing from then on; or that computes wrongly.

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What becomes of pictures that a device draws when it is lost, lies, or is told to stop.
+#include "Testing/CUDA/DrawingScene.h"
+#include "Testing/CUDA/FailingMachine.h"
+
+namespace {
+
+/// Infers as the emulated one does, and draws on a failing machine.
+class FailingAccelerator : public EmulatedAccelerator
+{
+public:
+  explicit FailingAccelerator(std::shared_ptr<FailingOrders> orders)
+      : EmulatedAccelerator(inr::cuda::Precision::Float32, Duty::InfersAndDraws),
+        Orders(std::move(orders))
+  {}
+
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeRenderer(const inr::ModelPointer& model, const glm::i64vec3& dims,
+               const inr::CacheOptions& options) const override
+  {
+    return this->makeRendererOn<FailingMachine>(this->Orders, model, dims, options);
+  }
+
+private:
+  std::shared_ptr<FailingOrders> Orders;
+};
+
+inr::Frame SmallFrame(inr::RenderMode mode)
+{
+  inr::Frame frame = PlainFrame();
+  frame.mode = mode;
+  frame.width = 16;
+  frame.height = 12;
+  frame.samplesPerPixel = 2;
+  return frame;
+}
+
+TEST(LostDrawing, LeavesThePictureToTheCpu)
+{
+  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+    const inr::Frame frame = SmallFrame(mode);
+    const Drawn truth = Draw(frame, OptionsWith(nullptr));
+    const auto counting = std::make_shared<FailingOrders>();
+    const Drawn whole = Draw(frame, OptionsWith(std::make_shared<FailingAccelerator>(counting)));
+    ASSERT_TRUE(whole.statistics.accelerated);
+    const int orders = counting->orders;
+    ASSERT_GT(orders, 50);
+    for (int fails = 0; fails < orders; fails += fails < 3 ? 1 : orders / 12) {
+      SCOPED_TRACE(std::to_string(fails) + " of " + std::to_string(orders));
+      const auto failing = std::make_shared<FailingOrders>();
+      failing->failsAt = fails;
+      inr::Renderer renderer =
+          RendererOf(OptionsWith(std::make_shared<FailingAccelerator>(failing)));
+      inr::Image image;
+      EXPECT_TRUE(renderer.render(frame, image).complete);
+      EXPECT_GE(inr::ImagePsnr(image, truth.rgba), 50);
+      ASSERT_TRUE(renderer.acceleratorFailure());
+      EXPECT_EQ(renderer.acceleratorFailure()->reason, "the machine is lost");
+      EXPECT_EQ(renderer.accelerator(), "");
+      const int asked = failing->orders; // and never again
+      EXPECT_FALSE(renderer.render(frame, image).accelerated);
+      EXPECT_EQ(failing->orders, asked);
+    }
+  }
+}
+
+TEST(LostDrawing, IsNotTrustedWithOtherPictures)
+{
+  const inr::Frame frame = SmallFrame(inr::RenderMode::RayMarching);
+  const Drawn truth = Draw(frame, OptionsWith(nullptr));
+  const auto lying = std::make_shared<FailingOrders>();
+  lying->lies = true;
+  inr::Renderer renderer = RendererOf(OptionsWith(std::make_shared<FailingAccelerator>(lying)));
+  inr::Image image;
+  renderer.render(frame, image);
+  EXPECT_EQ(image.pixels, truth.rgba.pixels);
+  ASSERT_TRUE(renderer.acceleratorFailure());
+  EXPECT_NE(renderer.acceleratorFailure()->reason.find("dB from the CPU's"), std::string::npos);
+}
+
+/// And goes on as if nothing had been.
+TEST(LostDrawing, StopsOnRequest)
+{
+  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+    const inr::Frame frame = SmallFrame(mode);
+    const Drawn truth = Draw(frame, OptionsWith(Device()));
+    inr::Renderer renderer = RendererOf(OptionsWith(Device()));
+    inr::Image image;
+    for (int most = 0; most < 4; ++most) {
+      int asked = 0;
+      const auto stopAfterSome = [&] { return asked++ < most; };
+      EXPECT_THROW(renderer.render(frame, image, nullptr, stopAfterSome), inr::Error) << most;
+    }
+    EXPECT_TRUE(renderer.render(frame, image).complete);
+    EXPECT_FALSE(renderer.acceleratorFailure());
+    EXPECT_EQ(image.pixels, truth.rgba.pixels);
+  }
+}
+
+TEST(LostDrawing, DoesNotWaitForItself)
+{
+  struct NoCache
+  {
+    explicit NoCache(HostMachine& /*machine*/) {}
+  };
+  using Store = inr::cuda::DeviceStore<HostMachine, NoCache>;
+  Store store{HostLaunch()};
+  const Store::Turn turn(store);
+  EXPECT_THROW(Store::Turn{store}, inr::Error);
+}
+
+} // namespace
