@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is drawn in tests of pictures by kernels, and how.
+#pragma once
+
+#include "Core/Image/Metrics.h"
+#include "Testing/CUDA/EmulatedAccelerator.h"
+#include "Testing/Core/Render/VoxelScene.h"
+#include "Testing/Core/Training/Fields.h"
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+inline const inr::ModelPointer& TrainedModel()
+{
+  static const inr::ModelPointer model = [] {
+    const Field<float> field = Waves();
+    return inr::TrainModel(field.data(), {}, Steps(100));
+  }();
+  return model;
+}
+
+inline inr::RendererOptions OptionsWith(std::shared_ptr<const inr::Accelerator> accelerator)
+{
+  inr::RendererOptions options;
+  options.threads = 2;
+  options.cache = Options(inr::CachePrecision::Bits16, 12);
+  options.accelerator = std::move(accelerator);
+  return options;
+}
+
+inline std::shared_ptr<const inr::Accelerator> Device(HostLaunch launch = {})
+{
+  return std::make_shared<EmulatedAccelerator>(inr::cuda::Precision::Float32, Duty::InfersAndDraws,
+                                               launch);
+}
+
+inline inr::TransferFunction ColoursOf(const inr::VolumeInfo& volume)
+{
+  inr::TransferFunction colours = Colours();
+  colours.low = volume.low;
+  colours.high = volume.high;
+  return colours;
+}
+
+inline inr::Renderer RendererOf(const inr::RendererOptions& options)
+{
+  inr::Renderer renderer(TrainedModel(), options);
+  renderer.setTransferFunction(ColoursOf(TrainedModel()->volume));
+  return renderer;
+}
+
+inline inr::Frame PlainFrame()
+{
+  inr::Frame frame = Oblique(glm::dvec3(TrainedModel()->volume.dims));
+  frame.levelOfDetailScale = 1;
+  return frame;
+}
+
+/// A picture and all that comes with it.
+struct Drawn
+{
+  inr::Image rgba;
+  inr::Image depth;
+  inr::Image samples;
+  inr::FrameStatistics statistics;
+};
+
+inline Drawn Draw(const inr::Frame& frame, const inr::RendererOptions& options)
+{
+  inr::Renderer renderer = RendererOf(options);
+  Drawn drawn;
+  drawn.statistics = renderer.render(frame, drawn.rgba, &drawn.depth, {}, &drawn.samples);
+  EXPECT_FALSE(renderer.acceleratorFailure()) << renderer.acceleratorFailure()->reason;
+  return drawn;
+}
+
+/// A kind of frame.
+struct Case
+{
+  const char* name;
+  std::function<void(inr::Frame&)> change;
+};
+
+inline void PrintTo(const Case& which, std::ostream* stream) { *stream << which.name; }
+
+/// Rows of rising depth, in front of, inside and behind the volume.
+inline const std::vector<float>& SomeDepth()
+{
+  static const std::vector<float> depth = [] {
+    const inr::Frame frame = PlainFrame();
+    std::vector<float> values(static_cast<std::size_t>(frame.width) * frame.height, 1.0f);
+    for (std::size_t k = 0; k < values.size() / 2; ++k) {
+      values[k] = 0.5f + 0.5f * static_cast<float>(k) / static_cast<float>(values.size() / 2);
+    }
+    return values;
+  }();
+  return depth;
+}
+
+inline inr::Light LightOf(inr::LightKind kind)
+{
+  const glm::dvec3 dims(TrainedModel()->volume.dims);
+  inr::Light light;
+  light.kind = kind;
+  light.position = dims * glm::dvec3(1.5, 1.4, 1.3);
+  light.direction =
+      kind == inr::LightKind::Directional ? glm::dvec3(1, -2, -1) : 0.5 * dims - light.position;
+  light.color = glm::vec3(1.0f, 0.8f, 0.6f);
+  return light;
+}
+
+inline void LightUp(inr::Frame& frame)
+{
+  frame.lights = {LightOf(inr::LightKind::Point), LightOf(inr::LightKind::Directional),
+                  LightOf(inr::LightKind::Spot)};
+}
+
+/// Through the middle of the volume.
+inline glm::dvec4 PlaneAcross(const glm::dvec3& normal)
+{
+  return {normal, -glm::dot(normal, 0.5 * glm::dvec3(TrainedModel()->volume.dims))};
+}
+
+inline std::function<void(inr::Frame&)> Projected(inr::BlendMode mode)
+{
+  return [mode](inr::Frame& frame) { frame.blending.mode = mode; };
+}
+
+inline void Crop(inr::Frame& frame)
+{
+  const glm::dvec3 dims(TrainedModel()->volume.dims);
+  frame.cropping = inr::Cropping{0.3 * dims, 0.62 * dims, 0x5555555};
+}
+
+inline std::string NameOfCase(const testing::TestParamInfo<Case>& info) { return info.param.name; }
+
+/// Of two pictures of the same shape, by channel.
+inline double LargestDifference(const inr::Image& a, const inr::Image& b)
+{
+  double largest = 0;
+  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+    largest = std::max(largest, std::abs(static_cast<double>(a.pixels[k]) - b.pixels[k]));
+  }
+  return largest;
+}
