@@ -1,23 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pictures that the kernels draw through a cache on the device, against those of Core's renderer.
+#include "CUDA/CudaAccelerator.h"
 #include "Testing/CUDA/DrawingScene.h"
+#include "Testing/CUDA/Places.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace {
 
-class Drawing : public testing::TestWithParam<Case>
-{};
-
-TEST_P(Drawing, GivesThePicturesOfTheCpu)
+/// What draws in a place.
+std::shared_ptr<const inr::Accelerator> DeviceIn(Place place)
 {
+  return place == Place::Gpu ? inr::cuda::MakeAccelerator(inr::cuda::ChooseDevice()) : Device();
+}
+
+void SkipUnlessThere(Place place)
+{
+  const inr::cuda::Devices devices = inr::cuda::FindDevices();
+  if (place == Place::Gpu && devices.usable.empty()) {
+    GTEST_SKIP() << devices.reason;
+  }
+}
+
+class DrawingOf : public testing::TestWithParam<std::tuple<Place, Case>>
+{
+protected:
+  void SetUp() override { SkipUnlessThere(std::get<0>(GetParam())); }
+};
+
+TEST_P(DrawingOf, GivesThePicturesOfTheCpu)
+{
+  const auto& [place, which] = GetParam();
   inr::Frame frame = PlainFrame();
-  GetParam().change(frame);
+  which.change(frame);
   const Drawn truth = Draw(frame, OptionsWith(nullptr));
   ASSERT_GT(*std::max_element(truth.rgba.pixels.begin(), truth.rgba.pixels.end()), 0.1f);
-  const Drawn drawn = Draw(frame, OptionsWith(Device()));
+  const Drawn drawn = Draw(frame, OptionsWith(DeviceIn(place)));
   std::cout << inr::ImagePsnr(drawn.rgba, truth.rgba) << " dB\n";
+  EXPECT_TRUE(drawn.statistics.accelerated);
   EXPECT_GE(inr::ImagePsnr(drawn.rgba, truth.rgba), 60);
   EXPECT_TRUE(drawn.statistics.complete);
   EXPECT_EQ(drawn.statistics.missed, 0);
@@ -58,13 +80,31 @@ const Case Marched[] = {
     {"OneColumn", [](inr::Frame& frame) { frame.width = 1; }},
 };
 
-INSTANTIATE_TEST_SUITE_P(Kernels, Drawing, testing::ValuesIn(Marched), NameOfCase);
+INSTANTIATE_TEST_SUITE_P(Kernels, DrawingOf,
+                         testing::Combine(testing::Values(Place::Host, Place::Gpu),
+                                          testing::ValuesIn(Marched)),
+                         [](const testing::TestParamInfo<std::tuple<Place, Case>>& info) {
+                           return std::string(std::get<0>(info.param) == Place::Host ? "Host"
+                                                                                     : "Gpu") +
+                                  std::get<1>(info.param).name;
+                         });
 
-TEST(Drawing, GivesDepthsAndSamplesToo)
+class Drawing : public testing::TestWithParam<Place>
+{
+protected:
+  void SetUp() override { SkipUnlessThere(GetParam()); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Kernels, Drawing, testing::Values(Place::Host, Place::Gpu),
+                         [](const testing::TestParamInfo<Place>& info) {
+                           return info.param == Place::Host ? "Host" : "Gpu";
+                         });
+
+TEST_P(Drawing, GivesDepthsAndSamplesToo)
 {
   const inr::Frame frame = PlainFrame();
   const Drawn truth = Draw(frame, OptionsWith(nullptr));
-  const Drawn drawn = Draw(frame, OptionsWith(Device()));
+  const Drawn drawn = Draw(frame, OptionsWith(DeviceIn(GetParam())));
   EXPECT_LT(LargestDifference(drawn.depth, truth.depth), 1e-4);
   // The CPU leaves out samples where the voxels around show nothing.
   for (std::size_t k = 0; k < truth.samples.pixels.size(); k += 2) {
@@ -74,7 +114,7 @@ TEST(Drawing, GivesDepthsAndSamplesToo)
 }
 
 /// Paths meet the same random numbers; a few may part ways for rounding.
-TEST(Drawing, TracesThePathsOfTheCpu)
+TEST_P(Drawing, TracesThePathsOfTheCpu)
 {
   for (const double scale : {0.0, 2.5}) {
     inr::Frame frame = PlainFrame();
@@ -87,7 +127,7 @@ TEST(Drawing, TracesThePathsOfTheCpu)
     frame.opaqueDepth = SomeDepth().data();
     LightUp(frame);
     const Drawn truth = Draw(frame, OptionsWith(nullptr));
-    const Drawn drawn = Draw(frame, OptionsWith(Device()));
+    const Drawn drawn = Draw(frame, OptionsWith(DeviceIn(GetParam())));
     std::size_t others = 0;
     for (std::size_t k = 0; k < truth.rgba.pixels.size(); ++k) {
       others += std::abs(truth.rgba.pixels[k] - drawn.rgba.pixels[k]) > 1e-3f ? 1 : 0;
@@ -100,9 +140,9 @@ TEST(Drawing, TracesThePathsOfTheCpu)
 }
 
 /// Small bricks, more than a hundred of them, and a cache for so many; 0: for all.
-inr::RendererOptions RoomFor(std::int64_t bricks)
+inr::RendererOptions RoomFor(Place place, std::int64_t bricks)
 {
-  inr::RendererOptions options = OptionsWith(Device());
+  inr::RendererOptions options = OptionsWith(DeviceIn(place));
   options.cache.brickSize = 5;
   const inr::Hierarchy levels(TrainedModel()->volume.dims, options.cache.brickSize);
   std::int64_t bytes = 14000; // the CPU wants so many for eight
@@ -125,21 +165,21 @@ inr::Frame FullResolution(inr::RenderMode mode)
   frame.mode = mode;
   frame.samplesPerPixel = 1;
   frame.levelOfDetailScale = 0;
-  frame.width = 24;
-  frame.height = 18;
+  frame.width = 16;
+  frame.height = 12;
   return frame;
 }
 
 /// Room for few bricks is enough for every picture; it only takes longer.
-TEST(Drawing, NeedsNoMoreThanTheSmallestCache)
+TEST_P(Drawing, NeedsNoMoreThanTheSmallestCache)
 {
   for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
     inr::Frame frame = FullResolution(mode);
     frame.shading = inr::Material();
     LightUp(frame);
-    const Drawn truth = Draw(frame, RoomFor(0));
-    for (const std::int64_t bricks : {9, 20, 60}) {
-      const Drawn drawn = Draw(frame, RoomFor(bricks));
+    const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
+    for (const std::int64_t bricks : {9, 60}) {
+      const Drawn drawn = Draw(frame, RoomFor(GetParam(), bricks));
       EXPECT_TRUE(drawn.statistics.complete);
       EXPECT_EQ(drawn.rgba.pixels, truth.rgba.pixels) << bricks;
     }
@@ -157,15 +197,15 @@ inr::Image Finish(inr::Renderer& renderer, const inr::Frame& frame, int& calls)
   return image;
 }
 
-TEST(Drawing, ComesToTheSamePictureInTime)
+TEST_P(Drawing, ComesToTheSamePictureInTime)
 {
   for (const bool deterministic : {true, false}) {
     for (const std::int64_t bricks : {0, 20}) {
       for (const inr::RenderMode mode :
            {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
         inr::Frame frame = FullResolution(mode);
-        inr::RendererOptions options = RoomFor(bricks);
-        options.cache.maximumRequests = 5;
+        inr::RendererOptions options = RoomFor(GetParam(), bricks);
+        options.cache.maximumRequests = 15;
         options.deterministic = deterministic;
         const Drawn truth = Draw(frame, options);
         inr::Renderer renderer = RendererOf(options);
@@ -180,9 +220,9 @@ TEST(Drawing, ComesToTheSamePictureInTime)
   }
 }
 
-TEST(Drawing, MakesDoWithWhatFits)
+TEST_P(Drawing, MakesDoWithWhatFits)
 {
-  inr::RendererOptions options = RoomFor(20);
+  inr::RendererOptions options = RoomFor(GetParam(), 20);
   options.cache.onlyWhatFits = true;
   for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
     const Drawn drawn = Draw(FullResolution(mode), options);
@@ -193,7 +233,7 @@ TEST(Drawing, MakesDoWithWhatFits)
 }
 
 /// In which order threads come makes no difference, nor how many there are.
-TEST(Drawing, DoesNotDependOnTheOrderOfThreads)
+TEST(DrawingOnTheHost, DoesNotDependOnTheOrderOfThreads)
 {
   inr::Frame frame = PlainFrame();
   frame.levelOfDetailScale = 2.5;
