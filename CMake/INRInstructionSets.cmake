@@ -18,6 +18,17 @@ function (inr_add_bfloat16_kernels target)
   endif ()
 endfunction ()
 
+# inr_add_tile_kernels(TARGET SOURCES...): and once more, for processors with tile registers for such
+# numbers (AMX). INR_TILES is the header of the tile unit. Nothing in there throws; what would clean up
+# behind exceptions refers to a symbol that builds would share.
+function (inr_add_tile_kernels target)
+  if (INR_X86)
+    inr_add_build(${target} amx
+      "${INR_AVX512_FLAGS};-mavx512bf16;-mamx-tile;-mamx-bf16;-fno-exceptions" ${ARGN})
+    target_compile_definitions(${target}_amx PRIVATE INR_TILES="Core/Inference/ProcessorTiles.h")
+  endif ()
+endfunction ()
+
 set(INR_X86 OFF)
 if (CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(INR_X86 ON)

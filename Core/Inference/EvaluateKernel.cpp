@@ -17,6 +17,7 @@ std::int64_t Workspace(const ModelView& model) { return StripWorkspace(model); }
 void EvaluateAll(const ModelView& model, const float* xyz, std::int64_t count, float* values,
                  float* workspace)
 {
+  const Batch batch;
   StripPair strips = MakeStrips(model, workspace);
   constexpr int groups = StripSize / LaneCount;
   const int tiles = HiddenTiles(model);

@@ -9,7 +9,7 @@
 namespace inr {
 
 /// Network outputs at scattered points, for one instruction set. The model must be packed
-/// for its precision.
+/// for it.
 struct EvaluateKernel
 {
   /// Floats of scratch memory that `evaluate` needs.
@@ -19,9 +19,8 @@ struct EvaluateKernel
                    float* workspace);
 };
 
-/// The kernel built for `set`; both must be usable.
-const EvaluateKernel& EvaluateKernelFor(InstructionSet set,
-                                        InferencePrecision precision = InferencePrecision::Float32);
+/// The kernel for float32 built for `set`, which must be usable; see InferenceKernels.h for others.
+const EvaluateKernel& EvaluateKernelFor(InstructionSet set);
 
 namespace baseline {
 extern const EvaluateKernel Evaluate;
@@ -35,5 +34,13 @@ extern const EvaluateKernel Evaluate;
 namespace avx512bf16 {
 extern const EvaluateKernel Evaluate;
 }
+namespace amx {
+extern const EvaluateKernel Evaluate;
+}
+#ifdef INR_ISA // whatever the build at hand is called
+namespace INR_ISA {
+extern const EvaluateKernel Evaluate;
+}
+#endif
 
 } // namespace inr

@@ -2,10 +2,8 @@
 #include "Core/Inference/Evaluator.h"
 
 #include "Core/Error.h"
-#include "Core/Inference/EvaluateKernel.h"
-#include "Core/Inference/GridKernel.h"
 #include "Core/Inference/HugePages.h"
-#include "Core/Inference/KernelTable.h"
+#include "Core/Inference/InferenceKernels.h"
 #include "Core/Inference/OverflowWatch.h"
 #include "Core/Inference/WideEvaluation.h"
 
@@ -58,14 +56,6 @@ Layout CheckedLayout(const Model& model)
   return layout;
 }
 
-InferencePrecision PrecisionFor(const ModelView& model, InstructionSet set,
-                                InferencePrecision wanted)
-{
-  const bool can =
-      IsUsable(wanted, set) && (wanted == InferencePrecision::Float32 || StaysInRange(model));
-  return can ? wanted : InferencePrecision::Float32;
-}
-
 LatticeAxis ViewOf(const std::vector<float>& axis)
 {
   return {axis.data(), static_cast<std::int64_t>(axis.size())};
@@ -74,14 +64,12 @@ LatticeAxis ViewOf(const std::vector<float>& axis)
 class KernelEvaluator : public Evaluator
 {
 public:
-  KernelEvaluator(ModelPointer model, InstructionSet set, InferencePrecision wanted)
-      : Source(std::move(model)), Set(set),
-        Views(this->Source->description, CheckedLayout(*this->Source),
-              this->Source->parameters.data()),
-        Precision(PrecisionFor(this->Views.view(), set, wanted)),
-        Kernel(EvaluateKernelFor(set, this->Precision)),
-        LatticeKernel(GridKernelFor(set, this->Precision)),
-        Network(this->Views.view(), this->Precision)
+  /// `choose` gives InferenceKernels for a ModelView.
+  template <class Choose>
+  KernelEvaluator(ModelPointer model, const Choose& choose)
+      : Source(std::move(model)), Views(this->Source->description, CheckedLayout(*this->Source),
+                                        this->Source->parameters.data()),
+        Kernels(choose(this->Views.view())), Network(this->Views.view(), this->Kernels.layout)
   {
     const std::vector<float>& parameters = this->Source->parameters;
     PreferHugePages(parameters.data(), parameters.size() * sizeof(float));
@@ -93,10 +81,10 @@ public:
       return;
     }
     const ModelView& model = this->Network.view();
-    const auto floats = static_cast<std::size_t>(this->Kernel.workspace(model));
+    const auto floats = static_cast<std::size_t>(this->Kernels.points->workspace(model));
     const std::unique_ptr<float[]> workspace(new float[floats]); // left as it is: no need for zeros
     OverflowWatch watch;
-    this->Kernel.evaluate(model, &positions->x, count, values, workspace.get());
+    this->Kernels.points->evaluate(model, &positions->x, count, values, workspace.get());
     if (watch.overflowed()) {
       this->widen(positions, count, values, workspace.get(), watch);
     }
@@ -105,21 +93,17 @@ public:
   void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const override
   {
     const ModelView& model = this->Network.view();
-    const auto bytes = static_cast<std::size_t>(this->LatticeKernel.workspace(model));
+    const auto bytes = static_cast<std::size_t>(this->Kernels.lattices->workspace(model));
     const std::unique_ptr<unsigned char[]> workspace(new unsigned char[bytes]);
     const LatticeAxis views[3] = {ViewOf(axes[0]), ViewOf(axes[1]), ViewOf(axes[2])};
     OverflowWatch watch;
-    this->LatticeKernel.evaluate(model, views, values, workspace.get());
+    this->Kernels.lattices->evaluate(model, views, values, workspace.get());
     if (watch.overflowed()) {
       this->widenGrid(views, values, workspace.get(), watch);
     }
   }
 
-  std::string kernel() const override
-  {
-    const std::string name = InstructionSetName(this->Set);
-    return this->Precision == InferencePrecision::BFloat16 ? name + " bfloat16" : name;
-  }
+  std::string kernel() const override { return this->Kernels.name; }
 
 private:
   /// Values of `count` positions some of which overflow: halves them until it is known which do, so
@@ -134,8 +118,8 @@ private:
     const std::int64_t half = count / 2;
     for (const auto& [first, size] : {std::pair{std::int64_t{0}, half}, {half, count - half}}) {
       watch.restart();
-      this->Kernel.evaluate(this->Network.view(), &positions[first].x, size, values + first,
-                            workspace);
+      this->Kernels.points->evaluate(this->Network.view(), &positions[first].x, size,
+                                     values + first, workspace);
       if (watch.overflowed()) {
         this->widen(positions + first, size, values + first, workspace, watch);
       }
@@ -162,8 +146,8 @@ private:
       LatticeAxis part[3] = {axes[0], axes[1], axes[2]};
       part[slowest] = {axes[slowest].u + first, size};
       watch.restart();
-      this->LatticeKernel.evaluate(this->Network.view(), part, values + points / count * first,
-                                   workspace);
+      this->Kernels.lattices->evaluate(this->Network.view(), part, values + points / count * first,
+                                       workspace);
       if (watch.overflowed()) {
         this->widenGrid(part, values + points / count * first, workspace, watch);
       }
@@ -171,11 +155,8 @@ private:
   }
 
   ModelPointer Source;
-  InstructionSet Set;
   ModelViewStorage Views;
-  InferencePrecision Precision;
-  const EvaluateKernel& Kernel;
-  const GridKernel& LatticeKernel;
+  InferenceKernels Kernels;
   PackedNetwork Network;
 };
 
@@ -195,21 +176,19 @@ void Evaluator::evaluateGrid(const std::vector<float> (&axes)[3], float* values)
   this->evaluate(positions.data(), static_cast<std::int64_t>(positions.size()), values);
 }
 
-const GridKernel& GridKernelFor(InstructionSet set, InferencePrecision precision)
-{
-  return INR_BFLOAT16_KERNEL_OR(INR_KERNEL_FOR(set, Grid), precision, Grid);
-}
-
-const EvaluateKernel& EvaluateKernelFor(InstructionSet set, InferencePrecision precision)
-{
-  return INR_BFLOAT16_KERNEL_OR(INR_KERNEL_FOR(set, Evaluate), precision, Evaluate);
-}
-
 std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const std::string& kernel,
                                                InferencePrecision precision)
 {
-  return std::make_shared<KernelEvaluator>(std::move(model), ChooseInstructionSet(kernel),
-                                           precision);
+  return std::make_shared<KernelEvaluator>(std::move(model), [&](const ModelView& view) {
+    const bool can = precision == InferencePrecision::Float32 || StaysInRange(view);
+    return ChooseKernels(kernel, can ? precision : InferencePrecision::Float32);
+  });
+}
+
+std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const InferenceKernels& kernels)
+{
+  return std::make_shared<KernelEvaluator>(std::move(model),
+                                           [&](const ModelView&) { return kernels; });
 }
 
 void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm::vec3* positions,

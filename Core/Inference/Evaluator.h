@@ -14,6 +14,8 @@
 
 namespace inr {
 
+struct InferenceKernels;
+
 /// Values of an INR at scattered points. Immutable: any number of threads may use one at once.
 class Evaluator
 {
@@ -41,8 +43,8 @@ public:
   /// Points that a call should have where there are as many: a device is far away. 0: any number.
   virtual std::int64_t pointsAtOnce() const { return 0; }
 
-  /// The instruction set in use: "avx512", "avx2" or "baseline"; with " bfloat16" where products
-  /// are made of that.
+  /// The instruction set in use: "avx512", "avx2" or "baseline"; "avx512 bfloat16" or "amx
+  /// bfloat16" (tile registers) where products are made of that.
   virtual std::string kernel() const = 0;
 };
 
@@ -50,12 +52,18 @@ public:
 /// adds at most (2^-8 + 2^-18) of the sum of the products' magnitudes to what a sum loses. Where
 /// the kernel cannot do that here, or the model's numbers might leave float's range, it is Float32.
 ///
-/// The fastest kernel that this processor runs; `kernel` asks for one by name (for tests) and
-/// Error(Unsupported) says that it is not to be had here. Throws Error(InvalidModel) when the
+/// The fastest kernel that this processor runs; `kernel` asks for one by name ("avx512", "avx2",
+/// "baseline", or "amx" for bfloat16 by tile registers; for tests) and Error(Unsupported) says that
+/// it is not to be had here. Kernels for bfloat16 sum up in different orders, each within the
+/// bound; the fastest one is the same throughout a process. Throws Error(InvalidModel) when the
 /// parameter count does not fit the description or a parameter is NaN or infinite.
 std::shared_ptr<const Evaluator>
 MakeEvaluator(ModelPointer model, const std::string& kernel = "",
               InferencePrecision precision = InferencePrecision::Float32);
+
+/// The same with kernels that this processor must run; those for bfloat16 are for models whose
+/// numbers stay in range.
+std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const InferenceKernels& kernels);
 
 /// `evaluate` with the batch spread over `arena`.
 void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm::vec3* positions,

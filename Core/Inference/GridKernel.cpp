@@ -92,6 +92,7 @@ void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t fi
 void EvaluateGrid(const ModelView& model, const LatticeAxis (&axes)[3], float* values,
                   void* workspace)
 {
+  const Batch batch;
   auto* const pieces = AlignToLine(static_cast<LevelPiece*>(workspace));
   StripPair strips = MakeStrips(model, reinterpret_cast<float*>(pieces + model.levelCount));
   const std::int64_t width = axes[0].count;

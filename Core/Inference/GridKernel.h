@@ -16,7 +16,7 @@ struct LatticeAxis
 };
 
 /// Network outputs on a regular lattice, for one instruction set. The model must be packed
-/// for its precision.
+/// for it.
 struct GridKernel
 {
   /// Bytes of scratch memory that `evaluate` needs.
@@ -25,10 +25,6 @@ struct GridKernel
   void (*evaluate)(const ModelView& model, const LatticeAxis (&axes)[3], float* values,
                    void* workspace);
 };
-
-/// The kernel built for `set`; both must be usable.
-const GridKernel& GridKernelFor(InstructionSet set,
-                                InferencePrecision precision = InferencePrecision::Float32);
 
 namespace baseline {
 extern const GridKernel Grid;
@@ -42,5 +38,13 @@ extern const GridKernel Grid;
 namespace avx512bf16 {
 extern const GridKernel Grid;
 }
+namespace amx {
+extern const GridKernel Grid;
+}
+#ifdef INR_ISA // whatever the build at hand is called
+namespace INR_ISA {
+extern const GridKernel Grid;
+}
+#endif
 
 } // namespace inr

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Inference/ModelView.h"
 
+#include "Core/Inference/TileShapes.h"
 #include "Core/Model/GridIndex.h"
 
 #include <algorithm>
@@ -75,13 +76,24 @@ std::uint32_t BFloat16BitsOf(float value)
   return (bits + 0x7fffu + (bits >> 16 & 1u)) >> 16;
 }
 
-std::vector<std::uint32_t> PairsOf(const LayerView& layer)
+/// Weights of a row's columns 2 * pair and the next.
+std::uint32_t PairOf(const LayerView& layer, std::size_t row, std::size_t pair)
 {
   const auto columns = static_cast<std::size_t>(layer.columns);
-  return PackedIn<std::uint32_t>((columns + 1) / 2, layer, [&](std::size_t row, std::size_t pair) {
-    const float* const weights = layer.weights + row * columns + 2 * pair;
-    const float second = 2 * pair + 1 < columns ? weights[1] : 0.0f;
-    return BFloat16BitsOf(weights[0]) | BFloat16BitsOf(second) << 16;
+  const float* const weights = layer.weights + row * columns + 2 * pair;
+  const float second = 2 * pair + 1 < columns ? weights[1] : 0.0f;
+  return BFloat16BitsOf(weights[0]) | BFloat16BitsOf(second) << 16;
+}
+
+std::size_t PairCount(const LayerView& layer)
+{
+  return (static_cast<std::size_t>(layer.columns) + 1) / 2;
+}
+
+std::vector<std::uint32_t> PairsOf(const LayerView& layer)
+{
+  return PackedIn<std::uint32_t>(PairCount(layer), layer, [&](std::size_t row, std::size_t pair) {
+    return PairOf(layer, row, pair);
   });
 }
 
@@ -117,16 +129,38 @@ ModelViewStorage::ModelViewStorage(const Description& description, const Layout&
   this->View.inputWidth = layout.inputWidth;
 }
 
-PackedNetwork::PackedNetwork(const ModelView& model, InferencePrecision precision)
+std::vector<PackedNetwork::Line> PackedNetwork::TilesOf(const LayerView& layer)
+{
+  constexpr std::size_t size = TileSize;
+  const auto rows = static_cast<std::size_t>(layer.rows);
+  const std::size_t tiles = (PairCount(layer) + size - 1) / size;
+  std::vector<Line> lines((rows + size - 1) / size * tiles * size);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t pair = 0; pair < PairCount(layer); ++pair) {
+      const std::size_t tile = row / size * tiles + pair / size;
+      lines[tile * size + row % size].pairs[pair % size] = PairOf(layer, row, pair);
+    }
+  }
+  return lines;
+}
+
+PackedNetwork::PackedNetwork(const ModelView& model, WeightLayout layout)
     : Layers(model.layers, model.layers + model.layerCount), View(model)
 {
   for (LayerView& layer : this->Layers) {
-    if (precision == InferencePrecision::BFloat16) {
-      this->Pairs.push_back(PairsOf(layer));
-      layer.pairs = this->Pairs.back().data();
-    } else {
+    switch (layout) {
+    case WeightLayout::Panels:
       this->Panels.push_back(PanelsOf(layer));
       layer.panels = this->Panels.back().data();
+      break;
+    case WeightLayout::Pairs:
+      this->Pairs.push_back(PairsOf(layer));
+      layer.pairs = this->Pairs.back().data();
+      break;
+    case WeightLayout::Tiles:
+      this->Tiles.push_back(TilesOf(layer));
+      layer.pairs = this->Tiles.back().data()->pairs;
+      break;
     }
   }
   this->View.layers = this->Layers.data();

@@ -33,6 +33,9 @@ struct LevelView
 /// Rows of a weight matrix that lie side by side in a panel.
 constexpr int PanelRows = 8;
 
+/// In which order and as what kernels read weights; see PackedNetwork.
+enum class WeightLayout { Panels, Pairs, Tiles };
+
 struct LayerView
 {
   const float* weights; ///< row-major, rows are outputs
@@ -81,17 +84,21 @@ private:
   ModelView View{};
 };
 
-/// A model's weights in panels of PanelRows rows. For float32, weight (r, c) of a layer is element
-/// ((r / PanelRows) * columns + c) * PanelRows + r % PanelRows of `panels`. For bfloat16 the same
-/// of `pairs`, with pairs of columns: in the lower half of an element the weight of the even one,
-/// rounded to nearest, in the upper half that of the next. Rows and columns beyond the last are 0.
-/// A copy: later changes of the weights are not seen.
+/// A model's weights as a kernel wants them; rows and columns beyond the last are 0. A copy: later
+/// changes of the weights are not seen.
+///
+/// Panels, for float32: weight (r, c) of a layer is element
+/// ((r / PanelRows) * columns + c) * PanelRows + r % PanelRows of `panels`.
+/// Pairs, for bfloat16: the same of `pairs`, with pairs of columns: in the lower half of an element
+/// the weight of the even one, rounded to nearest, in the upper half that of the next.
+/// Tiles: pair c of row r is element (r % TileSize) * TileSize + c % TileSize of a tile, and the
+/// tile is number (r / TileSize) * tiles + c / TileSize, of `tiles` to a row. A tile's row fills a
+/// cache line.
 class PackedNetwork
 {
 public:
   /// What `model` points to, except for its weights, must outlive this.
-  explicit PackedNetwork(const ModelView& model,
-                         InferencePrecision precision = InferencePrecision::Float32);
+  explicit PackedNetwork(const ModelView& model, WeightLayout layout = WeightLayout::Panels);
   PackedNetwork(const PackedNetwork&) = delete;
   PackedNetwork& operator=(const PackedNetwork&) = delete;
 
@@ -99,8 +106,17 @@ public:
   const ModelView& view() const { return this->View; }
 
 private:
+  /// Sixteen pairs.
+  struct alignas(64) Line
+  {
+    std::uint32_t pairs[16];
+  };
+
+  static std::vector<Line> TilesOf(const LayerView& layer);
+
   std::vector<std::vector<float>> Panels;
   std::vector<std::vector<std::uint32_t>> Pairs;
+  std::vector<std::vector<Line>> Tiles;
   std::vector<LayerView> Layers;
   ModelView View;
 };

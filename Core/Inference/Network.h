@@ -3,7 +3,9 @@
 // The network on a strip of encoded samples; see Lanes.h for what may be in here.
 #pragma once
 
-#ifdef INR_BFLOAT16
+#if defined(INR_TILES)
+#include "Core/Inference/TileSums.h"
+#elif defined(INR_BFLOAT16)
 #include "Core/Inference/BFloat16Sums.h"
 #else
 #include "Core/Inference/FloatSums.h"
@@ -12,6 +14,32 @@
 namespace inr {
 
 namespace INR_ISA {
+
+#ifndef INR_TILES
+
+/// Lives as long as RunStrip is called: nothing has to be set up.
+struct Batch
+{
+  Batch() {} // written out, so that a variable of it does not count as unused
+};
+
+inline void ActivateAll(Activation activation, float* values, std::int64_t count)
+{
+  Activate(activation, values, count);
+}
+
+/// The first row.
+template <int Groups>
+inline void SumRow(const LayerView& layer, const Strip& in, Floats (&sums)[Groups])
+{
+  Floats rows[1][Groups];
+  SumTile<1, Groups>(layer, 0, in, rows);
+  for (int g = 0; g < Groups; ++g) {
+    sums[g] = rows[0][g];
+  }
+}
+
+#endif
 
 /// The hidden layers; returns what goes into the last one: one of `in` and `out`.
 template <int Groups, class Between>
@@ -37,12 +65,12 @@ inline void RunGroups(const ModelView& model, Strip& in, Strip& out, float* y, B
 {
   BeginStrip<Groups>(model.encodedWidth, in);
   const Strip& last = RunHiddenLayers<Groups>(model, in, out, between);
-  Floats sums[1][Groups];
-  SumTile<1, Groups>(model.layers[model.layerCount - 1], 0, last, sums);
+  Floats sums[Groups];
+  SumRow<Groups>(model.layers[model.layerCount - 1], last, sums);
   for (int g = 0; g < Groups; ++g) {
-    Store(y + g * LaneCount, sums[0][g]);
+    Store(y + g * LaneCount, sums[g]);
   }
-  Activate(model.outputActivation, y, Groups * LaneCount);
+  ActivateAll(model.outputActivation, y, Groups * LaneCount);
 }
 
 inline int HiddenTiles(const ModelView& model)
@@ -56,7 +84,8 @@ inline int HiddenTiles(const ModelView& model)
 
 /// Outputs of the first `samples` (1 to StripSize) of a strip, whose encoding is in
 /// strips.in.values: row f of model.encodedWidth from f * StripSize on. Writes LaneCount values at
-/// a time to `y`. Calls between() HiddenTiles(model) times, as evenly spread as may be.
+/// a time to `y`. There must be a Batch. Calls between() HiddenTiles(model) times, as evenly spread
+/// as may be.
 template <class Between>
 inline void RunStrip(const ModelView& model, StripPair& strips, int samples, float* y,
                      Between& between)

@@ -12,10 +12,14 @@ namespace inr {
 namespace INR_ISA {
 
 /// Registers hold a tile of results: rows of a layer by groups of LaneCount samples.
+#ifdef INR_TILES
+constexpr int StripRows = 32;
+#else
 constexpr int StripRows = LaneCount == 16 ? PanelRows : 4;
+static_assert(PanelRows % StripRows == 0, "a tile lies within a panel");
+#endif
 constexpr int StripGroups = LaneCount == 8 ? 3 : 2; // see RunStrip
 constexpr int StripSize = StripGroups * LaneCount;
-static_assert(PanelRows % StripRows == 0, "a tile lies within a panel");
 
 template <int Rows, int Groups> inline void SetZero(Floats (&sums)[Rows][Groups])
 {
@@ -43,18 +47,25 @@ struct StripPair
   Strip out;
 };
 
+/// Rows that a strip has room for.
+inline std::int64_t StripCapacity(const ModelView& model)
+{
+  return std::int64_t{(model.widest + StripRows - 1) / StripRows} * StripRows;
+}
+
 /// Scratch memory for strips, in floats.
 inline std::int64_t StripWorkspace(const ModelView& model)
 {
-  return 2 * model.widest * (StripSize + 1) + 64;
+  return 2 * StripCapacity(model) * (StripSize + 1) + 64;
 }
 
 inline StripPair MakeStrips(const ModelView& model, float* workspace)
 {
   float* const values = AlignToLine(workspace);
-  const std::int64_t size = static_cast<std::int64_t>(model.widest) * StripSize;
+  const std::int64_t capacity = StripCapacity(model);
+  const std::int64_t size = capacity * StripSize;
   auto* const from = reinterpret_cast<std::int32_t*>(values + 2 * size);
-  return {{values, from, 0}, {values + size, from + model.widest, 0}};
+  return {{values, from, 0}, {values + size, from + capacity, 0}};
 }
 
 } // namespace INR_ISA

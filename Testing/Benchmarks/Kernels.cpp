@@ -6,6 +6,7 @@
 #include "Testing/Core/Kernels.h"
 
 #include "Core/Cache/BrickSource.h"
+#include "Core/Inference/InferenceKernels.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Random.h"
 #include "Core/Training/GradientDescent.h"
@@ -31,6 +32,9 @@ std::vector<std::string> InferenceKernels()
     if (inr::IsUsable(inr::InferencePrecision::BFloat16, inr::ChooseInstructionSet(kernel))) {
       names.push_back(kernel + Rounding);
     }
+  }
+  if (inr::IsTileKernelUsable()) {
+    names.push_back("amx" + Rounding);
   }
   return names;
 }

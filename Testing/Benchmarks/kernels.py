@@ -18,7 +18,8 @@ SETS = {"AVX512": "avx512", "AVX2": "avx2"}
 TARGETS = {"brick AVX512": 3.5, "brick AVX2": 1.5, "brick vs scattered AVX512": 2,
            "brick vs scattered AVX2": 1.3, "scattered AVX512 of ceiling": 0.6,
            "scattered AVX2 of ceiling": 0.6, "brick two cores vs one AVX512": 1.8,
-           "brick two cores vs one AVX2": 1.8, "brick AVX512 bfloat16": 6}
+           "brick two cores vs one AVX2": 1.8, "brick AVX512 bfloat16": 6,
+           "brick AMX": 12, "brick vs scattered AMX": 4, "brick two cores vs one AMX": 1.8}
 LOADS = 64  # of table entries, per sample of the default model
 WEIGHTS = 4 * 64 * 64 + 64  # products per sample of the default model
 
@@ -76,6 +77,22 @@ def derived(rate):
                "random parameters; one core")
         yield ("brick bfloat16 vs float32", rate[rounded] / rate[f"{MODEL}, avx512, 1 thread"], "",
                "brick AVX512", "")
+    yield from with_tiles(rate, rounded)
+
+
+def with_tiles(rate, rounded):
+    """The same of tile registers, where there are such."""
+    tiles = f"{MODEL}, amx bfloat16, 1 thread"
+    if tiles not in rate:
+        return
+    yield ("brick AMX", rate[tiles], "M voxels/s", None, "random parameters; one core")
+    yield ("brick vs scattered AMX",
+           rate[tiles] / rate["inference, default model, amx bfloat16, 1 thread"], "",
+           "inference, default model", "")
+    yield ("brick two cores vs one AMX", rate[f"{MODEL}, amx bfloat16, all threads"] / rate[tiles],
+           "", "brick AMX", "by processor time")
+    yield ("brick AMX vs AVX512 bfloat16", rate[tiles] / rate[rounded], "",
+           "brick AVX512 bfloat16", "")
 
 
 def main():

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Every kernel that computes with bfloat16 numbers against an evaluation in long double.
 #include "Core/Inference/ModelView.h"
 #include "Testing/Core/Inference/EvaluatePoints.h"
 #include "Testing/Core/Inference/LongDoubleTruth.h"
+#include "Testing/Core/Inference/RoundingKernels.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
 
@@ -16,19 +19,39 @@ namespace {
 
 constexpr long double Rounding = 0x1p-9L;
 
-/// Widths that no pair, panel or vector of the kernels divides, and activations that go through
-/// memory or leave no zeros.
+inr::Description Shape(int levels, int features, int neurons, int hiddenLayers,
+                       inr::Activation activation = inr::Activation::ReLU)
+{
+  inr::Description description = SmallDescription();
+  description.grid.levels = levels;
+  description.grid.features = features;
+  description.network.neurons = neurons;
+  description.network.hiddenLayers = hiddenLayers;
+  description.network.activation = activation;
+  return description;
+}
+
+/// Widths that no pair, panel, tile or vector of the kernels divides, and activations that go
+/// through memory or leave no zeros.
 std::vector<inr::Description> Descriptions()
 {
-  std::vector<inr::Description> all(4, SmallDescription());
-  all[1].grid.levels = 5;
-  all[1].grid.features = 1;
-  all[1].network.activation = inr::Activation::Tanh;
-  all[2].grid.features = 8;
-  all[2].network.neurons = 64;
-  all[2].network.hiddenLayers = 3;
-  all[3].network.activation = inr::Activation::None;
-  all[3].network.outputActivation = inr::Activation::LeakyReLU;
+  using inr::Activation;
+  std::vector<inr::Description> all = {
+      SmallDescription(),
+      Shape(5, 1, 16, 2, Activation::Tanh),
+      Shape(8, 8, 64, 3),
+      Shape(4, 4, 16, 2, Activation::None),
+      Shape(3, 2, 19, 2), // no row of weights begins where the last one's vector ends
+      Shape(1, 1, 33, 1, Activation::Exponential),
+      Shape(3, 8, 8, 2, Activation::Squareplus),
+      Shape(4, 8, 16, 0),
+      Shape(5, 1, 128, 2, Activation::LeakyReLU),
+      Shape(16, 8, 48, 1, Activation::Sigmoid),
+  };
+  all[3].network.outputActivation = Activation::LeakyReLU;
+  all[4].network.outputActivation = Activation::Softplus;
+  all[6].network.alignment = 8;
+  all[7].network.outputActivation = Activation::Sine;
   return all;
 }
 
@@ -45,20 +68,17 @@ inr::ModelPointer CalmModel(const inr::Description& description)
   return model;
 }
 
-std::shared_ptr<const inr::Evaluator> Rounded(const inr::ModelPointer& model)
-{
-  return inr::MakeEvaluator(model, "", inr::InferencePrecision::BFloat16);
-}
-
 class BFloat16 : public testing::Test
 {
 protected:
   void SetUp() override
   {
-    if (!inr::IsUsable(inr::InferencePrecision::BFloat16, inr::InstructionSet::Avx512)) {
+    if (this->Kernels.empty()) {
       GTEST_SKIP() << "this processor multiplies no bfloat16 numbers";
     }
   }
+
+  const RoundingKernels Kernels;
 };
 
 TEST_F(BFloat16, IsOffByNoMoreThanItsRounding)
@@ -67,15 +87,18 @@ TEST_F(BFloat16, IsOffByNoMoreThanItsRounding)
   for (const inr::Description& description : Descriptions()) {
     const inr::ModelPointer model = CalmModel(description);
     const LongDoubleTruth truth(*model, Rounding);
-    const std::vector<float> values = Evaluate(*Rounded(model), positions);
+    std::vector<Bounded> exact(positions.size());
+    std::transform(positions.begin(), positions.end(), exact.begin(), truth);
     const std::vector<float> unrounded = Evaluate(*inr::MakeEvaluator(model), positions);
-    int others = 0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      const Bounded exact = truth(positions[k]);
-      ASSERT_LE(std::abs(values[k] - exact.value), exact.error) << k;
-      others += values[k] != unrounded[k] ? 1 : 0;
+    for (const inr::InferenceKernels& kernels : this->Kernels) {
+      const std::vector<float> values = Evaluate(*inr::MakeEvaluator(model, kernels), positions);
+      int others = 0;
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        ASSERT_LE(std::abs(values[k] - exact[k].value), exact[k].error) << kernels.name << k;
+        others += values[k] != unrounded[k] ? 1 : 0;
+      }
+      EXPECT_GT(others, 450) << "is that float32? " << kernels.name;
     }
-    EXPECT_GT(others, 450) << "is that float32?";
   }
 }
 
@@ -84,7 +107,7 @@ TEST_F(BFloat16, IsTheSameOnLatticesButForRounding)
   std::vector<float> axes[3];
   for (int k = 0; k < 43; ++k) { // no whole pieces
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      axes[axis].resize(std::min<std::size_t>(axes[axis].size() + 1, 43 - 17 * axis));
+      axes[axis].resize(std::min<std::size_t>(axes[axis].size() + 1, 43 - 20 * axis));
       axes[axis].back() = static_cast<float>(axes[axis].size()) / 50;
     }
   }
@@ -92,45 +115,91 @@ TEST_F(BFloat16, IsTheSameOnLatticesButForRounding)
     const inr::ModelPointer model = CalmModel(description);
     const LongDoubleTruth truth(*model, Rounding);
     std::vector<float> values(axes[0].size() * axes[1].size() * axes[2].size());
-    Rounded(model)->evaluateGrid(axes, values.data());
-    for (std::size_t k = 0; k < values.size(); k += 5) {
-      const glm::vec3 at(axes[0][k % axes[0].size()], axes[1][k / axes[0].size() % axes[1].size()],
-                         axes[2][k / (axes[0].size() * axes[1].size())]);
-      const Bounded exact = truth(at);
-      ASSERT_LE(std::abs(values[k] - exact.value), exact.error) << k;
+    for (const inr::InferenceKernels& kernels : this->Kernels) {
+      inr::MakeEvaluator(model, kernels)->evaluateGrid(axes, values.data());
+      for (std::size_t k = 0; k < values.size(); k += 29) {
+        const glm::vec3 at(axes[0][k % axes[0].size()],
+                           axes[1][k / axes[0].size() % axes[1].size()],
+                           axes[2][k / (axes[0].size() * axes[1].size())]);
+        const Bounded exact = truth(at);
+        ASSERT_LE(std::abs(values[k] - exact.value), exact.error) << kernels.name << k;
+      }
     }
+  }
+}
+
+void ExpectNoNeighbours(const inr::Evaluator& evaluator, const std::vector<glm::vec3>& positions)
+{
+  const std::vector<float> together = Evaluate(evaluator, positions);
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    ASSERT_EQ(Evaluate(evaluator, {positions[k]})[0], together[k]) << evaluator.kernel() << k;
+  }
+  const std::vector<float> axes[3] = {{0.1f, 0.11f, 0.7f}, {0.2f, 0.3f, 0.31f, 0.9f}, {0.5f}};
+  std::vector<float> lattice(12);
+  evaluator.evaluateGrid(axes, lattice.data());
+  for (std::size_t k = 0; k < lattice.size(); ++k) {
+    float alone = 0;
+    const std::vector<float> point[3] = {{axes[0][k % 3]}, {axes[1][k / 3]}, {axes[2][0]}};
+    evaluator.evaluateGrid(point, &alone);
+    ASSERT_EQ(lattice[k], alone) << evaluator.kernel() << k;
   }
 }
 
 TEST_F(BFloat16, ValuesDoNotDependOnTheirNeighbours)
 {
-  const std::vector<glm::vec3> positions = RandomPositions(333);
+  const std::vector<glm::vec3> positions = RandomPositions(107);
   for (const inr::Description& description : Descriptions()) {
-    const auto evaluator = Rounded(CalmModel(description));
-    const std::vector<float> together = Evaluate(*evaluator, positions);
-    for (std::size_t k = 0; k < positions.size(); ++k) {
-      ASSERT_EQ(Evaluate(*evaluator, {positions[k]})[0], together[k]) << k;
+    for (const inr::InferenceKernels& kernels : this->Kernels) {
+      ExpectNoNeighbours(*inr::MakeEvaluator(CalmModel(description), kernels), positions);
     }
-    const std::vector<float> axes[3] = {{0.1f, 0.11f, 0.7f}, {0.2f, 0.3f, 0.31f, 0.9f}, {0.5f}};
-    std::vector<float> lattice(12);
-    evaluator->evaluateGrid(axes, lattice.data());
-    for (std::size_t k = 0; k < lattice.size(); ++k) {
-      float alone = 0;
-      const std::vector<float> point[3] = {{axes[0][k % 3]}, {axes[1][k / 3]}, {axes[2][0]}};
-      evaluator->evaluateGrid(point, &alone);
-      ASSERT_EQ(lattice[k], alone) << k;
+  }
+}
+
+/// What a kernel finds in its memory.
+std::vector<float> ValuesAfter(unsigned char garbage, const inr::InferenceKernels& kernels,
+                               const inr::Model& model, const std::vector<glm::vec3>& positions)
+{
+  const inr::ModelViewStorage views(model.description, inr::Layout(model.description),
+                                    model.parameters.data());
+  const inr::PackedNetwork network(views.view(), kernels.layout);
+  const auto count = static_cast<std::int64_t>(positions.size());
+  std::vector<float> values(positions.size() + 12);
+  std::vector<unsigned char> memory(
+      sizeof(float) * static_cast<std::size_t>(kernels.points->workspace(network.view())), garbage);
+  kernels.points->evaluate(network.view(), &positions[0].x, count, values.data(),
+                           reinterpret_cast<float*>(memory.data()));
+  memory.assign(static_cast<std::size_t>(kernels.lattices->workspace(network.view())), garbage);
+  const float axis[4] = {0.1f, 0.2f, 0.7f, 0.8f};
+  const inr::LatticeAxis axes[3] = {{axis, 3}, {axis, 4}, {axis, 1}};
+  kernels.lattices->evaluate(network.view(), axes, values.data() + count, memory.data());
+  return values;
+}
+
+TEST_F(BFloat16, ValuesDoNotDependOnWhatWasInMemory)
+{
+  const std::vector<glm::vec3> positions = RandomPositions(39);
+  for (const inr::Description& description : Descriptions()) {
+    const inr::ModelPointer model = CalmModel(description);
+    for (const inr::InferenceKernels& kernels : this->Kernels) {
+      EXPECT_EQ(ValuesAfter(0xff, kernels, *model, positions), // all NaN
+                ValuesAfter(0, kernels, *model, positions))
+          << kernels.name;
     }
   }
 }
 
 TEST_F(BFloat16, IsForModelsWhoseNumbersCannotOverflow)
 {
-  EXPECT_EQ(Rounded(RandomModel(SmallDescription()))->kernel(), "avx512 bfloat16");
+  const auto rounded = [](const inr::ModelPointer& model) {
+    return inr::MakeEvaluator(model, "", inr::InferencePrecision::BFloat16);
+  };
+  EXPECT_EQ(rounded(RandomModel(SmallDescription()))->kernel(),
+            inr::IsTileKernelUsable() ? "amx bfloat16" : "avx512 bfloat16");
   auto huge = RandomModel(SmallDescription());
   for (float& parameter : huge->parameters) {
     parameter *= 1e12f;
   }
-  const auto evaluator = Rounded(huge);
+  const auto evaluator = rounded(huge);
   EXPECT_EQ(evaluator->kernel(), "avx512");
   const std::vector<glm::vec3> positions = RandomPositions(50);
   EXPECT_EQ(Evaluate(*evaluator, positions), Evaluate(*inr::MakeEvaluator(huge), positions));
@@ -184,7 +253,7 @@ TEST(InferencePrecision, RoundsPairsOfWeightsToNearestAndEven)
   inr::ModelView model{};
   model.layers = &layer;
   model.layerCount = 1;
-  const inr::PackedNetwork network(model, inr::InferencePrecision::BFloat16);
+  const inr::PackedNetwork network(model, inr::WeightLayout::Pairs);
   const std::uint32_t* pairs = network.view().layers[0].pairs;
   EXPECT_EQ(pairs[0], 0xc0403f80u); // -3 and 1, of two as near the even one
   EXPECT_EQ(pairs[1], 0x00003dcdu); // 0 and 0.1, a little more

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Inference/InferenceKernels.h"
+#ifdef __x86_64__
+#include "Testing/Core/Inference/TileImitation.h"
+#include "Testing/Core/Inference/TileTraps.h"
+#endif
+
+#include <memory>
+#include <vector>
+
+/// All that compute with bfloat16 numbers on this machine: with AVX512-BF16, with tiles built for
+/// an imitation of them and, as long as this lives, with those built for the processor, whose
+/// instructions are imitated where it lacks them. One where it has them but may not use them.
+class RoundingKernels
+{
+public:
+#ifdef __x86_64__
+  RoundingKernels()
+  {
+    if (!inr::IsUsable(inr::InferencePrecision::BFloat16, inr::InstructionSet::Avx512)) {
+      return;
+    }
+    this->All = {inr::PairKernels(), ImitatedKernels()};
+    if (inr::IsTileKernelUsable() || !imitation::HasTileInstructions()) {
+      this->All.push_back(inr::TileKernels());
+      this->Traps = std::make_unique<imitation::TileTraps>();
+    }
+  }
+#endif
+
+  bool empty() const { return this->All.empty(); }
+  auto begin() const { return this->All.begin(); }
+  auto end() const { return this->All.end(); }
+
+private:
+  std::vector<inr::InferenceKernels> All;
+#ifdef __x86_64__
+  std::unique_ptr<imitation::TileTraps> Traps;
+#endif
+};
