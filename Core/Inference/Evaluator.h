@@ -48,9 +48,10 @@ public:
   virtual std::string kernel() const = 0;
 };
 
-/// With BFloat16, weights and what goes into a layer are off by up to 2^-9 of themselves, which
-/// adds at most (2^-8 + 2^-18) of the sum of the products' magnitudes to what a sum loses. Where
-/// the kernel cannot do that here, or the model's numbers might leave float's range, it is Float32.
+/// With BFloat16, weights and what goes into a layer are off by up to 2^-8 of themselves, which
+/// adds at most (2^-7 + 2^-16) of the sum of the products' magnitudes to what a sum loses, and
+/// numbers below 2^-126 count as zero, which loses at most 2^-30 of y. Where the kernel cannot do
+/// that here, or the model's numbers might leave float's range, it is Float32.
 ///
 /// The fastest kernel that this processor runs; `kernel` asks for one by name ("avx512", "avx2",
 /// "baseline", or "amx" for bfloat16 by tile registers; for tests) and Error(Unsupported) says that

@@ -14,6 +14,10 @@ namespace {
 
 /// With room for what rounding adds in all layers.
 constexpr double Largest = std::numeric_limits<float>::max() / 256.0;
+/// What is below counts as zero.
+constexpr double Smallest = std::numeric_limits<float>::min();
+/// What that may come to in a value y.
+constexpr double MostLost = 0x1p-30;
 
 double LargestMagnitude(const float* values, std::uint64_t count)
 {
@@ -50,17 +54,33 @@ double LargestSum(const LayerView& layer)
   return largest;
 }
 
-double LargestActivation(Activation activation, double largest)
+/// Of all numbers between two layers.
+struct Magnitudes
+{
+  double largest;
+  double lost; ///< by how much one is off at most because others counted as zero
+};
+
+/// What a layer's rows make of `in`.
+Magnitudes SumsOf(const LayerView& layer, const Magnitudes& in)
+{
+  const double sum = LargestSum(layer);
+  // Inputs, weights, and sums: up to two for each column.
+  const double lost = sum * (in.lost + Smallest) + layer.columns * Smallest * (in.largest + 2.0);
+  return {sum < Largest ? sum * in.largest : sum, lost};
+}
+
+Magnitudes Activated(Activation activation, const Magnitudes& sums)
 {
   switch (activation) {
   case Activation::Exponential:
-    return std::exp(largest);
+    return {std::exp(sums.largest), std::exp(sums.largest) * sums.lost};
   case Activation::Sigmoid:
   case Activation::Sine:
   case Activation::Tanh:
-    return 1.0;
-  default:
-    return largest + 1.0; // softplus and squareplus are above what they are given by less
+    return {1.0, sums.lost};
+  default: // softplus and squareplus are above what they are given by less; slopes are at most 1
+    return {sums.largest + 1.0, sums.lost};
   }
 }
 
@@ -80,16 +100,15 @@ bool IsUsable(InferencePrecision precision, InstructionSet set)
 
 bool StaysInRange(const ModelView& model)
 {
-  double largest = LargestFeature(model);
-  for (int l = 0; l < model.layerCount && largest < Largest; ++l) {
-    const double sum = LargestSum(model.layers[l]);
-    const bool last = l + 1 == model.layerCount;
-    largest = sum < Largest ? sum * largest : sum;
-    if (largest < Largest) {
-      largest = LargestActivation(last ? model.outputActivation : model.activation, largest);
+  Magnitudes at{LargestFeature(model), 0.0};
+  for (int l = 0; l < model.layerCount && at.largest < Largest; ++l) {
+    at = SumsOf(model.layers[l], at);
+    if (at.largest < Largest) {
+      const bool last = l + 1 == model.layerCount;
+      at = Activated(last ? model.outputActivation : model.activation, at);
     }
   }
-  return largest < Largest;
+  return at.largest < Largest && at.lost <= MostLost;
 }
 
 } // namespace inr

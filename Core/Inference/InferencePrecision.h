@@ -17,9 +17,10 @@ enum class InferencePrecision {
 /// always is.
 bool IsUsable(InferencePrecision precision, InstructionSet set);
 
-/// Whether no number that the network computes can come near the end of float's range, wherever it
-/// is evaluated: by the largest magnitudes that features, weights and activations allow. Kernels
-/// for bfloat16 cannot tell whether that happened.
+/// Whether no number that the network computes can come near either end of float's range, wherever
+/// it is evaluated: by the largest magnitudes that features, weights and activations allow, none is
+/// too large, and what is below 2^-126 counts for at most 2^-30 of a value y. Kernels for bfloat16
+/// cannot tell whether a number was too large, and take one that small for zero.
 bool StaysInRange(const ModelView& model);
 
 } // namespace inr

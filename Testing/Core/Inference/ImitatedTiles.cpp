@@ -134,6 +134,8 @@ float Sum(float before, int left, int right, int row, int column)
 void Configure(const inr::TileShapes& shapes)
 {
   RequireShapes(shapes);
+  // The processor would not mind, but then somebody has not released them.
+  Require(!Tiles.configured, "LDTILECFG", "tiles are configured");
   Tiles.configured = true;
   ++Tiles.configurations;
   Tiles.shapes = shapes;

@@ -23,7 +23,8 @@ struct Bounded
 class LongDoubleTruth
 {
 public:
-  /// `rounding`: by how much of itself weights and what goes into a layer are rounded at most.
+  /// `rounding`: by how much of itself weights and what goes into a layer are rounded at most, in
+  /// kernels that take the smallest numbers for zero.
   explicit LongDoubleTruth(const inr::Model& model, long double rounding = 0)
       : Source(model), Shape(model.description), OfProducts(2 * rounding + rounding * rounding)
   {}
@@ -39,6 +40,7 @@ public:
         value = Activated(last ? network.outputActivation : network.activation, value);
       }
     }
+    values[0].error += this->OfProducts > 0 ? 0x1p-30L : 0;
     return values[0];
   }
 

@@ -17,7 +17,7 @@
 
 namespace {
 
-constexpr long double Rounding = 0x1p-9L;
+constexpr long double Rounding = 0x1p-8L;
 
 inr::Description Shape(int levels, int features, int neurons, int hiddenLayers,
                        inr::Activation activation = inr::Activation::ReLU)
@@ -219,10 +219,11 @@ TEST(InferencePrecision, IsFloatWhereTheKernelHasNoOther)
 }
 
 /// Whether a model stays in range with the parameters of a part of it set to a value.
-bool StaysInRange(inr::Activation activation, float feature, float weight)
+bool StaysInRange(inr::Activation activation, float feature, float weight, int hiddenLayers = 2)
 {
   inr::Description description = SmallDescription();
   description.network.activation = activation;
+  description.network.hiddenLayers = hiddenLayers;
   const inr::Layout layout(description);
   std::vector<float> parameters(layout.parameterCount, weight);
   const auto grid = parameters.begin() + static_cast<std::ptrdiff_t>(layout.gridOffset);
@@ -230,19 +231,32 @@ bool StaysInRange(inr::Activation activation, float feature, float weight)
   return inr::StaysInRange(inr::ModelViewStorage(description, layout, parameters.data()).view());
 }
 
+/// Layers have 16 columns; 2^120 is too large.
 TEST(InferencePrecision, KnowsHowLargeNumbersBecome)
 {
   using inr::Activation;
-  // Three layers of 16 columns: 4096 times what goes in, and weights three times.
-  EXPECT_TRUE(StaysInRange(Activation::ReLU, 1e31f, 1.0f));
-  EXPECT_FALSE(StaysInRange(Activation::ReLU, -1e33f, 1.0f));
-  EXPECT_TRUE(StaysInRange(Activation::ReLU, 1.0f, 1e10f));
-  EXPECT_FALSE(StaysInRange(Activation::ReLU, 1.0f, -1e12f));
+  EXPECT_TRUE(StaysInRange(Activation::ReLU, 1e5f, 1e5f));
+  EXPECT_TRUE(StaysInRange(Activation::ReLU, 5e14f, 1e20f, 0));
+  EXPECT_FALSE(StaysInRange(Activation::ReLU, -1e15f, 1e20f, 0));
+  EXPECT_FALSE(StaysInRange(Activation::ReLU, 1e15f, -1e20f, 0));
   EXPECT_FALSE(StaysInRange(Activation::ReLU, 1e-30f, 3e38f)); // rounds to infinity
   EXPECT_FALSE(StaysInRange(Activation::Tanh, 3e37f, 1.0f));
-  EXPECT_TRUE(StaysInRange(Activation::Tanh, 1e29f, 1e5f));
+  EXPECT_TRUE(StaysInRange(Activation::Tanh, 1e10f, 1e5f));
   EXPECT_TRUE(StaysInRange(Activation::Exponential, 1.0f, 0.01f));
   EXPECT_FALSE(StaysInRange(Activation::Exponential, 6.0f, 1.0f));
+}
+
+/// What is below 2^-126 counts as zero, and that may come to 2^-30.
+TEST(InferencePrecision, KnowsWhatIsLostToZero)
+{
+  using inr::Activation;
+  EXPECT_TRUE(StaysInRange(Activation::ReLU, 1e-40f, 1.0f));
+  EXPECT_TRUE(StaysInRange(Activation::ReLU, 1e-40f, 0x1p26f)); // of features: 2^-126 * (16 w)^3
+  EXPECT_FALSE(StaysInRange(Activation::ReLU, 1e-40f, 0x1p29f));
+  EXPECT_TRUE(StaysInRange(Activation::ReLU, 0x1p91f, 1e-40f, 0)); // of weights: 2^-126 * 16 f
+  EXPECT_FALSE(StaysInRange(Activation::ReLU, 0x1p93f, 1e-40f, 0));
+  EXPECT_TRUE(StaysInRange(Activation::Exponential, 1e-40f, 0.1f));
+  EXPECT_FALSE(StaysInRange(Activation::Exponential, 4.0f, 1.0f)); // times e^64
 }
 
 TEST(InferencePrecision, RoundsPairsOfWeightsToNearestAndEven)

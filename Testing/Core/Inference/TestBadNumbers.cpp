@@ -4,6 +4,7 @@
 // on lattices and in bricks, against an evaluation in long double.
 #include "Core/Cache/BrickSource.h"
 #include "Testing/Core/Inference/LongDoubleTruth.h"
+#include "Testing/Core/Inference/RoundingKernels.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
 
@@ -161,9 +162,9 @@ bool OnAFace(const inr::Model& model, const glm::vec3& position)
 /// Points of a model with their true values.
 struct Truth
 {
-  Truth(const inr::Model& model, const std::vector<glm::vec3>& points)
+  Truth(const inr::Model& model, const std::vector<glm::vec3>& points, long double rounding = 0)
   {
-    const LongDoubleTruth truth(model);
+    const LongDoubleTruth truth(model, rounding);
     for (const glm::vec3& point : points) {
       this->Values.push_back(truth(point));
       this->Usable.push_back(!OnAFace(model, point));
@@ -306,6 +307,35 @@ TEST_P(BadNumbers, DoNotMakeAValueDependOnItsNeighbours)
       }
     }
   });
+}
+
+/// Kernels for bfloat16, where they are used.
+TEST_P(BadNumbers, AreWithinTheBoundOfBFloat16)
+{
+  const RoundingKernels rounding;
+  std::vector<float> axes[3] = {{0.1f, 0.5f, 0.52f, 0.9f}, {0.0f, 0.3f, 0.7f}, {0.2f}};
+  const std::vector<glm::vec3> lattice = PointsOf(axes);
+  int rounded = 0;
+  forEachModel([&](const inr::ModelPointer& model, const std::string& name) {
+    const auto chosen = inr::MakeEvaluator(model, "", inr::InferencePrecision::BFloat16);
+    if (chosen->kernel().find("bfloat16") == std::string::npos) {
+      return;
+    }
+    ++rounded;
+    const std::vector<glm::vec3> points = Positions(inr::Layout(model->description));
+    const Truth truth(*model, points, 0x1p-8L);
+    const Truth latticeTruth(*model, lattice, 0x1p-8L);
+    for (const inr::InferenceKernels& kernels : rounding) {
+      const auto evaluator = inr::MakeEvaluator(model, kernels);
+      std::vector<float> values(points.size());
+      evaluator->evaluate(points.data(), static_cast<std::int64_t>(points.size()), values.data());
+      truth.expect(values, -FLT_MAX, FLT_MAX, name + kernels.name);
+      values.resize(lattice.size());
+      evaluator->evaluateGrid(axes, values.data());
+      latticeTruth.expect(values, -FLT_MAX, FLT_MAX, name + kernels.name);
+    }
+  });
+  RecordProperty("rounded", rounded);
 }
 
 TEST(BadPositions, ThatAreNaNAreZeroToTheLastBit)
