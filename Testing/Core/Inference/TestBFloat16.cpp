@@ -47,10 +47,11 @@ std::vector<inr::Description> Descriptions()
       Shape(4, 8, 16, 0),
       Shape(5, 1, 128, 2, Activation::LeakyReLU),
       Shape(16, 8, 48, 1, Activation::Sigmoid),
+      Shape(1, 1, 8, 2), // less than a tile
   };
   all[3].network.outputActivation = Activation::LeakyReLU;
   all[4].network.outputActivation = Activation::Softplus;
-  all[6].network.alignment = 8;
+  all[6].network.alignment = all[10].network.alignment = 8;
   all[7].network.outputActivation = Activation::Sine;
   return all;
 }
@@ -155,7 +156,30 @@ TEST_F(BFloat16, ValuesDoNotDependOnTheirNeighbours)
   }
 }
 
-/// What a kernel finds in its memory.
+/// A kernel's memory, full of something. Nobody writes behind it.
+class Workspace
+{
+public:
+  Workspace(std::int64_t bytes, unsigned char garbage)
+      : Bytes(static_cast<std::size_t>(bytes) + Behind, garbage)
+  {}
+  ~Workspace()
+  {
+    EXPECT_TRUE(std::all_of(this->Bytes.end() - Behind, this->Bytes.end(),
+                            [&](unsigned char byte) { return byte == this->Bytes.back(); }));
+  }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  void* data() { return this->Bytes.data(); }
+
+private:
+  static constexpr int Behind = 4096;
+
+  std::vector<unsigned char> Bytes;
+};
+
+/// Values at points and on a lattice.
 std::vector<float> ValuesAfter(unsigned char garbage, const inr::InferenceKernels& kernels,
                                const inr::Model& model, const std::vector<glm::vec3>& positions)
 {
@@ -164,14 +188,13 @@ std::vector<float> ValuesAfter(unsigned char garbage, const inr::InferenceKernel
   const inr::PackedNetwork network(views.view(), kernels.layout);
   const auto count = static_cast<std::int64_t>(positions.size());
   std::vector<float> values(positions.size() + 12);
-  std::vector<unsigned char> memory(
-      sizeof(float) * static_cast<std::size_t>(kernels.points->workspace(network.view())), garbage);
+  Workspace ofPoints(kernels.points->workspace(network.view()) * 4, garbage);
   kernels.points->evaluate(network.view(), &positions[0].x, count, values.data(),
-                           reinterpret_cast<float*>(memory.data()));
-  memory.assign(static_cast<std::size_t>(kernels.lattices->workspace(network.view())), garbage);
+                           static_cast<float*>(ofPoints.data()));
   const float axis[4] = {0.1f, 0.2f, 0.7f, 0.8f};
   const inr::LatticeAxis axes[3] = {{axis, 3}, {axis, 4}, {axis, 1}};
-  kernels.lattices->evaluate(network.view(), axes, values.data() + count, memory.data());
+  Workspace ofLattice(kernels.lattices->workspace(network.view()), garbage);
+  kernels.lattices->evaluate(network.view(), axes, values.data() + count, ofLattice.data());
   return values;
 }
 
