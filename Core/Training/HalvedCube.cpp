@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/HalvedCube.h"
 
-#include "Core/Training/SampleSource.h"
-
-#include <glm/common.hpp>
+#include "Core/Training/Trilinear.h"
 
 namespace inr {
 
@@ -52,18 +50,18 @@ HalvedCube HalveLongest(const glm::i64vec3& dims, const glm::dvec3& size, std::i
 glm::vec3 PositionInBox(const glm::vec3& corner, const glm::vec3& extent, const glm::i64vec3& dims,
                         std::uint64_t stream, std::uint64_t drawn)
 {
-  glm::vec3 position = corner + RandomPosition(stream, drawn, dims) * extent;
+  glm::vec3 position;
   for (int axis = 0; axis < 3; ++axis) {
-    position[axis] = dims[axis] > 1 ? position[axis] : 0.5f;
+    position[axis] = CoordinateInBox(corner[axis], extent[axis], dims[axis], stream,
+                                     3 * drawn + static_cast<std::uint64_t>(axis));
   }
   return position;
 }
 
 glm::vec3 VoxelCentre(const glm::vec3& position, const glm::i64vec3& dims)
 {
-  const glm::dvec3 size(dims);
-  const glm::dvec3 voxel = glm::min(glm::floor(glm::dvec3(position) * size), size - 1.0);
-  return glm::vec3((voxel + 0.5) / size);
+  return {CentreOfVoxel(position.x, dims.x), CentreOfVoxel(position.y, dims.y),
+          CentreOfVoxel(position.z, dims.z)};
 }
 
 } // namespace inr

@@ -1,13 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Training/Trilinear.h"
 #include "Core/Training/Volume.h"
 
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <optional>
 
 namespace inr {
+
+/// A volume in memory and what is target 0 and 1 of it.
+struct NormalisedVolume
+{
+  VolumeData data;
+  double low;
+  double high;
+};
 
 /// Where training targets come from. Safe to ask from several threads at once.
 class SampleSource
@@ -23,6 +33,9 @@ public:
   /// a voxel that is NaN or infinite the nearest voxel's value, so that every finite voxel is a
   /// target; NaN where that one is not finite.
   virtual void sample(const glm::vec3* positions, std::int64_t count, float* targets) const = 0;
+
+  /// The voxels, where they lie in memory, all of them: for a device that samples a copy.
+  virtual std::optional<NormalisedVolume> inMemory() const { return std::nullopt; }
 };
 
 /// Random position number `k` of a stream: uniform in the unit cube, but in the middle of an axis
@@ -35,9 +48,6 @@ glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64ve
 void SamplePiece(const VolumePiece& piece, const glm::i64vec3& dims, const glm::vec3* positions,
                  std::int64_t count, double origin, double* values);
 
-/// (value - low)/(high - low) as a target; NaN for one that is not finite.
-float NormalisedTarget(double value, double low, double high);
-
 /// The whole volume in memory, in its own type.
 class InMemorySource : public SampleSource
 {
@@ -47,6 +57,10 @@ public:
 
   const glm::i64vec3& dims() const override { return this->Volume.data.dims; }
   void sample(const glm::vec3* positions, std::int64_t count, float* targets) const override;
+  std::optional<NormalisedVolume> inMemory() const override
+  {
+    return NormalisedVolume{this->Volume.data, this->Low, this->High};
+  }
 
 private:
   VolumePiece Volume;
