@@ -71,6 +71,13 @@ struct Quality
   std::uint64_t sampledVoxels = 0;
 };
 
+/// Where a training's samples come from.
+enum class TrainingPipeline {
+  DeviceMemory, ///< the volume, in the memory of an accelerator
+  HostMemory,   ///< the volume, in the host's
+  Storage       ///< samples of a volume that is read in pieces
+};
+
 /// Enough to repeat the training.
 struct TrainingRecord
 {
@@ -83,6 +90,9 @@ struct TrainingRecord
   /// Where it started from another model's parameters: steps that had gone into those, 0 = not
   /// known.
   std::optional<std::uint64_t> earlierSteps;
+  /// Not in the file: what trained ("CPU avx2", "CUDA float32, NVIDIA H200"), and from where.
+  std::string backend = {};
+  TrainingPipeline pipeline = TrainingPipeline::HostMemory;
   /// Not in the file. Of the seconds since the training began or went on, those in which this
   /// process waited for the gradients of others, and in which they told each other theirs.
   double waitingSeconds = 0;

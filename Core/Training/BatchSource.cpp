@@ -3,6 +3,18 @@
 
 namespace inr {
 
+const char* TrainingPipelineName(TrainingPipeline pipeline)
+{
+  switch (pipeline) {
+  case TrainingPipeline::DeviceMemory:
+    return "device memory";
+  case TrainingPipeline::HostMemory:
+    return "host memory";
+  default:
+    return "storage";
+  }
+}
+
 void StratifiedBatches::draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin,
                              std::int64_t end, glm::vec3* positions, float* targets) const
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Model/Model.h"
 #include "Core/Training/SampleSource.h"
 #include "Core/Training/StateArray.h"
 #include "Core/Training/StopCheck.h"
@@ -9,12 +10,16 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace inr {
 
 /// Positions per mini-batch.
 constexpr std::int64_t BatchSize = 1 << 14;
+
+/// "device memory", "host memory", "storage".
+const char* TrainingPipelineName(TrainingPipeline pipeline);
 
 /// Where a training is: steps done, and how many are planned (the largest number = no end in
 /// sight).
@@ -33,6 +38,13 @@ public:
 
   /// What distinguishes its samples from those of another source of the same volume, for the user.
   virtual std::string name() const { return "of the volume in memory"; }
+
+  /// Where its samples come from.
+  virtual TrainingPipeline pipeline() const { return TrainingPipeline::HostMemory; }
+
+  /// The volume whose StratifiedBatches these are, where it is in memory: an accelerator may draw
+  /// them from a copy.
+  virtual std::optional<NormalisedVolume> inMemory() const { return std::nullopt; }
 
   /// Called before the items of a step are drawn, by the thread that trains. May wait for data as
   /// long as `check` lets it. In a group all processes call it together: it may call the group, and
@@ -69,6 +81,7 @@ public:
       : Source(source), Boxes(source.dims(), BatchSize)
   {}
 
+  std::optional<NormalisedVolume> inMemory() const override { return this->Source.inMemory(); }
   void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
             glm::vec3* positions, float* targets) const override;
 

@@ -16,9 +16,6 @@ const TrainKernel& TrainKernelFor(InstructionSet set) { return INR_KERNEL_FOR(se
 
 namespace {
 
-constexpr float Epsilon = 1e-15f;
-constexpr float WeightDecay = 1e-6f; // of the MLP only
-
 /// Samples whose weight gradients are summed in one buffer; the buffers are then added in order.
 constexpr std::int64_t ShardSize = 2 * TrainBlockSize;
 
@@ -83,6 +80,14 @@ std::vector<float> InitialParameters(const Description& description, const Layou
   return parameters;
 }
 
+void DrawBatch(const BatchSource& batches, std::uint64_t stream, std::uint64_t step,
+               const Arena& arena, glm::vec3* positions, float* targets)
+{
+  arena.forEachBlock(batches.count(), ShardSize, [&](std::int64_t begin, std::int64_t end) {
+    batches.draw(stream, step, begin, end, positions + begin, targets + begin);
+  });
+}
+
 GradientDescent::GradientDescent(const Description& description, std::uint64_t seed,
                                  InstructionSet set, const Arena& arena)
     : Threads(arena), Kernel(TrainKernelFor(set)), Shape(description), Seed(seed),
@@ -111,6 +116,11 @@ void GradientDescent::share(const TrainingGroup& group)
   }
 }
 
+std::uint64_t GradientDescent::stream() const
+{
+  return StreamSeed(this->Seed, RandomStream::Batches);
+}
+
 StateArrays GradientDescent::state()
 {
   const auto array = [](const char* name, auto& values) {
@@ -123,8 +133,7 @@ StateArrays GradientDescent::state()
 
 std::optional<double> GradientDescent::step(BatchSource& batches, const StopCheck& check)
 {
-  batches.prepare({this->Steps, this->PlannedSteps, StreamSeed(this->Seed, RandomStream::Batches)},
-                  check);
+  batches.prepare({this->Steps, this->PlannedSteps, this->stream()}, check);
   const std::optional<double> loss =
       this->Exchange ? this->computeTogether(batches, check) : this->computeShare(batches, check);
   if (!loss) {
@@ -149,18 +158,12 @@ std::optional<double> GradientDescent::computeShare(BatchSource& batches, const 
   if (!check.goesOn()) {
     return std::nullopt;
   }
-  this->drawBatch(batches, StreamSeed(this->Seed, RandomStream::Batches));
+  const auto count = static_cast<std::size_t>(batches.count());
+  this->Positions.resize(count);
+  this->Targets.resize(count);
+  DrawBatch(batches, this->stream(), this->Steps, this->Threads, this->Positions.data(),
+            this->Targets.data());
   return this->backpropagate(this->Positions, this->Targets, batches.total(), check);
-}
-
-void GradientDescent::drawBatch(const BatchSource& batches, std::uint64_t stream)
-{
-  const std::int64_t count = batches.count();
-  this->Positions.resize(static_cast<std::size_t>(count));
-  this->Targets.resize(static_cast<std::size_t>(count));
-  this->Threads.forEachBlock(count, ShardSize, [&](std::int64_t begin, std::int64_t end) {
-    batches.draw(stream, this->Steps, begin, end, &this->Positions[begin], &this->Targets[begin]);
-  });
 }
 
 std::optional<double> GradientDescent::computeGradient(const std::vector<glm::vec3>& positions,
@@ -274,7 +277,7 @@ void GradientDescent::updateNetwork(float learningRate)
                     this->FirstMoments.data(),
                     this->SecondMoments.data(),
                     FirstMomentKept,
-                    Epsilon,
+                    AdamEpsilon,
                     WeightDecay};
   const std::size_t last = std::min<std::uint64_t>(this->Steps, LastAdamUpdate);
   AdamStep step = this->Updating[last];
@@ -295,7 +298,7 @@ void GradientDescent::updateGrid(float learningRate)
                       &this->FirstMoments[first],
                       &this->SecondMoments[first],
                       FirstMomentKept,
-                      Epsilon,
+                      AdamEpsilon,
                       0.0f};
     this->Kernel.adamSparse(run, piece.count, piece.touched, learningRate,
                             &this->Updates[piece.first], schedule);

@@ -4,10 +4,9 @@
 #include "Core/Inference/ModelView.h"
 #include "Core/Parallel.h"
 #include "Core/Training/BatchSource.h"
+#include "Core/Training/Descent.h"
 #include "Core/Training/GradientExchange.h"
 #include "Core/Training/GridGradient.h"
-#include "Core/Training/StateArray.h"
-#include "Core/Training/StopCheck.h"
 #include "Core/Training/TrainKernel.h"
 
 #include <cstdint>
@@ -29,29 +28,33 @@ struct LearningRate
   float at(std::uint64_t step, std::uint64_t plannedSteps) const;
 };
 
+/// Of Adam, and the L2 regularisation of the MLP only.
+constexpr float AdamEpsilon = 1e-15f;
+constexpr float WeightDecay = 1e-6f;
+
 /// Xavier-uniform MLP weights (SIREN's for sine; Sitzmann et al., NeurIPS 2020) and grid features
 /// uniform in +-1e-4, from `seed`.
 std::vector<float> InitialParameters(const Description& description, const Layout& layout,
                                      std::uint64_t seed);
 
-/// Fits the parameters of one INR with Adam on mini-batches. The parameters after n steps depend on
-/// description, seed, plan, batches and instruction set, not on the number of threads.
-class GradientDescent
+/// Draws a whole mini-batch, which was prepared: batches.count() positions and targets.
+void DrawBatch(const BatchSource& batches, std::uint64_t stream, std::uint64_t step,
+               const Arena& arena, glm::vec3* positions, float* targets);
+
+/// Fits the parameters of one INR with Adam on mini-batches, by the CPU. The parameters after n
+/// steps depend on description, seed, plan, batches and instruction set, not on the number of
+/// threads.
+class GradientDescent : public Descent
 {
 public:
   GradientDescent(const Description& description, std::uint64_t seed, InstructionSet set,
                   const Arena& arena);
-  GradientDescent(const GradientDescent&) = delete;
-  GradientDescent& operator=(const GradientDescent&) = delete;
-
   /// Before the first step: takes these parameters instead of random ones. The learning rate is the
   /// same: half of it gains some tenths of a dB in one time step, and may lose them after several.
   void startFrom(const std::vector<float>& parameters);
 
-  /// Where parameters, moments and counts of updates lie. With them, the number of steps and the
-  /// plan, another GradientDescent that was made alike goes on to the same parameters, bit for bit.
-  StateArrays state();
-  void goOnAfter(std::uint64_t steps) { this->Steps = steps; }
+  StateArrays state() override;
+  void goOnAfter(std::uint64_t steps) override { this->Steps = steps; }
 
   /// Before the first step: the mini-batches are shares of larger ones, and the parameters of all
   /// processes stay the same. The group must outlive this.
@@ -63,14 +66,10 @@ public:
     return this->Exchange ? this->Exchange->times() : ExchangeTimes();
   }
 
-  /// Spreads the learning rate over so many steps (default: no end in sight, a constant rate).
-  void plan(std::uint64_t steps) { this->PlannedSteps = steps; }
+  void plan(std::uint64_t steps) override { this->PlannedSteps = steps; }
 
-  /// One mini-batch; returns the mean squared error over it, before the update. Nothing when
-  /// `check` stopped it: then no parameter has changed, and the next step draws the same batch. An
-  /// update that has begun is always finished.
   /// In a group all must call it; it returns the same to all, and throws when one's does.
-  std::optional<double> step(BatchSource& batches, const StopCheck& check = StopCheck());
+  std::optional<double> step(BatchSource& batches, const StopCheck& check = StopCheck()) override;
 
   /// Fills gradient() with d (mean (output - target)^2) / d parameter for `count` samples (targets
   /// that are NaN count as fitted) and returns the mean; nothing when `check` stopped it.
@@ -78,15 +77,16 @@ public:
                                         const std::vector<float>& targets,
                                         const StopCheck& check = StopCheck());
 
-  std::uint64_t steps() const { return this->Steps; }
-  const ModelView& view() const { return this->Views.view(); }
-  std::vector<float>& parameters() { return this->Parameters; }
+  std::uint64_t steps() const override { return this->Steps; }
+  const ModelView& view() override { return this->Views.view(); }
+  std::vector<float>& parameters() override { return this->Parameters; }
+  std::size_t weightCount() const { return this->Shape.gridOffset; } ///< parameters before the grid
+  std::uint64_t stream() const; ///< of the random numbers of mini-batches
   const std::vector<float>& gradient() const { return this->Gradient; }
 
 private:
   std::optional<double> computeTogether(BatchSource& batches, const StopCheck& check);
   std::optional<double> computeShare(BatchSource& batches, const StopCheck& check);
-  void drawBatch(const BatchSource& batches, std::uint64_t stream);
   std::optional<double> backpropagate(const std::vector<glm::vec3>& positions,
                                       const std::vector<float>& targets, std::int64_t total,
                                       const StopCheck& check);

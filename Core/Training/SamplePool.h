@@ -73,6 +73,7 @@ public:
   static constexpr std::int64_t NoBlock = -1;
 
   std::string name() const override;
+  TrainingPipeline pipeline() const override { return TrainingPipeline::Storage; }
   void prepare(const TrainingStep& step, const StopCheck& check) override;
   std::int64_t count() const override { return this->Share.processes * this->Share.items(); }
   std::int64_t total() const override { return this->Share.processes * BatchSize; }

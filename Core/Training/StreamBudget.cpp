@@ -38,6 +38,11 @@ std::int64_t CellBytes(const VolumeInfo& info, int macroCellSize)
   return 48 * cells.x * cells.y * cells.z; // of data and decoded ones as doubles, twice as floats
 }
 
+bool IsAccelerated(const TrainingOptions& options, int processes)
+{
+  return processes == 1 && options.acceleration.accelerator;
+}
+
 /// What is left for pieces and samples.
 std::int64_t FreeBytes(const VolumeInfo& info, const TrainingOptions& options,
                        const Description& description, int processes)
@@ -47,7 +52,7 @@ std::int64_t FreeBytes(const VolumeInfo& info, const TrainingOptions& options,
                                (2 * processes + 1) * GatheredRanges) // not at the same time
                     : 0;
   return options.memoryLimit - Overhead - exchanged - CellBytes(info, options.macroCellSize) -
-         TrainingBytes(description);
+         TrainingBytes(description, IsAccelerated(options, processes));
 }
 
 std::int64_t LeastFreeBytes() { return (CopiesOfBlock + 1) * SmallestShare; }
@@ -69,7 +74,8 @@ Description FittingDescription(const VolumeInfo& info, const TrainingOptions& op
   constexpr int fewestHalvings = 4;
   Description description = choose(0);
   for (int halvings = fewestHalvings; halvings < MostHalvings; ++halvings) {
-    if (TrainingBytes(description) <= options.memoryLimit / 2 && // the rest is left to the data
+    if (TrainingBytes(description, IsAccelerated(options, processes)) <=
+            options.memoryLimit / 2 && // the rest is left to the data
         FreeBytes(info, options, description, processes) >= LeastFreeBytes()) {
       break;
     }
@@ -80,10 +86,11 @@ Description FittingDescription(const VolumeInfo& info, const TrainingOptions& op
 
 } // namespace
 
-std::int64_t TrainingBytes(const Description& description)
+std::int64_t TrainingBytes(const Description& description, bool accelerated)
 {
-  constexpr std::int64_t bytesPerParameter = 19; // four floats, a count of updates, marks
-  constexpr std::int64_t shards = 16;            // gradients of the network that are then summed
+  // Four floats, a count of updates, marks; three floats and a count.
+  const std::int64_t bytesPerParameter = accelerated ? 19 + 14 : 19;
+  constexpr std::int64_t shards = 16; // gradients of the network that are then summed
   const Layout layout(description);
   return bytesPerParameter * static_cast<std::int64_t>(layout.parameterCount) +
          shards * 4 * static_cast<std::int64_t>(layout.gridOffset) +
@@ -96,9 +103,10 @@ StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
   StreamBudget budget{FittingDescription(info, options, processes), 0, 0};
   const std::int64_t left = FreeBytes(info, options, budget.description, processes);
   if (left < LeastFreeBytes()) {
+    const bool accelerated = IsAccelerated(options, processes);
     const Description smallest = DescriptionAt(std::ldexp(1.0, MostHalvings), info, options);
-    const std::int64_t leftBySmallest =
-        left + TrainingBytes(budget.description) - TrainingBytes(smallest);
+    const std::int64_t leftBySmallest = left + TrainingBytes(budget.description, accelerated) -
+                                        TrainingBytes(smallest, accelerated);
     const auto inMiB = [](std::int64_t bytes) { return std::to_string(bytes / MiB + 1) + " MiB"; };
     throw Error(ErrorCode::InvalidArgument,
                 "training a model of " + std::to_string(Layout(budget.description).parameterCount) +

@@ -88,6 +88,7 @@ public:
   {}
 
   std::string name() const override { return this->Pool.name(); }
+  TrainingPipeline pipeline() const override { return this->Pool.pipeline(); }
   StateArrays survey() override { return this->Volume.state(); }
   bool isFromCheckpoint() const override { return this->FromCheckpoint; }
   void prepare(const TrainingStep& step, const StopCheck& check) override

@@ -3,6 +3,7 @@
 
 #include "Core/Model/Model.h"
 #include "Core/Training/CheckpointOptions.h"
+#include "Core/Training/TrainingAccelerator.h"
 #include "Core/Training/Volume.h"
 #include "Core/Training/VolumeReader.h"
 
@@ -42,6 +43,9 @@ struct TrainingOptions
   /// Steps and seconds of a training that goes on from its checkpoint include those before. Who
   /// called TrainModel removes the file when the model is safe; a volume of one value has none.
   CheckpointOptions checkpoint;
+  /// Parameters of an accelerator's steps are those of the CPU's but for rounding; checkpoints go
+  /// on where they came from. Several processes train without it.
+  AccelerationOptions acceleration;
   std::string kernel; ///< for tests; empty = the fastest
   int threads = 0;    ///< 0 = all
 };
@@ -53,7 +57,9 @@ struct TrainingProgress
   TrainingPhase phase = TrainingPhase::Training;
   double fraction = 0; ///< of the whole, 0 to 1, never falling
   std::uint64_t steps = 0;
-  double psnr = 0; ///< latest estimate in dB; 0 while there is none
+  double psnr = 0;          ///< latest estimate in dB; 0 while there is none
+  bool accelerated = false; ///< an accelerator trains
+  TrainingPipeline pipeline = TrainingPipeline::HostMemory;
 };
 
 /// Called on the thread that trains, after every step, between the blocks of a long one and between

@@ -2,6 +2,7 @@
 #include "Core/Training/TrainingLoop.h"
 
 #include "Core/Error.h"
+#include "Core/Training/GradientDescent.h"
 #include "Core/Training/Quantise.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ void RequireFinite(bool finite, std::uint64_t steps)
 
 } // namespace
 
-void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
+void TrainingLoop::run(Descent& descent, BatchSource& batches, const PsnrEstimate& estimate,
                        const EvaluateKernel& kernel)
 {
   this->planAhead(descent);
@@ -51,12 +52,14 @@ void TrainingLoop::run(GradientDescent& descent, BatchSource& batches, const Psn
       this->waitForFirst();
       throw;
     }
-    const std::string kept = this->Keeper.writeAtStop(this->state(descent, false), descent.state());
+    const StateArrays arrays = descent.state(); // which may change the number of steps
+    const std::string kept = this->Keeper.writeAtStop(this->state(descent, false), arrays);
     this->waitForFirst();
     throw Error(error.code(), std::string(error.what()) + "; " + kept);
   }
   this->finish(descent);
-  this->Keeper.writeAtEnd(this->state(descent, true), descent.state());
+  const StateArrays arrays = descent.state();
+  this->Keeper.writeAtEnd(this->state(descent, true), arrays);
 }
 
 /// Until it has written the checkpoint: whoever started the processes may end all of them when one
@@ -70,7 +73,7 @@ void TrainingLoop::waitForFirst() const
   }
 }
 
-void TrainingLoop::planAhead(GradientDescent& descent)
+void TrainingLoop::planAhead(Descent& descent)
 {
   const bool byTheClock = this->Options.timeLimit > 0 && this->Options.maximumSteps == 0;
   if (this->Options.plannedSteps > 0) {
@@ -82,8 +85,8 @@ void TrainingLoop::planAhead(GradientDescent& descent)
 }
 
 /// An error in the middle of a step leaves the parameters of the steps before it.
-void TrainingLoop::train(GradientDescent& descent, BatchSource& batches,
-                         const PsnrEstimate& estimate, const EvaluateKernel& kernel)
+void TrainingLoop::train(Descent& descent, BatchSource& batches, const PsnrEstimate& estimate,
+                         const EvaluateKernel& kernel)
 {
   const StopCheck check([&] { return this->keepGoing(descent.steps()); });
   while (this->goesOn(descent)) {
@@ -92,27 +95,35 @@ void TrainingLoop::train(GradientDescent& descent, BatchSource& batches,
       break;
     }
     RequireFinite(std::isfinite(*loss), descent.steps());
+    this->IsAccelerated = descent.isAccelerated();
+    this->noteFirst(descent.steps());
     if (this->reachedTarget(descent, estimate, kernel, check)) {
       break;
     }
     this->planByTheClock(descent);
     this->Group.together([&] { this->report(descent.steps()); });
     if (this->Keeper.isDue()) {
-      this->Keeper.write(this->state(descent, false), descent.state());
+      this->write(descent);
     }
   }
 }
 
-void TrainingLoop::finish(GradientDescent& descent)
+void TrainingLoop::write(Descent& descent)
 {
+  const StateArrays arrays = descent.state(); // which may change the number of steps
+  this->Keeper.write(this->state(descent, false), arrays);
+}
+
+void TrainingLoop::finish(Descent& descent)
+{
+  // The last update is not seen in any loss.
+  const std::vector<float>& parameters = descent.parameters();
   if (descent.steps() == 0) {
     throw Error(ErrorCode::InvalidArgument,
                 "not one step of the training was finished within the TimeLimit of " +
                     std::to_string(this->Options.timeLimit) +
                     " s; raise it or choose a smaller model");
   }
-  // The last update is not seen in any loss.
-  const std::vector<float>& parameters = descent.parameters();
   RequireFinite(std::all_of(parameters.begin(), parameters.end(),
                             [](float parameter) { return std::isfinite(parameter); }),
                 descent.steps());
@@ -122,13 +133,16 @@ void TrainingLoop::finish(GradientDescent& descent)
 }
 
 /// As rank 0 says.
-bool TrainingLoop::goesOn(GradientDescent& descent)
+bool TrainingLoop::goesOn(Descent& descent)
 {
   struct Decision
   {
     bool goesOn;
     std::uint64_t plannedSteps;
   };
+  if (this->reachedLimit(descent.steps())) {
+    descent.parameters(); // the last steps count when they are here
+  }
   const Decision decision =
       this->Group.valueOfFirst(Decision{!this->reachedLimit(descent.steps()), this->PlannedSteps});
   if (decision.plannedSteps != this->PlannedSteps) {
@@ -137,7 +151,7 @@ bool TrainingLoop::goesOn(GradientDescent& descent)
   return decision.goesOn;
 }
 
-void TrainingLoop::resume(GradientDescent& descent, BatchSource& batches)
+void TrainingLoop::resume(Descent& descent, BatchSource& batches)
 {
   struct Before
   {
@@ -181,25 +195,37 @@ void TrainingLoop::shareArrays(const StateArrays& arrays) const
   }
 }
 
-TrainingState TrainingLoop::state(const GradientDescent& descent, bool finished) const
+TrainingState TrainingLoop::state(const Descent& descent, bool finished) const
 {
   return {descent.steps(), this->PlannedSteps, this->Clock.seconds(), this->Psnr, finished};
 }
 
-void TrainingLoop::plan(GradientDescent& descent, std::uint64_t steps)
+void TrainingLoop::plan(Descent& descent, std::uint64_t steps)
 {
   this->PlannedSteps = steps;
   descent.plan(steps);
 }
 
-/// Plans as many steps as the time limit allows, once that is known.
-void TrainingLoop::planByTheClock(GradientDescent& descent)
+/// An accelerator takes its first step together with the CPU: that says nothing of the others.
+void TrainingLoop::noteFirst(std::uint64_t steps)
 {
-  const double share = this->Clock.seconds() / this->Options.timeLimit;
-  if (this->PlannedSteps > 0 || share < TimingShare || this->Group.rank() > 0) {
+  if (this->IsAccelerated && this->Timed.steps == 0) {
+    this->Timed = {steps, this->Clock.seconds()};
+  } else if (!this->IsAccelerated) {
+    this->Timed = {};
+  }
+}
+
+/// Plans as many steps as the time limit allows, once that is known.
+void TrainingLoop::planByTheClock(Descent& descent)
+{
+  const double seconds = this->Clock.seconds() - this->Timed.seconds;
+  const double limit = this->Options.timeLimit;
+  if (this->PlannedSteps > 0 || seconds < TimingShare * limit || this->Group.rank() > 0) {
     return;
   }
-  auto steps = static_cast<std::uint64_t>(static_cast<double>(descent.steps()) / share);
+  const double rate = static_cast<double>(descent.steps() - this->Timed.steps) / seconds;
+  auto steps = this->Timed.steps + static_cast<std::uint64_t>(rate * (limit - this->Timed.seconds));
   if (this->Options.targetPsnr > 0) { // which ought to be reached as soon as may be
     steps = std::min(steps, StepsToTarget);
   }
@@ -217,7 +243,7 @@ double TrainingLoop::storingLoss() const
   return this->Options.targetRatio > 0 ? lossForRatio : QuantiseLimits().loss;
 }
 
-bool TrainingLoop::reachedTarget(const GradientDescent& descent, const PsnrEstimate& estimate,
+bool TrainingLoop::reachedTarget(Descent& descent, const PsnrEstimate& estimate,
                                  const EvaluateKernel& kernel, const StopCheck& check)
 {
   // At fixed steps, so that a run which ends by quality ends at the same step every time.
@@ -267,8 +293,8 @@ void TrainingLoop::report(std::uint64_t steps)
 {
   this->LastReport = this->Clock.seconds();
   this->Fraction = std::max(this->Fraction, TrainingShare * this->fraction(steps));
-  if (this->Observer &&
-      !this->Observer({TrainingPhase::Training, this->Fraction, steps, this->Psnr})) {
+  if (this->Observer && !this->Observer({TrainingPhase::Training, this->Fraction, steps, this->Psnr,
+                                         this->IsAccelerated, this->Pipeline})) {
     throw Error(ErrorCode::Cancelled, "training stopped on request");
   }
 }

@@ -3,10 +3,11 @@
 
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Training/CheckpointKeeper.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Descent.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Trainer.h"
 #include "Core/Training/TrainingClock.h"
+#include "Core/Training/TrainingGroup.h"
 
 #include <cstdint>
 
@@ -21,13 +22,13 @@ class TrainingLoop
 public:
   /// In a group rank 0 decides when to stop and what the plan is, and has the checkpoint.
   TrainingLoop(const TrainingOptions& options, const TrainingObserver& observer,
-               CheckpointKeeper& keeper, const TrainingGroup& group)
-      : Options(options), Observer(observer), Keeper(keeper), Group(group)
+               CheckpointKeeper& keeper, const TrainingGroup& group, TrainingPipeline pipeline)
+      : Options(options), Observer(observer), Keeper(keeper), Group(group), Pipeline(pipeline)
   {}
 
   /// Throws what TrainModel says of training itself. The checkpoint is written between steps and
   /// before an error.
-  void run(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
+  void run(Descent& descent, BatchSource& batches, const PsnrEstimate& estimate,
            const EvaluateKernel& kernel);
 
   /// Of the run, with what went before its checkpoint: wall time, and the steps that its learning
@@ -36,20 +37,22 @@ public:
   std::uint64_t plannedSteps() const { return this->PlannedSteps; }
 
 private:
-  void planAhead(GradientDescent& descent);
-  void resume(GradientDescent& descent, BatchSource& batches);
+  void planAhead(Descent& descent);
+  void resume(Descent& descent, BatchSource& batches);
   void shareArrays(const StateArrays& arrays) const;
-  bool goesOn(GradientDescent& descent);
-  void train(GradientDescent& descent, BatchSource& batches, const PsnrEstimate& estimate,
+  bool goesOn(Descent& descent);
+  void train(Descent& descent, BatchSource& batches, const PsnrEstimate& estimate,
              const EvaluateKernel& kernel);
-  void finish(GradientDescent& descent);
+  void finish(Descent& descent);
   void waitForFirst() const;
-  TrainingState state(const GradientDescent& descent, bool finished) const;
-  void plan(GradientDescent& descent, std::uint64_t steps);
-  void planByTheClock(GradientDescent& descent);
+  TrainingState state(const Descent& descent, bool finished) const;
+  void write(Descent& descent);
+  void plan(Descent& descent, std::uint64_t steps);
+  void noteFirst(std::uint64_t steps);
+  void planByTheClock(Descent& descent);
   double storingLoss() const;
-  bool reachedTarget(const GradientDescent& descent, const PsnrEstimate& estimate,
-                     const EvaluateKernel& kernel, const StopCheck& check);
+  bool reachedTarget(Descent& descent, const PsnrEstimate& estimate, const EvaluateKernel& kernel,
+                     const StopCheck& check);
   bool timeIsUp() const;
   bool reachedLimit(std::uint64_t steps) const;
   bool keepGoing(std::uint64_t steps);
@@ -60,6 +63,13 @@ private:
   const TrainingObserver& Observer;
   CheckpointKeeper& Keeper;
   const TrainingGroup& Group;
+  TrainingPipeline Pipeline;
+  bool IsAccelerated = false;
+  struct
+  {
+    std::uint64_t steps = 0;
+    double seconds = 0;
+  } Timed; ///< from where it is seen how many steps a time allows
   TrainingClock Clock;
   bool Finished = false;          ///< before it was stopped
   std::uint64_t PlannedSteps = 0; ///< 0 until there is a plan

@@ -7,6 +7,7 @@
 #include "Core/Model/Compression.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
+#include "Core/Training/AcceleratedDescent.h"
 #include "Core/Training/Quantise.h"
 #include "Core/Training/TrainingIdentity.h"
 #include "Core/Training/TrainingLoop.h"
@@ -151,20 +152,70 @@ TrainingIdentity TrainingRun::identity(const PsnrEstimate& estimate,
 void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena)
 {
   Model& model = this->Result;
-  GradientDescent descent(model.description, this->Options.seed, this->Set, arena);
-  StartFrom(this->Options.start, model, descent);
-  descent.share(this->group());
+  GradientDescent host(model.description, this->Options.seed, this->Set, arena);
+  StartFrom(this->Options.start, model, host);
+  host.share(this->group());
+  const auto accelerated = this->accelerate(host, batches, arena);
+  Descent& descent = accelerated ? static_cast<Descent&>(*accelerated) : host;
+  const bool draws = accelerated && accelerated->drawsSamples();
+  model.training->pipeline = draws ? TrainingPipeline::DeviceMemory : batches.pipeline();
+  if (accelerated) { // what the checkpoint is of
+    model.training->kernel = this->Options.acceleration.accelerator->kernel();
+  }
   const bool first = this->group().rank() == 0;
   CheckpointKeeper keeper(first ? this->Options.checkpoint : CheckpointOptions(),
                           this->identity(estimate, batches));
-  TrainingLoop loop(this->Options, this->Observer, keeper, this->group());
+  TrainingLoop loop(this->Options, this->Observer, keeper, this->group(), model.training->pipeline);
   loop.run(descent, batches, estimate, EvaluateKernelFor(this->Set));
+  model.parameters = std::move(descent.parameters());
   model.training->steps = descent.steps();
   model.training->plannedSteps = loop.plannedSteps();
   model.training->seconds = loop.seconds();
-  model.training->waitingSeconds = descent.exchangeTimes().waiting;
-  model.training->exchangeSeconds = descent.exchangeTimes().exchanging;
-  model.parameters = std::move(descent.parameters());
+  model.training->waitingSeconds = host.exchangeTimes().waiting;
+  model.training->exchangeSeconds = host.exchangeTimes().exchanging;
+  this->record(accelerated.get());
+}
+
+/// Null where the CPU trains alone, which is told where there is an accelerator.
+std::unique_ptr<AcceleratedDescent>
+TrainingRun::accelerate(GradientDescent& host, const BatchSource& batches, const Arena& arena) const
+{
+  const AccelerationOptions& options = this->Options.acceleration;
+  const auto tell = [&options](AccelerationEvent event, const std::string& text) {
+    options.tell ? options.tell(event, text) : void();
+  };
+  if (!options.accelerator) {
+    return nullptr;
+  }
+  if (this->group().size() > 1) {
+    tell(AccelerationEvent::NotUsed, "several processes train together, which only the CPU does");
+    return nullptr;
+  }
+  try {
+    const TrainingTask task{this->Result.description, batches.count(), host.stream(),
+                            batches.inMemory()};
+    return std::make_unique<AcceleratedDescent>(
+        host, options.accelerator->start(task), arena,
+        [tell](const std::string& text) { tell(AccelerationEvent::Failed, text); });
+  } catch (const Error& error) {
+    tell(AccelerationEvent::NotUsed, error.what());
+    return nullptr;
+  }
+}
+
+/// What has trained.
+void TrainingRun::record(const AcceleratedDescent* accelerated)
+{
+  TrainingRecord& record = *this->Result.training;
+  const std::string kernel = InstructionSetName(this->Set);
+  record.kernel = kernel;
+  record.backend = "CPU " + kernel;
+  if (accelerated != nullptr && accelerated->hasUsedDevice()) {
+    const TrainingAccelerator& device = *this->Options.acceleration.accelerator;
+    const bool toTheEnd = accelerated->isAccelerated();
+    record.kernel = device.kernel() + (toTheEnd ? "" : ", then " + kernel);
+    record.backend = device.name() + (toTheEnd ? "" : ", then CPU " + kernel);
+  }
 }
 
 std::shared_ptr<Model> TrainingRun::store(const PsnrEstimate& estimate)

@@ -12,6 +12,9 @@
 
 namespace inr {
 
+class AcceleratedDescent;
+class GradientDescent;
+
 /// A model from the choice of its size to its parameters as they are stored: what training is
 /// wherever the samples come from.
 class TrainingRun
@@ -42,6 +45,9 @@ public:
   std::shared_ptr<Model> store(const PsnrEstimate& estimate);
 
 private:
+  std::unique_ptr<AcceleratedDescent> accelerate(GradientDescent& host, const BatchSource& batches,
+                                                 const Arena& arena) const;
+  void record(const AcceleratedDescent* accelerated);
   StopCheck storingCheck() const;
   const TrainingGroup& group() const { return this->Together ? *this->Together : this->Alone; }
 

@@ -1,0 +1,503 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Trainings by an accelerator that computes what Core does: whatever happens to it, the model is
+// the CPU's, to the last bit.
+#include "Core/Error.h"
+#include "Core/Training/AcceleratedDescent.h"
+#include "Core/Training/ParallelTraining.h"
+#include "Core/Training/StreamBudget.h"
+#include "Testing/Core/Model/TemporaryFolder.h"
+#include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Training/FakeTrainer.h"
+#include "Testing/Core/Training/FieldReader.h"
+#include "Testing/Core/Training/Fields.h"
+#include "Testing/Core/Training/ThreadGroup.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace {
+
+using inr::AccelerationEvent;
+using inr::TrainingPipeline;
+
+inr::Description TinyDescription()
+{
+  inr::Description description = SmallDescription();
+  description.grid.levels = 2;
+  description.grid.features = 2;
+  description.network.neurons = 8;
+  description.network.hiddenLayers = 1;
+  return description;
+}
+
+class Accelerated : public testing::Test
+{
+protected:
+  inr::TrainingOptions options(std::uint64_t steps)
+  {
+    inr::TrainingOptions options = Steps(steps);
+    options.description = TinyDescription();
+    options.storedAs = inr::ParameterType::Half;
+    this->Device.planned = steps;
+    return options;
+  }
+
+  inr::TrainingOptions accelerated(std::uint64_t steps)
+  {
+    inr::TrainingOptions options = this->options(steps);
+    options.acceleration.accelerator = std::make_shared<FakeTrainer>(this->Device);
+    options.acceleration.tell = [this](AccelerationEvent event, const std::string& text) {
+      this->Events.push_back(event);
+      this->Texts.push_back(text);
+    };
+    return options;
+  }
+
+  inr::ModelPointer train(const inr::TrainingOptions& options)
+  {
+    this->Events.clear();
+    this->Texts.clear();
+    this->Device.calls = 0;
+    this->Device.steps = 0;
+    return inr::TrainModel(this->Data.data(), {}, options);
+  }
+
+  inr::ModelPointer read(const inr::TrainingOptions& options)
+  {
+    FieldReader<float> reader(this->Data);
+    inr::TrainingOptions limited = options;
+    limited.memoryLimit = std::int64_t{256} << 20;
+    return inr::TrainModel(reader, {}, limited);
+  }
+
+  static std::string cpu() { return inr::InstructionSetName(inr::ChooseInstructionSet("")); }
+
+  FakeTrainingDevice Device;
+  Field<float> Data = Waves();
+  std::vector<AccelerationEvent> Events;
+  std::vector<std::string> Texts;
+};
+
+TEST_F(Accelerated, GivesTheModelOfTheCpu)
+{
+  const inr::ModelPointer expected = this->train(this->options(8));
+  EXPECT_EQ(expected->training->backend, "CPU " + cpu());
+  EXPECT_EQ(expected->training->pipeline, TrainingPipeline::HostMemory);
+  for (const bool hasRoom : {true, false}) {
+    this->Device.hasRoom = hasRoom;
+    const inr::ModelPointer model = this->train(this->accelerated(8));
+    EXPECT_EQ(model->parameters, expected->parameters);
+    EXPECT_EQ(model->training->steps, 8u);
+    EXPECT_EQ(this->Device.steps, 8);
+    EXPECT_EQ(model->training->backend, "Fake device");
+    EXPECT_EQ(model->training->kernel, "fake");
+    EXPECT_EQ(model->training->pipeline,
+              hasRoom ? TrainingPipeline::DeviceMemory : TrainingPipeline::HostMemory);
+    EXPECT_TRUE(this->Texts.empty());
+  }
+}
+
+TEST_F(Accelerated, TrainsFromStorage)
+{
+  const inr::ModelPointer expected = this->read(this->options(12));
+  EXPECT_EQ(expected->training->pipeline, TrainingPipeline::Storage);
+  const inr::ModelPointer model = this->read(this->accelerated(12));
+  EXPECT_EQ(model->parameters, expected->parameters);
+  EXPECT_EQ(model->training->backend, "Fake device");
+  EXPECT_EQ(model->training->pipeline, TrainingPipeline::Storage);
+}
+
+TEST_F(Accelerated, TheCpuGoesOnWhereverTheDeviceIsLost)
+{
+  const inr::ModelPointer expected = this->train(this->options(6));
+  for (const bool hasRoom : {true, false}) {
+    this->Device.hasRoom = hasRoom;
+    this->Device.failsAt = FakeTrainingDevice::Never;
+    this->train(this->accelerated(6));
+    const int calls = this->Device.calls;
+    ASSERT_GT(calls, 12);
+    for (int k = 0; k <= calls; ++k) {
+      this->Device.failsAt = k;
+      const inr::ModelPointer model = this->train(this->accelerated(6));
+      EXPECT_EQ(model->parameters, expected->parameters) << k;
+      EXPECT_EQ(model->training->steps, 6u) << k;
+      EXPECT_EQ(this->Texts.size(), k < calls ? 1u : 0u) << k;
+      EXPECT_EQ(this->Device.calls, std::min(k + 1, calls))
+          << "asked again after it failed at " << k;
+      if (k < calls) {
+        EXPECT_EQ(this->Events[0], k == 0 ? AccelerationEvent::NotUsed : AccelerationEvent::Failed);
+        EXPECT_NE(this->Texts[0].find("the fake device is lost"), std::string::npos);
+      }
+    }
+  }
+}
+
+TEST_F(Accelerated, WhatTrainedIsOnRecord)
+{
+  this->Device.failsAt = 0;
+  const inr::ModelPointer never = this->train(this->accelerated(6));
+  EXPECT_EQ(never->training->backend, "CPU " + cpu());
+  EXPECT_EQ(never->training->kernel, cpu());
+  EXPECT_EQ(never->training->pipeline, TrainingPipeline::HostMemory);
+  this->Device.failsAt = 8;
+  const inr::ModelPointer some = this->train(this->accelerated(6));
+  EXPECT_EQ(some->training->backend, "Fake device, then CPU " + cpu());
+  EXPECT_EQ(some->training->kernel, "fake, then " + cpu());
+}
+
+/// The first step is compared: its loss, the network's weights, the grid's features.
+TEST_F(Accelerated, OneThatGivesOtherValuesIsGivenUp)
+{
+  const inr::ModelPointer expected = this->train(this->options(5));
+  const inr::Layout layout(TinyDescription());
+  const std::pair<std::size_t, std::size_t> parts[] = {
+      {0, 0}, {0, layout.gridOffset / 2}, {layout.gridOffset, layout.parameterCount}};
+  for (const auto& [begin, end] : parts) {
+    this->Device.wrongLoss = end == 0 ? 0.01f : 0.0f;
+    this->Device.wrongBegin = begin;
+    this->Device.wrongEnd = end;
+    const inr::ModelPointer model = this->train(this->accelerated(5));
+    ASSERT_EQ(this->Events, std::vector<AccelerationEvent>(1, AccelerationEvent::Failed)) << end;
+    EXPECT_NE(this->Texts[0].find("its first step is another one"), std::string::npos);
+    EXPECT_EQ(this->Device.steps, 1);
+    EXPECT_EQ(model->parameters, expected->parameters);
+    EXPECT_EQ(model->training->backend, "CPU " + cpu());
+  }
+}
+
+TEST_F(Accelerated, EndsAtTheSameStepByQuality)
+{
+  inr::TrainingOptions options = this->options(2000);
+  options.targetPsnr = 18;
+  const inr::ModelPointer expected = this->train(options);
+  ASSERT_LT(expected->training->steps, 2000u);
+  inr::TrainingOptions other = this->accelerated(2000);
+  other.targetPsnr = 18;
+  const inr::ModelPointer model = this->train(other);
+  EXPECT_EQ(model->training->steps, expected->training->steps);
+  EXPECT_EQ(model->parameters, expected->parameters);
+}
+
+/// A device that takes long for its first step only is expected to take as many as it will.
+TEST_F(Accelerated, IsPlannedByWhatComesAfterItsFirstStep)
+{
+  inr::TrainingOptions options = this->accelerated(0);
+  options.timeLimit = 1.5;
+  this->Device.slowStart = 0.3; // in which the plan would be made: of five steps
+  this->Device.slowness = 0.01;
+  const inr::ModelPointer model = this->train(options);
+  EXPECT_GT(model->training->plannedSteps, 25u);
+  EXPECT_LT(model->training->plannedSteps, 300u);
+}
+
+TEST_F(Accelerated, ItsProgressSaysSo)
+{
+  inr::TrainingOptions options = this->accelerated(6);
+  this->Device.failsAt = 9;
+  int by = 0;
+  int without = 0;
+  inr::TrainModel(this->Data.data(), {}, options, [&](const inr::TrainingProgress& now) {
+    if (now.phase == inr::TrainingPhase::Training) {
+      (now.accelerated ? by : without) += 1;
+      EXPECT_EQ(now.pipeline, TrainingPipeline::DeviceMemory);
+    }
+    return true;
+  });
+  EXPECT_GT(by, 1);
+  EXPECT_GT(without, 1);
+}
+
+TEST_F(Accelerated, SeveralProcessesTrainWithout)
+{
+  constexpr int size = 2;
+  Meeting meeting(size);
+  inr::TrainingOptions options = this->accelerated(4);
+  options.acceleration.tell = {};
+  std::vector<std::thread> threads;
+  std::atomic<int> told{0};
+  std::vector<inr::ModelPointer> models(size);
+  for (int rank = 0; rank < size; ++rank) {
+    threads.emplace_back([&, rank] {
+      inr::TrainingOptions own = options;
+      own.threads = 1;
+      own.acceleration.tell = [&](AccelerationEvent event, const std::string& text) {
+        EXPECT_EQ(event, AccelerationEvent::NotUsed);
+        EXPECT_NE(text.find("several processes"), std::string::npos);
+        ++told;
+      };
+      const ThreadGroup group(meeting, rank, size);
+      inr::VolumeInfo info;
+      info.dims = this->Data.dims;
+      models[static_cast<std::size_t>(rank)] =
+          inr::TrainModel(inr::VolumePiece{this->Data.data(), glm::i64vec3(0)}, info, own, group);
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(told, size);
+  EXPECT_EQ(this->Device.calls, 0);
+  EXPECT_EQ(models[0]->training->backend, "CPU " + cpu());
+}
+
+/// Mini-batches of a few samples, all different.
+class FewBatches : public inr::BatchSource
+{
+public:
+  std::int64_t count() const override { return 32; }
+  std::int64_t total() const override { return 32; }
+  void prepare(const inr::TrainingStep& step, const inr::StopCheck& check) override
+  {
+    this->Prepared = step.number;
+    check.goesOn();
+  }
+  void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
+            glm::vec3* positions, float* targets) const override
+  {
+    EXPECT_EQ(step, this->Prepared);
+    for (std::int64_t k = begin; k < end; ++k) {
+      const std::uint64_t number = step * 32 + static_cast<std::uint64_t>(k);
+      positions[k - begin] = inr::RandomPosition(stream, number, {9, 9, 9});
+      targets[k - begin] = positions[k - begin].x;
+    }
+  }
+
+private:
+  std::uint64_t Prepared = 0;
+};
+
+/// Steps of such, by a device and by the CPU beside it.
+struct FewSteps
+{
+  explicit FewSteps(FakeTrainingDevice& fake)
+      : Device(fake), Threads(1), Host(TinyDescription(), 1, set(), this->Threads),
+        Expected(TinyDescription(), 1, set(), this->Threads),
+        Descent(this->Host,
+                FakeTrainer(fake).start({TinyDescription(), 32, this->Host.stream(), std::nullopt}),
+                this->Threads, [this](const std::string& text) { this->Told.push_back(text); })
+  {
+    fake.planned = 2000;
+    this->Descent.plan(2000);
+    this->Expected.plan(2000);
+  }
+
+  static inr::InstructionSet set() { return inr::ChooseInstructionSet(""); }
+
+  void take(std::uint64_t steps)
+  {
+    while (this->Descent.steps() < steps) {
+      this->Descent.step(this->Batches);
+    }
+  }
+  void expect(std::uint64_t steps)
+  {
+    EXPECT_EQ(this->Descent.steps(), steps);
+    FewBatches batches;
+    while (this->Expected.steps() < steps) {
+      this->Expected.step(batches);
+    }
+    EXPECT_EQ(this->Descent.parameters(), this->Expected.parameters());
+  }
+
+  FakeTrainingDevice& Device;
+  inr::Arena Threads;
+  inr::GradientDescent Host;
+  inr::GradientDescent Expected;
+  FewBatches Batches;
+  std::vector<std::string> Told;
+  inr::AcceleratedDescent Descent;
+};
+
+/// And takes no more steps again than there are between two copies.
+TEST(AcceleratedDescent, KeepsACopyOfLateSteps)
+{
+  FakeTrainingDevice device;
+  device.planned = 2000;
+  FewSteps few(device);
+  few.take(470);
+  EXPECT_TRUE(few.Descent.isAccelerated());
+  EXPECT_EQ(few.Host.steps(), 401u); // the first step, and each 200 from there
+  EXPECT_EQ(device.gets, 3);
+  device.failsAt = device.calls;
+  few.Descent.step(few.Batches);
+  EXPECT_FALSE(few.Descent.isAccelerated());
+  ASSERT_EQ(few.Told.size(), 1u);
+  EXPECT_NE(few.Told[0].find("after 401 steps, and takes 69 steps again"), std::string::npos)
+      << few.Told[0];
+  few.expect(402);
+  few.take(500);
+  few.expect(500);
+}
+
+TEST(AcceleratedDescent, IsAskedForNothingTwice)
+{
+  FakeTrainingDevice device;
+  device.planned = 2000;
+  FewSteps few(device);
+  few.take(10);
+  few.expect(10);
+  const int calls = device.calls;
+  few.Descent.state();
+  few.Descent.view();
+  few.expect(10);
+  EXPECT_EQ(device.calls, calls);
+}
+
+/// Another state, which was put where state() said.
+TEST(AcceleratedDescent, GoesOnFromWhateverIsPutThere)
+{
+  FakeTrainingDevice device;
+  device.planned = 2000;
+  FewSteps few(device);
+  few.take(4);
+  const std::vector<float> values = few.Descent.parameters();
+  std::vector<std::vector<char>> before;
+  for (const inr::StateArray& array : few.Descent.state()) {
+    const auto* from = static_cast<const char*>(array.data);
+    before.emplace_back(from, from + array.bytes);
+  }
+  few.take(9);
+  const inr::StateArrays arrays = few.Descent.state();
+  for (std::size_t k = 0; k < arrays.size(); ++k) {
+    std::copy(before[k].begin(), before[k].end(), static_cast<char*>(arrays[k].data));
+  }
+  few.Descent.goOnAfter(4);
+  EXPECT_EQ(few.Descent.parameters(), values);
+  few.take(7);
+  few.expect(7);
+}
+
+/// Whenever it is stopped, a step that is repeated gives what it would have given.
+TEST(AcceleratedDescent, AStoppedStepChangesNothing)
+{
+  FakeTrainingDevice device;
+  device.planned = 2000;
+  FewSteps few(device);
+  int stops = 0;
+  for (int limit = 1; few.Descent.steps() < 8; limit = limit % 40 + 3) {
+    int asked = 0;
+    const inr::StopCheck check([&] { return ++asked < limit; });
+    const std::uint64_t before = few.Descent.steps();
+    const bool taken = few.Descent.step(few.Batches, check).has_value();
+    EXPECT_EQ(few.Descent.steps(), before + (taken ? 1 : 0));
+    stops += taken ? 0 : 1;
+  }
+  EXPECT_GT(stops, 3);
+  few.expect(8);
+}
+
+/// What throws while the device is at work does not take its step away.
+TEST(AcceleratedDescent, AStepThatHasBegunCounts)
+{
+  FakeTrainingDevice device;
+  device.planned = 2000;
+  FewSteps few(device);
+  few.take(3);
+  int asked = 0;
+  const inr::StopCheck check([&]() -> bool {
+    if (++asked > 1) { // while the next samples are drawn
+      throw inr::Error(inr::ErrorCode::Cancelled, "stopped");
+    }
+    return true;
+  });
+  EXPECT_THROW(few.Descent.step(few.Batches, check), inr::Error);
+  few.expect(4);
+  few.take(6);
+  few.expect(6);
+}
+
+/// A plan that comes later than samples were drawn, for these may depend on it.
+TEST(AcceleratedDescent, DrawsAgainForAnotherPlan)
+{
+  FakeTrainingDevice device;
+  device.planned = 2000;
+  FewSteps few(device);
+  few.take(3);
+  few.Descent.plan(2000);
+  few.take(4);
+  few.expect(4);
+}
+
+class AcceleratedResume : public Accelerated
+{
+protected:
+  inr::TrainingOptions with(inr::TrainingOptions options)
+  {
+    options.checkpoint.path = this->Path;
+    options.checkpoint.tell = [this](inr::CheckpointEvent event, const std::string&) {
+      this->Resumed += event == inr::CheckpointEvent::Resumed ? 1 : 0;
+    };
+    return options;
+  }
+
+  void stopAfter(std::uint64_t steps, const inr::TrainingOptions& options)
+  {
+    EXPECT_THROW(
+        inr::TrainModel(this->Data.data(), {}, options,
+                        [&](const inr::TrainingProgress& now) { return now.steps < steps; }),
+        inr::Error);
+  }
+
+  TemporaryFolder Folder;
+  std::string Path = Folder.file("a.inr.checkpoint");
+  int Resumed = 0;
+};
+
+/// Where the device computes what the CPU does, each goes on from the other's checkpoint.
+TEST_F(AcceleratedResume, CheckpointsAreOfOneForm)
+{
+  this->Device.kernel = cpu();
+  const inr::ModelPointer whole = this->train(this->options(12));
+  this->stopAfter(4, this->with(this->accelerated(12)));
+  this->stopAfter(8, this->with(this->options(12)));
+  const inr::ModelPointer resumed = this->train(this->with(this->accelerated(12)));
+  EXPECT_EQ(this->Resumed, 2);
+  EXPECT_EQ(this->Device.steps, 12 - 8);
+  EXPECT_EQ(resumed->parameters, whole->parameters);
+  EXPECT_EQ(resumed->training->steps, 12u);
+}
+
+TEST_F(AcceleratedResume, TheCheckpointIsOfTheStepsThatAreSafe)
+{
+  const inr::ModelPointer whole = this->train(this->options(12));
+  this->Device.calls = 0;
+  this->Device.failsAt = 11; // in the fifth step, or so
+  this->stopAfter(6, this->with(this->accelerated(12)));
+  this->Device.failsAt = FakeTrainingDevice::Never;
+  const inr::ModelPointer resumed = this->train(this->with(this->accelerated(12)));
+  EXPECT_EQ(this->Resumed, 1);
+  EXPECT_EQ(resumed->parameters, whole->parameters);
+}
+
+/// The device is lost when the checkpoint asks it for its steps.
+TEST_F(AcceleratedResume, ALostDeviceLeavesTheStepsBefore)
+{
+  const inr::ModelPointer whole = this->train(this->options(12));
+  this->Device.calls = 0;
+  inr::TrainingOptions options = this->with(this->accelerated(12));
+  EXPECT_THROW(inr::TrainModel(this->Data.data(), {}, options,
+                               [&](const inr::TrainingProgress& now) {
+                                 if (now.steps == 5) {
+                                   this->Device.failsAt = this->Device.calls;
+                                 }
+                                 return now.steps < 5;
+                               }),
+               inr::Error);
+  this->Device.failsAt = FakeTrainingDevice::Never;
+  const inr::ModelPointer resumed = this->train(this->with(this->accelerated(12)));
+  EXPECT_EQ(this->Resumed, 1);
+  EXPECT_EQ(this->Device.steps, 12 - 1); // the copy is of the first step
+  EXPECT_EQ(resumed->parameters, whole->parameters);
+}
+
+TEST(AcceleratedMemory, IsReckonedWith)
+{
+  const inr::Description description = SmallDescription();
+  const auto parameters = static_cast<std::int64_t>(inr::Layout(description).parameterCount);
+  EXPECT_EQ(inr::TrainingBytes(description, true) - inr::TrainingBytes(description),
+            14 * parameters);
+}
+
+} // namespace
