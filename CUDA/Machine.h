@@ -36,6 +36,16 @@ public:
   {
     RequireFree(this->Device, bytes, what);
   }
+  /// In the host's memory, from where it copies by itself. Not initialised.
+  template <class T> Array<T> allocatePinned(std::int64_t count) const
+  {
+    return Array<T>(this->Device, Memory::Place::Pinned, std::max<std::int64_t>(count, 1));
+  }
+  /// Begins to copy from there; what is there stays as it is until somebody has waited.
+  template <class T> void beginToMachine(T* to, const T* from, std::int64_t count) const
+  {
+    CopyToDevice(to, from, count, this->Work);
+  }
   /// Copies, from memory that may change when this has returned.
   template <class T> void toMachine(T* to, const T* from, std::int64_t count) const
   {

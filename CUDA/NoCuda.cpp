@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What takes the place of the GPU's part in a build without a CUDA compiler.
+#include "CUDA/CudaTrainer.h"
 #include "CUDA/Engine.h"
 #include "Core/Error.h"
 
@@ -34,6 +35,8 @@ std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const De
 {
   Refuse();
 }
+
+std::unique_ptr<AcceleratedTraining> StartTraining(const Device&, const TrainingTask&) { Refuse(); }
 
 } // namespace cuda
 } // namespace inr

@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds Core and CUDA on a machine with the CUDA toolkit, without VTK, and proves them on its GPU:
-# the conformance tests (of kernels, and of pictures of what they infer), small ones of them under
-# compute-sanitizer, and the benchmarks, which write Testing/Benchmarks/results/<gpu>/cuda.json. On
-# Debian it installs what else is missing.
+# the conformance tests (of kernels, of pictures of what they infer, and of trainings), small ones of
+# them under compute-sanitizer, and the benchmarks, which write
+# Testing/Benchmarks/results/<gpu>/cuda.json. On Debian it installs what else is missing.
 #
 #   Testing/run_cuda.sh
 #
@@ -41,7 +41,8 @@ if command -v apt-get > /dev/null; then
   bash CMake/install-debian-packages.sh core || echo "== Going on with what there is"
 fi
 if ! { cmake --preset cuda ${capability:+-DINR_CUDA_ARCHITECTURES="$capability"} &&
-       cmake --build --preset cuda --target test_cuda bench_cuda bench_cuda_frames; } > "$build.log" 2>&1; then
+       cmake --build --preset cuda --target test_cuda bench_cuda bench_cuda_frames \
+         bench_cuda_training; } > "$build.log" 2>&1; then
   tail -n 60 "$build.log"
   echo "== Preset cuda does not build ($build.log)"
   failed=1
@@ -75,6 +76,7 @@ echo "   $ok passed, $bad failed, $skipped skipped ($build/conformance.log)"
 # Few points and small bricks: under the sanitizers everything takes a hundred times longer.
 small='Kernels/Bricks.LayersAreThoseOfTheWhole/Gpu*:Kernels/Conformance.ValueDoesNotDependOnTheBatch/Gpu*'
 small+=':Kernels/Conformance.EveryWidthAgreesWithCore/Gpu*'
+small+=':Kernels/Training.AgreesForEveryShape/Gpu:Kernels/Training.UpdatesAreCoresOwn/Gpu'
 for tool in memcheck racecheck; do
   echo "== compute-sanitizer $tool"
   sanitizer=$(command -v compute-sanitizer || ls /usr/local/cuda/bin/compute-sanitizer 2> /dev/null)

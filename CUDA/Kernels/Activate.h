@@ -53,5 +53,52 @@ INR_HOST_DEVICE inline float Activate(Activation activation, float x)
   }
 }
 
+/// Whether the slope can be told from the result, so that nobody has to keep what it came from.
+INR_HOST_DEVICE inline bool SlopeFromResult(Activation activation)
+{
+  return activation != Activation::Sine && activation != Activation::Squareplus &&
+         activation != Activation::Softplus;
+}
+
+#ifdef __CUDACC__
+__noinline__
+#endif
+    INR_HOST_DEVICE inline float
+    SlopeSlowly(Activation activation, float x, float h)
+{
+  const float y = 10.0f * x;
+  switch (activation) {
+  case Activation::Exponential:
+    return h;
+  case Activation::Sigmoid:
+    return h * (1.0f - h);
+  case Activation::Sine:
+    return cosf(x);
+  case Activation::Squareplus:
+    return 0.5f * (1.0f + y / sqrtf(y * y + 4.0f));
+  case Activation::Softplus:
+    return 1.0f / (1.0f + expf(-y));
+  case Activation::Tanh:
+    return 1.0f - h * h;
+  default:
+    return 1.0f;
+  }
+}
+
+/// Derivative at x, where the activation gave h; see SlopeFromResult for where x is of no matter.
+INR_HOST_DEVICE inline float ActivationSlope(Activation activation, float x, float h)
+{
+  switch (activation) {
+  case Activation::None:
+    return 1.0f;
+  case Activation::ReLU:
+    return h > 0.0f ? 1.0f : 0.0f;
+  case Activation::LeakyReLU:
+    return h > 0.0f ? 1.0f : 0.01f;
+  default:
+    return SlopeSlowly(activation, x, h);
+  }
+}
+
 } // namespace cuda
 } // namespace inr

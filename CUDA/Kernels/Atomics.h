@@ -35,6 +35,17 @@ INR_HOST_DEVICE inline std::uint64_t AtomicAdd(std::uint64_t& sum, std::uint64_t
 #endif
 }
 
+INR_HOST_DEVICE inline std::uint32_t AtomicMax(std::uint32_t& largest, std::uint32_t number)
+{
+#ifdef __CUDA_ARCH__
+  return atomicMax(&largest, number);
+#else
+  const std::uint32_t before = largest;
+  largest = before < number ? number : before;
+  return before;
+#endif
+}
+
 /// Puts `wanted` where `expected` is.
 INR_HOST_DEVICE inline std::uint64_t AtomicExchangeIf(std::uint64_t& place, std::uint64_t expected,
                                                       std::uint64_t wanted)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs bench_cuda and bench_cuda_frames on this machine's GPU and writes cuda.json; see
+"""Runs bench_cuda, bench_cuda_frames and bench_cuda_training on this machine's GPU and writes cuda.json; see
 Testing/run_cuda.sh.
 
     Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA FAILED_CONFORMANCE_TESTS
@@ -41,9 +41,12 @@ def results_of(measured, failed):
                                       baseline=f"ceiling, {what}", **more)
 
 
-def frames_of(lines):
-    """What bench_cuda_frames prints."""
-    note = "768 x 768, default model, as 256^3 voxels unless said otherwise; the CPU draws with all cores"
+FRAMES = "768 x 768, default model, as 256^3 voxels unless said otherwise; the CPU draws with all cores"
+TRAINING = "256^3 floats, the writer's model for 256^3 bytes, float32; the CPU's with all of its cores"
+
+
+def lines_of(lines, note):
+    """What bench_cuda_frames and bench_cuda_training print."""
     for line in lines.splitlines():
         measured = json.loads(line)
         yield {**measured, "value": float(f"{measured['value']:.4g}"), "note": note}
@@ -57,7 +60,8 @@ def main():
     folder, failed = sys.argv[1:]
     measured = json.loads(run(folder, "bench_cuda"))
     results = list(results_of(measured, int(failed)))
-    results += frames_of(run(folder, "bench_cuda_frames"))
+    results += lines_of(run(folder, "bench_cuda_frames"), FRAMES)
+    results += lines_of(run(folder, "bench_cuda_training"), TRAINING)
     for result in results:
         print(f"{result['name']}: {result['value']} {result['unit']}")
     device = measured["device"]

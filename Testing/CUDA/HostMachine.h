@@ -36,6 +36,14 @@ public:
     return Array<T>(std::max<std::int64_t>(count, 1));
   }
   void requireFree(std::int64_t /*bytes*/, const char* /*what*/) const {}
+  template <class T> Array<T> allocatePinned(std::int64_t count) const
+  {
+    return this->allocate<T>(count);
+  }
+  template <class T> void beginToMachine(T* to, const T* from, std::int64_t count) const
+  {
+    this->copy(to, from, count);
+  }
   template <class T> void toMachine(T* to, const T* from, std::int64_t count) const
   {
     this->copy(to, from, count);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "CUDA/Device.h"
+#include "Core/Training/TrainingAccelerator.h"
+
+#include <memory>
+#include <string>
+
+namespace inr {
+namespace cuda {
+
+/// A GPU for trainings, in float32.
+std::shared_ptr<const TrainingAccelerator> MakeTrainer(const Device& device);
+
+/// Begins one there. Throws Error(Device) with figures where its memory is short or it fails.
+std::unique_ptr<AcceleratedTraining> StartTraining(const Device& device, const TrainingTask& task);
+
+/// What is to be had for trainings.
+struct FoundTrainer
+{
+  std::shared_ptr<const TrainingAccelerator> accelerator; ///< may be null
+  std::string reason;                                     ///< why it is
+};
+/// The GPU of the `localRank`-th process on this machine. Never throws for want of one.
+FoundTrainer FindTrainer(int localRank);
+
+} // namespace cuda
+} // namespace inr
