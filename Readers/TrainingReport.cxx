@@ -3,6 +3,7 @@
 
 #include "Core/Training/BatchSource.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace {
@@ -49,6 +50,9 @@ std::string TrainingReport::text(const inr::TrainingProgress& progress, Clock::t
 {
   std::string text = Name(progress.phase);
   const bool training = progress.phase == inr::TrainingPhase::Training;
+  if (training && progress.accelerated) {
+    text += std::string(" on the GPU, from ") + inr::TrainingPipelineName(progress.pipeline);
+  }
   if (training && this->FirstSteps == 0) {
     this->FirstSteps = progress.steps;
     this->FirstStep = now;
@@ -56,7 +60,8 @@ std::string TrainingReport::text(const inr::TrainingProgress& progress, Clock::t
     this->Start = this->FirstStep;
     this->FirstFraction = progress.fraction;
   }
-  const auto steps = static_cast<double>(progress.steps - this->FirstSteps);
+  const std::uint64_t latest = std::max(progress.steps, this->FirstSteps); // some may be lost
+  const auto steps = static_cast<double>(latest - this->FirstSteps);
   if (training && steps > 0) {
     const double rate = steps * inr::BatchSize / Seconds(now - this->FirstStep);
     text += Formatted(", %.3g M samples/s", rate / 1e6);

@@ -17,7 +17,8 @@ public:
 
   explicit TrainingReport(Clock::time_point now = Clock::now()) : Start(now) {}
 
-  /// As "Training INR, 1.31 M samples/s, 80 s left"; what is not known yet is left out.
+  /// As "Training INR, 1.31 M samples/s, 80 s left" or "Training INR on the GPU, from device
+  /// memory, ..."; what is not known yet is left out.
   std::string text(const inr::TrainingProgress& progress, Clock::time_point now = Clock::now());
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRWriter.h"
 
+#include "CUDA/CudaTrainer.h"
 #include "ControllerGroup.h"
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
@@ -14,6 +15,7 @@
 #include "ReadingPlan.h"
 #include "StepSequence.h"
 #include "StopSignals.h"
+#include "TrainingBackend.h"
 #include "TrainingCheckpoint.h"
 #include "TrainingInput.h"
 #include "TrainingReport.h"
@@ -34,6 +36,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 #include <vector>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -71,7 +74,8 @@ public:
   bool IsWriting = false; ///< the steps stay those that there were at the beginning
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
-  inr::ModelPointer Previous; ///< what was written last, if it is of a time step
+  std::unique_ptr<TrainingBackend> Beside; ///< of this Write; null = not looked for
+  inr::ModelPointer Previous;              ///< what was written last, if it is of a time step
 };
 
 vtkINRWriter::vtkINRWriter() : Internal(std::make_unique<Internals>())
@@ -150,6 +154,7 @@ int vtkINRWriter::Write()
   }
   Internals& self = *this->Internal;
   this->SetErrorCode(vtkErrorCode::NoError);
+  self.Beside.reset();
   this->BeginFile();
   self.IsWriting = false;
   this->Modified(); // so that the steps are planned anew
@@ -352,6 +357,39 @@ inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
   }
 }
 
+void vtkINRWriter::SetBackend(int backend)
+{
+  if (backend < AUTO || backend > CUDA) {
+    vtkErrorMacro("Backend " << backend << " is none of 0 (Auto), 1 (CPU), 2 (CUDA).");
+    return;
+  }
+  this->Internal->Beside.reset();
+  if (this->Backend != backend) {
+    this->Backend = backend;
+    this->Modified();
+  }
+}
+
+std::shared_ptr<const inr::TrainingAccelerator>
+vtkINRWriter::FindTrainingAccelerator(std::string& reason)
+{
+  inr::cuda::FoundTrainer found = inr::cuda::FindTrainer(0); // a process alone
+  reason = found.reason;
+  return found.accelerator;
+}
+
+TrainingBackend& vtkINRWriter::FindBackend()
+{
+  std::unique_ptr<TrainingBackend>& beside = this->Internal->Beside;
+  if (!beside) {
+    std::string reason;
+    auto accelerator = this->Backend == CPU ? nullptr : this->FindTrainingAccelerator(reason);
+    beside = std::make_unique<TrainingBackend>(this, std::move(accelerator), reason,
+                                               this->Backend == CUDA);
+  }
+  return *beside;
+}
+
 void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
                          const ControllerGroup& group)
 {
@@ -364,6 +402,12 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   TrainingCheckpoint checkpoint(this, this->Internal->Target, this->CheckpointInterval,
                                 this->Resume);
   options.checkpoint = checkpoint.options();
+  TrainingBackend& backend = this->FindBackend();
+  options.acceleration = backend.options();
+  const auto tell = [&] {
+    checkpoint.tell();
+    backend.tell(group.rank() == 0);
+  };
 
   const ReadingPlan& reading = this->Internal->Reading;
   if (!reading.wholeReader().empty() && group.rank() == 0) {
@@ -373,7 +417,7 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   const auto observe = [&](const inr::TrainingProgress& progress) {
     this->SetProgressText(report.text(progress).c_str());
     this->UpdateProgress(progress.fraction);
-    checkpoint.tell();
+    tell();
     return !signals.Received() && !IsAborted(*this);
   };
   inr::ModelPointer model;
@@ -390,10 +434,10 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
         [&] { bytes = group.rank() == 0 ? inr::WriteModel(*model, this->Internal->Target) : 0; });
     this->KeepResult(*model, group.valueOfFirst(bytes));
   } catch (const inr::Error& error) {
-    checkpoint.tell();
+    tell();
     throw checkpoint.complete(error);
   }
-  checkpoint.tell();
+  tell();
   checkpoint.remove(group.rank());
   this->UpdateProgress(1.0);
   this->Internal->Previous = model->volume.time ? model : nullptr;
@@ -420,6 +464,7 @@ void vtkINRWriter::BeginFile()
   this->PSNR = this->SSIM = this->MaximumError = this->Ratio = 0;
   this->TrainingSeconds = this->WaitingSeconds = this->ExchangeSeconds = 0;
   this->Steps = 0;
+  this->BackendInUse.clear();
 }
 
 void vtkINRWriter::KeepResult(const inr::Model& model, vtkIdType fileSize)
@@ -433,6 +478,7 @@ void vtkINRWriter::KeepResult(const inr::Model& model, vtkIdType fileSize)
   this->Ratio = bytes / static_cast<double>(fileSize);
   this->Steps = static_cast<vtkIdType>(model.training->steps);
   this->TrainingSeconds = model.training->seconds;
+  this->BackendInUse = BackendText(*model.training);
   this->WaitingSeconds = model.training->waitingSeconds;
   this->ExchangeSeconds = model.training->exchangeSeconds;
   if (ControllerGroup(this->Internal->Controller).rank() > 0) {
@@ -440,8 +486,8 @@ void vtkINRWriter::KeepResult(const inr::Model& model, vtkIdType fileSize)
   }
   vtkLog(INFO, << this->Internal->Target << ": PSNR " << this->PSNR << " dB, SSIM " << this->SSIM
                << ", largest error " << this->MaximumError << ", ratio " << this->Ratio << ", "
-               << this->Steps << " steps in " << this->TrainingSeconds << " s"
-               << TimesOfGroup(*model.training));
+               << this->Steps << " steps in " << this->TrainingSeconds << " s by "
+               << this->BackendInUse << TimesOfGroup(*model.training));
 }
 
 void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)
@@ -458,6 +504,7 @@ void vtkINRWriter::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "MacroCellSize: " << this->MacroCellSize << "\n"
      << indent << "PlannedSteps: " << this->PlannedSteps << "\n"
      << indent << "Seed: " << this->Seed << "\n"
+     << indent << "Backend: " << this->Backend << "\n"
      << indent << "ModelConfig: " << (this->ModelConfig ? this->ModelConfig : "(chosen)") << "\n"
      << indent << "ReadableByInstantVNR: " << (this->ReadableByInstantVNR ? "on" : "off") << "\n"
      << indent << "WriteTimeSteps: " << (this->WriteTimeSteps ? "on" : "off") << "\n"

@@ -38,10 +38,12 @@
 
 class ControllerGroup;
 class StopSignals;
+class TrainingBackend;
 class vtkMultiProcessController;
 struct ParallelInput;
 struct TrainingInput;
 namespace inr {
+class TrainingAccelerator;
 struct Model;
 struct TrainingOptions;
 struct TrainingProgress;
@@ -187,6 +189,28 @@ public:
   vtkGetMacro(Seed, int);
   ///@}
 
+  enum Backends {
+    AUTO = 0, ///< an NVIDIA GPU where one can be used, else the CPU
+    CPU = 1,
+    CUDA = 2 ///< the same as AUTO, and a warning says why where none can be used
+  };
+  ///@{
+  /// What trains; one of Backends, anything else is refused. A GPU takes the volume into its memory
+  /// where there is room for it; else samples are drawn in the host's memory, or from what is read
+  /// in pieces, while it computes. It trains in float32, to the CPU's parameters but for rounding
+  /// and the order of sums; its first step is compared with the CPU's. One that fails, at whatever
+  /// time, is given up with a warning, and the CPU goes on from a copy of an earlier step: 200 steps
+  /// old at most or, where copies are slow, as old as fifty of them take. So is one whose memory is
+  /// short, of which AUTO says nothing. Each Write tries it again. Several processes train on the
+  /// CPU. Default AUTO.
+  void SetBackend(int backend);
+  vtkGetMacro(Backend, int);
+  ///@}
+
+  /// What trained in the last Write, and where its samples came from: "CPU avx2; volume in host
+  /// memory", "CUDA float32, NVIDIA H200; volume in device memory". Empty before.
+  const char* GetBackendInUse() const { return this->BackendInUse.c_str(); }
+
   ///@{
   /// The model as tiny-cuda-nn configuration (JSON text with "encoding" and "network"); overrides
   /// TargetRatio. Empty (default) = chosen.
@@ -241,6 +265,11 @@ protected:
   vtkTypeBool ProcessRequest(vtkInformation*, vtkInformationVector**,
                              vtkInformationVector*) override;
   void WriteData() override;
+
+  /// What may train beside the CPU; null where there is none, with the reason.
+  virtual std::shared_ptr<const inr::TrainingAccelerator>
+  FindTrainingAccelerator(std::string& reason);
+
 #ifdef INR_VTK_WRITERS_RETURN
   /// The error code tells; with false, the pipeline would add a message to ours.
   bool WriteDataAndReturn() override
@@ -271,9 +300,12 @@ private:
                 const std::function<bool(const inr::TrainingProgress&)>& observe);
   std::shared_ptr<const inr::Model> FindStart(const inr::VolumeInfo& volume) const;
   void Train(const ParallelInput& input, const StopSignals& signals, const ControllerGroup& group);
+  TrainingBackend& FindBackend();
   void BeginFile();
   void KeepResult(const inr::Model& model, vtkIdType fileSize);
 
+  int Backend = AUTO;
+  std::string BackendInUse;
   char* FileName = nullptr;
   double TargetPSNR = 0;
   double TargetRatio = 0;

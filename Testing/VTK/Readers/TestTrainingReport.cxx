@@ -55,6 +55,18 @@ TEST(TrainingReport, ReckonsWithWhatATrainingDoesThatGoesOn)
             "Training INR, 0.819 M samples/s, 25 s left");
 }
 
+TEST(TrainingReport, SaysWhatTrainsBesideTheCpu)
+{
+  Told told;
+  inr::TrainingProgress progress{TrainingPhase::Training, 0.01, 1};
+  progress.accelerated = true;
+  progress.pipeline = inr::TrainingPipeline::Storage;
+  EXPECT_EQ(told.at(1, progress), "Training INR on the GPU, from storage");
+  progress.steps = 101;
+  progress.pipeline = inr::TrainingPipeline::HostMemory;
+  EXPECT_EQ(told.at(6, progress), "Training INR on the GPU, from host memory, 0.328 M samples/s");
+}
+
 TEST(TrainingReport, SaysWhatAGroupTookWhereThereWasOne)
 {
   inr::TrainingRecord training;
