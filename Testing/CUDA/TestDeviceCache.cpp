@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 
 namespace {
 
@@ -150,38 +151,57 @@ TEST(DeviceCache, SaysWhatItNeeds)
   }
 }
 
-/// Bricks of a network are those that a cache of Core's holds, those included that Core repairs.
-TEST(DeviceCache, HoldsWhatTheModelGives)
+class DeviceCacheOfModel : public testing::TestWithParam<std::tuple<inr::cuda::Precision, bool>>
+{
+protected:
+  static bool overflows() { return std::get<1>(GetParam()); }
+  static std::shared_ptr<const EmulatedModel> model()
+  {
+    const inr::cuda::Precision precision = std::get<0>(GetParam());
+    const auto parameters = RandomModel(SmallDescription());
+    const float large = precision == inr::cuda::Precision::Half ? 512.0f : 1e15f;
+    for (float& parameter : parameters->parameters) {
+      parameter *= overflows() ? large : 0.5f;
+    }
+    HostLaunch launch;
+    launch.overflows = overflows();
+    return std::make_shared<EmulatedModel>(parameters, precision, launch);
+  }
+};
+
+/// Bricks of a network are those that a cache of Core's holds, those included that Core repairs;
+/// loaded in several rounds, or beside.
+TEST_P(DeviceCacheOfModel, HoldsWhatItGives)
 {
   const Hierarchy levels({20, 14, 30}, 8);
-  for (const inr::cuda::Precision kind :
-       {inr::cuda::Precision::Half, inr::cuda::Precision::Float32}) {
-    for (const bool overflows : {false, true}) {
-      const auto parameters = RandomModel(SmallDescription());
-      const float factor = kind == inr::cuda::Precision::Half ? 512.0f : 1e15f;
-      for (float& parameter : parameters->parameters) {
-        parameter *= overflows ? factor : 0.5f;
-      }
-      HostLaunch launch;
-      launch.overflows = overflows;
-      const auto model = std::make_shared<EmulatedModel>(parameters, kind, launch);
-      HostMachine machine(launch);
-      inr::cuda::DeviceCache<HostMachine, EmulatedInference> cache(
-          machine, EmulatedInference(model), levels, CachePrecision::Bits16, 1 << 18);
-      const std::vector<BrickKey> keys = DifferentBricks(levels, 5);
-      Ask(machine, cache.view(), WishesFor(keys));
-      const auto loaded = cache.load(1000, true);
-      EXPECT_EQ(loaded.loaded, 5);
-      EXPECT_EQ(loaded.repaired > 0, overflows);
-      const EmulatedBricks source(model, levels);
-      for (const BrickKey key : keys) {
-        std::vector<float> values(static_cast<std::size_t>(levels.voxelsPerBrick()));
-        source.infer(&key, 1, values.data(), inr::Arena(1));
-        ExpectStored(cache.view().view(cache.view().find(key)), levels, CachePrecision::Bits16,
-                     values);
-      }
+  const std::vector<BrickKey> keys = DifferentBricks(levels, 5);
+  const EmulatedBricks source(model(), levels);
+  for (const bool isBeside : {false, true}) {
+    HostMachine machine;
+    HostMachine beside;
+    inr::cuda::DeviceCache<HostMachine, EmulatedInference> cache(
+        machine, EmulatedInference(model()), levels, CachePrecision::Bits16,
+        isBeside ? 1 << 18 : 1 << 15);
+    Ask(machine, cache.view(), WishesFor(keys));
+    if (isBeside) {
+      cache.beginLoad(beside, 1000, true);
+    }
+    const auto loaded = isBeside ? cache.finishLoad() : cache.load(1000, true);
+    EXPECT_EQ(loaded.loaded, 5);
+    EXPECT_EQ(loaded.repaired > 0, overflows());
+    for (const BrickKey key : keys) {
+      std::vector<float> values(static_cast<std::size_t>(levels.voxelsPerBrick()));
+      source.infer(&key, 1, values.data(), inr::Arena(1));
+      ASSERT_NE(cache.view().find(key), -1);
+      ExpectStored(cache.view().view(cache.view().find(key)), levels, CachePrecision::Bits16,
+                   values);
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Kernels, DeviceCacheOfModel,
+                         testing::Combine(testing::Values(inr::cuda::Precision::Half,
+                                                          inr::cuda::Precision::Float32),
+                                          testing::Bool()));
 
 } // namespace
