@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds Core and CUDA on a machine with the CUDA toolkit, without VTK, and proves them on its GPU:
-# the conformance tests (of kernels, of pictures of what they infer, and of trainings), small ones of
+# the conformance tests (of kernels, of pictures that they draw, and of trainings), small ones of
 # them under compute-sanitizer, and the benchmarks, which write
 # Testing/Benchmarks/results/<gpu>/cuda.json. On Debian it installs what else is missing.
 #
@@ -76,6 +76,7 @@ echo "   $ok passed, $bad failed, $skipped skipped ($build/conformance.log)"
 # Few points and small bricks: under the sanitizers everything takes a hundred times longer.
 small='Kernels/Bricks.LayersAreThoseOfTheWhole/Gpu*:Kernels/Conformance.ValueDoesNotDependOnTheBatch/Gpu*'
 small+=':Kernels/Conformance.EveryWidthAgreesWithCore/Gpu*'
+small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuLitMixedLevels:Kernels/Drawing.TracesThePathsOfTheCpu/Gpu'
 small+=':Kernels/Training.AgreesForEveryShape/Gpu:Kernels/Training.UpdatesAreCoresOwn/Gpu'
 for tool in memcheck racecheck; do
   echo "== compute-sanitizer $tool"
