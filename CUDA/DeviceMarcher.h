@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "CUDA/DeviceColors.h"
 #include "CUDA/DevicePicture.h"
+#include "CUDA/DeviceScene.h"
 #include "CUDA/Kernels/MarchKernels.h"
 #include "CUDA/WindowedRays.h"
 #include "Core/Render/AcceleratedRenderer.h"
@@ -43,49 +43,30 @@ public:
   }
 
   /// For when colours change.
-  void forget() { this->Overfull.reset(); }
+  void forget()
+  {
+    this->Overfull.reset();
+    this->Steps.reset();
+  }
 
 private:
   static constexpr std::int64_t MostRays = 1 << 18; ///< some 50 MB of their progress
 
   RenderScene sceneOf(const MarchJob& job, const DeviceColors<Machine>& colors)
   {
-    const Frame& frame = job.frame;
-    Belongings<Machine>& arrays = this->OfFrame;
-    arrays.clear();
-    RenderScene scene{};
-    scene.rays = job.geometry.view();
-    scene.rays.opaqueDepth =
-        arrays.put(this->Where, frame.opaqueDepth, std::int64_t{frame.width} * frame.height);
-    scene.rays.planes = arrays.put(this->Where, scene.rays.planes, scene.rays.planeCount);
-    scene.rays.piece = arrays.put(this->Where, scene.rays.piece, scene.rays.pieceCount);
-    scene.streams = StreamsOf(frame);
-    scene.majorants = colors.majorants();
-    scene.colors = colors.lookup();
-    scene.settings = job.settings;
-    scene.steps = job.steps.lookup();
-    scene.steps.entries = this->stepEntries(job.steps);
-    scene.levelOfDetailScale = frame.levelOfDetailScale;
-    scene.lit = job.shading != nullptr;
-    if (scene.lit) {
-      scene.shading = job.shading->view();
-      scene.shading.lights =
-          arrays.put(this->Where, scene.shading.lights, scene.shading.lightCount);
-      scene.shading.constant =
-          arrays.put(this->Where, scene.shading.constant, scene.shading.constantCount);
-    }
-    return scene;
-  }
-
-  /// Copied when they are others than before: they are megabytes.
-  const float* stepEntries(const StepTable& steps)
-  {
-    if (this->Steps != steps.number()) {
+    const double step = job.settings.step * job.settings.unitsPerT;
+    const int lengths = SampleLengths(this->Bricks.hierarchy().levels());
+    if (!this->Steps || !this->Steps->fits(step, lengths)) { // they are megabytes
+      this->Steps.emplace(job.colors, step, lengths);
       this->OfSteps.clear();
-      this->Entries = this->OfSteps.put(this->Where, steps.lookup().entries, 4 * steps.count());
-      this->Steps = steps.number();
+      this->Entries =
+          this->OfSteps.put(this->Where, this->Steps->lookup().entries, 4 * this->Steps->count());
     }
-    return this->Entries;
+    this->OfFrame.clear();
+    RenderScene scene = SceneOn(this->Where, job, colors, this->OfFrame);
+    scene.steps = this->Steps->lookup();
+    scene.steps.entries = this->Entries;
+    return scene;
   }
 
   MarchRays kernel(OnMiss onMiss) const
@@ -166,9 +147,9 @@ private:
   typename Machine::template Array<RenderScene> Scene;
   WindowedRays<Machine, Cache, RayProgress> Rays;
   Belongings<Machine> OfFrame;
+  std::optional<StepTable> Steps; ///< of the present colours
   Belongings<Machine> OfSteps;
-  const float* Entries = nullptr;
-  std::uint64_t Steps = 0;           ///< number of the table that Entries are of
+  const float* Entries = nullptr;    ///< of them
   std::optional<KeptFrame> Overfull; ///< the latest frame that wanted more than the cache holds
 };
 

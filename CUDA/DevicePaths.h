@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "CUDA/DeviceColors.h"
 #include "CUDA/DevicePicture.h"
+#include "CUDA/DeviceScene.h"
 #include "CUDA/Kernels/PathKernels.h"
+#include "CUDA/PathTiles.h"
 #include "CUDA/WindowedRays.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/CachedRenderer.h"
@@ -29,16 +30,18 @@ public:
     const PathScene& given = round.tracer.scene();
     Belongings<Machine>& arrays = this->OfRound;
     arrays.clear();
-    const PathScene scene = this->sceneOf(given, colors, arrays);
+    const PathScene scene = SceneOn(this->Where, given, colors, arrays);
     this->Where.toMachine(this->Scene.data(), &scene, 1);
     const int width = given.rays.width;
     const int height = given.rays.height;
     const Tiling tiling(width, height);
     this->Picture.resize(std::int64_t{width} * height);
     this->Picture.clearCounts();
-    const std::vector<std::uint32_t> pixels = PixelsOf(round, tiling, width);
-    const RayOrder order{width, height, this->listed(pixels, arrays),
-                         static_cast<std::int64_t>(pixels.size())};
+    const std::vector<std::uint32_t> pixels = PixelsOf(round);
+    const RayOrder order{
+        width, height,
+        arrays.put(this->Where, pixels.data(), static_cast<std::int64_t>(pixels.size())),
+        static_cast<std::int64_t>(pixels.size())};
     std::vector<std::uint32_t> misses(static_cast<std::size_t>(tiling.count()), 0);
     TracePaths kernel = this->kernel();
     kernel.tileMisses = arrays.put(this->Where, misses.data(), tiling.count());
@@ -49,7 +52,10 @@ public:
         waits ? this->traceToEnd(kernel, order, keepGoing) : this->traceOnce(kernel, order, limit);
     traced.seconds = timer.seconds();
     this->Where.toHost(misses.data(), kernel.tileMisses, tiling.count());
-    this->finish(round, tiling, misses, traced);
+    traced.tiles = TilesToHost(round, this->Picture);
+    for (std::size_t k = 0; k < round.tiles.size(); ++k) {
+      traced.tiles[k].missed = misses[static_cast<std::size_t>(round.tiles[k])];
+    }
     return traced;
   }
 
@@ -59,22 +65,6 @@ public:
 private:
   static constexpr std::int64_t MostPaths = 1 << 17; ///< some 100 MB of their progress
 
-  PathScene sceneOf(const PathScene& given, const DeviceColors<Machine>& colors,
-                    Belongings<Machine>& arrays)
-  {
-    PathScene scene = given;
-    const std::int64_t pixels = std::int64_t{given.rays.width} * given.rays.height;
-    scene.rays.opaqueDepth = arrays.put(this->Where, given.rays.opaqueDepth, pixels);
-    scene.rays.planes = arrays.put(this->Where, given.rays.planes, given.rays.planeCount);
-    scene.rays.piece = arrays.put(this->Where, given.rays.piece, given.rays.pieceCount);
-    scene.inner =
-        given.inner.with(arrays.put(this->Where, given.inner.planes(), given.inner.planeCount()));
-    scene.majorants = colors.majorants();
-    scene.colors = colors.lookup();
-    scene.lights = arrays.put(this->Where, given.lights, given.lightCount);
-    return scene;
-  }
-
   TracePaths kernel() const
   {
     TracePaths kernel{};
@@ -83,31 +73,6 @@ private:
     kernel.tileEdge = Tiling::Edge;
     kernel.counts = this->Picture.counts();
     return kernel;
-  }
-
-  /// The pixels of a round's tiles; none where these are all.
-  static std::vector<std::uint32_t> PixelsOf(const PathRound& round, const Tiling& tiling,
-                                             int width)
-  {
-    std::vector<std::uint32_t> pixels;
-    if (round.whole) {
-      return pixels;
-    }
-    for (const std::int64_t number : round.tiles) {
-      const Tile tile = tiling.tile(number);
-      for (int y = tile.y; y < tile.y + tile.height; ++y) {
-        for (int x = tile.x; x < tile.x + tile.width; ++x) {
-          pixels.push_back(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) +
-                           static_cast<std::uint32_t>(x));
-        }
-      }
-    }
-    return pixels;
-  }
-
-  const std::uint32_t* listed(const std::vector<std::uint32_t>& pixels, Belongings<Machine>& arrays)
-  {
-    return arrays.put(this->Where, pixels.data(), static_cast<std::int64_t>(pixels.size()));
   }
 
   TracedTiles traceToEnd(TracePaths kernel, const RayOrder& order,
@@ -133,35 +98,6 @@ private:
     TracedTiles traced;
     traced.final = full && this->Options.onlyWhatFits;
     return traced;
-  }
-
-  /// The tiles' pixels to the host, and what was counted: all of it with the first tile.
-  void finish(const PathRound& round, const Tiling& tiling,
-              const std::vector<std::uint32_t>& misses, TracedTiles& traced)
-  {
-    traced.tiles.resize(round.tiles.size());
-    if (!traced.tiles.empty()) {
-      traced.tiles.front() = this->Picture.statistics();
-    }
-    Image rgba(round.output.rgba.width, round.output.rgba.height, 4);
-    Image depth(rgba.width, rgba.height, 1);
-    this->Picture.copyTo(rgba.pixels.data(), depth.pixels.data(), nullptr);
-    for (std::size_t k = 0; k < round.tiles.size(); ++k) {
-      traced.tiles[k].missed = misses[static_cast<std::size_t>(round.tiles[k])];
-      const Tile tile = tiling.tile(round.tiles[k]);
-      CopyTile(rgba, tile, round.output.rgba);
-      if (round.output.depth != nullptr) {
-        CopyTile(depth, tile, *round.output.depth);
-      }
-    }
-  }
-
-  static void CopyTile(const Image& from, const Tile& tile, Image& to)
-  {
-    for (int y = tile.y; y < tile.y + tile.height; ++y) {
-      std::copy_n(from.pixel(tile.x, y), std::int64_t{from.channels} * tile.width,
-                  to.pixel(tile.x, y));
-    }
   }
 
   Machine& Where;

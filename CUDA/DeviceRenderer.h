@@ -11,7 +11,7 @@
 namespace inr {
 namespace cuda {
 
-/// Draws frames by kernels on a machine; see AcceleratedRenderer.
+/// Draws frames through a cache by kernels on a machine; see AcceleratedRenderer.
 template <class Machine, class Cache> class DeviceRenderer : public AcceleratedRenderer
 {
 public:
@@ -45,7 +45,6 @@ public:
     return this->Paths.trace(round, this->Colors, limit, keepGoing);
   }
 
-  int levels() const override { return this->Shared->cache.hierarchy().levels(); }
   std::int64_t bytes() const override { return this->Shared->cache.bytes(); }
   std::int64_t bricks() const override { return this->Shared->cache.mapped(); }
 

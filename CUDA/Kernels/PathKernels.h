@@ -7,6 +7,7 @@
 #include "CUDA/Kernels/Block.h"
 #include "CUDA/Kernels/CachedField.h"
 #include "CUDA/Kernels/FrameCounts.h"
+#include "CUDA/Kernels/PathPixel.h"
 #include "CUDA/Kernels/RayOrder.h"
 #include "Core/Render/PathTracing.h"
 
@@ -99,11 +100,7 @@ private:
 
   INR_HOST_DEVICE void write(const PathState& path, std::int64_t pixel, RayCounts& counts) const
   {
-    const bool collided = path.collided;
-    reinterpret_cast<glm::vec4*>(this->picture.rgba)[pixel] =
-        glm::vec4(path.radiance, collided ? 1.0f : 0.0f);
-    this->picture.depth[pixel] =
-        collided ? static_cast<float>(this->scene->rays.windowDepth(path.firstCollision)) : 0.0f;
+    WritePath(*this->scene, path, this->picture, pixel);
     counts.scatterings += static_cast<std::uint32_t>(path.bounces);
   }
 

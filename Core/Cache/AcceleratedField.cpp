@@ -202,6 +202,12 @@ std::shared_ptr<AcceleratedRenderer> AcceleratedField::makeRenderer(const glm::i
   return this->tryTo([&](bool&) { return this->Owner->makeRenderer(this->Source, dims, options); });
 }
 
+std::shared_ptr<AcceleratedRenderer> AcceleratedField::makeNetworkRenderer()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->tryTo([&](bool&) { return this->Owner->makeNetworkRenderer(this->Source); });
+}
+
 std::shared_ptr<const Evaluator> AcceleratedField::evaluator(const Evaluator& cpu)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);

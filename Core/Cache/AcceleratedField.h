@@ -34,6 +34,7 @@ public:
   /// What draws pictures of it; null where the accelerator does not, or fails or has failed.
   std::shared_ptr<AcceleratedRenderer> makeRenderer(const glm::i64vec3& dims,
                                                     const CacheOptions& options);
+  std::shared_ptr<AcceleratedRenderer> makeNetworkRenderer();
   /// The same, but null where it is not made.
   std::shared_ptr<const BrickSource> madeBricks(const Hierarchy& hierarchy) const;
 

@@ -15,6 +15,11 @@ Accelerator::makeRenderer(const ModelPointer&, const glm::i64vec3&, const CacheO
   return nullptr;
 }
 
+std::shared_ptr<AcceleratedRenderer> Accelerator::makeNetworkRenderer(const ModelPointer&) const
+{
+  return nullptr;
+}
+
 std::shared_ptr<AcceleratedField> Accelerator::findLocked(const ModelPointer& model) const
 {
   for (const auto& entry : this->Open) {

@@ -43,6 +43,8 @@ public:
   virtual std::shared_ptr<AcceleratedRenderer> makeRenderer(const ModelPointer& model,
                                                             const glm::i64vec3& dims,
                                                             const CacheOptions& options) const;
+  /// The same straight from its network.
+  virtual std::shared_ptr<AcceleratedRenderer> makeNetworkRenderer(const ModelPointer& model) const;
 
   /// For a renderer: the model is with the accelerator as long as somebody holds the result, which
   /// is the same for all who do.

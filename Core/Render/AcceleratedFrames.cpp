@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
 
+#include <algorithm>
 #include <string>
 
 namespace inr {
@@ -34,26 +35,15 @@ bool AcceleratedFrames::succeeds(const std::function<void()>& call)
 
 void AcceleratedFrames::setColors(const Majorants& majorants, const ColorLookup& colors)
 {
-  this->Steps.reset();
   this->succeeds([&] { this->Device->setColors(majorants, colors); });
 }
 
-std::optional<FrameStatistics>
-AcceleratedFrames::march(const Frame& frame, const RayGeometry& geometry,
-                         const MarchSettings& settings, const ColorLookup& colors,
-                         const Shading* shading, const WorkLimit& limit, const PassOutput& output,
-                         const std::function<bool()>& keepGoing)
+std::optional<FrameStatistics> AcceleratedFrames::march(const MarchJob& job, const WorkLimit& limit,
+                                                        const PassOutput& output,
+                                                        const std::function<bool()>& keepGoing)
 {
   std::optional<FrameStatistics> statistics;
-  this->succeeds([&] {
-    const double step = settings.step * settings.unitsPerT;
-    const int lengths = SampleLengths(this->Device->levels());
-    if (!this->Steps || !this->Steps->fits(step, lengths)) {
-      this->Steps.emplace(colors, step, lengths);
-    }
-    statistics = this->Device->march({frame, geometry, settings, *this->Steps, shading}, limit,
-                                     output, keepGoing);
-  });
+  this->succeeds([&] { statistics = this->Device->march(job, limit, output, keepGoing); });
   return statistics;
 }
 
@@ -66,11 +56,30 @@ std::optional<TracedTiles> AcceleratedFrames::tracePaths(const PathRound& round,
   return traced;
 }
 
-void AcceleratedFrames::prove(const Image& drawn, const Image& cpu)
+void AcceleratedFrames::prove(const Frame& frame, double scale, const March& accelerated,
+                              const March& cpu)
 {
   constexpr double least = 40; // dB; rounding leaves twice as many
+  constexpr int edge = 24;     // pixels: little has to be inferred for them
+  if (this->Proven || !this->draws(frame)) {
+    return;
+  }
+  Frame small = frame;
+  small.mode = RenderMode::RayMarching;
+  small.width = small.height = edge;
+  small.opaqueDepth = nullptr;
+  small.timeLimit = 0;
+  small.levelOfDetailScale = std::max(frame.levelOfDetailScale, scale);
+  small.errorTolerance.reset();
+  Image drawn(edge, edge, 4);
+  accelerated(small, {drawn, nullptr});
+  if (!this->draws(frame)) { // it has failed
+    return;
+  }
+  Image truth(edge, edge, 4);
+  cpu(small, {truth, nullptr});
   this->succeeds([&] {
-    const double psnr = ImagePsnr(drawn, cpu);
+    const double psnr = ImagePsnr(drawn, truth);
     if (!(psnr >= least)) {
       throw Error(ErrorCode::Device, "it draws a picture that is " + std::to_string(psnr) +
                                          " dB from the CPU's, not the same");

@@ -27,20 +27,19 @@ public:
   /// See AcceleratedRenderer.
   void setColors(const Majorants& majorants, const ColorLookup& colors);
 
-  /// A picture, or nothing where the accelerator has failed. `shading` may be null.
-  std::optional<FrameStatistics> march(const Frame& frame, const RayGeometry& geometry,
-                                       const MarchSettings& settings, const ColorLookup& colors,
-                                       const Shading* shading, const WorkLimit& limit,
+  /// A picture, or nothing where the accelerator has failed.
+  std::optional<FrameStatistics> march(const MarchJob& job, const WorkLimit& limit,
                                        const PassOutput& output,
                                        const std::function<bool()>& keepGoing);
   std::optional<TracedTiles> tracePaths(const PathRound& round, const WorkLimit& limit,
                                         const std::function<bool()>& keepGoing);
 
+  /// Marches a frame into a picture of its size.
+  using March = std::function<void(const Frame&, const PassOutput&)>;
   /// Kernels that nobody has seen at work on a device like this one are not to be trusted unseen:
-  /// before the first picture, a small one is drawn twice.
-  bool needsProof() const { return this->Device && !this->Proven; }
-  /// That by both; gives the accelerator up where it drew another one.
-  void prove(const Image& drawn, const Image& cpu);
+  /// before the first picture a small one, like that of `frame` as far as levels of at least
+  /// `scale` show it, is drawn by both. Gives the accelerator up where it draws another one.
+  void prove(const Frame& frame, double scale, const March& accelerated, const March& cpu);
 
   std::int64_t bytes() const { return this->Device ? this->Device->bytes() : 0; }
   std::int64_t bricks() const { return this->Device ? this->Device->bricks() : 0; }
@@ -51,7 +50,6 @@ private:
 
   std::shared_ptr<AcceleratedField> Field;
   std::shared_ptr<AcceleratedRenderer> Device;
-  std::optional<StepTable> Steps;
   bool Proven = false;
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Render/PathPicture.h"
-#include "Core/Render/StepTable.h"
+#include "Core/Render/Shading.h"
 
 #include <cstdint>
 #include <functional>
@@ -17,12 +17,13 @@ struct MarchJob
   const Frame& frame;
   const RayGeometry& geometry;
   const MarchSettings& settings;
-  const StepTable& steps;
-  const Shading* shading; ///< null: colours as the transfer function gives them
+  const ColorLookup& colors; ///< those that were set
+  const Shading* shading;    ///< null: colours as the transfer function gives them
 };
 
-/// Draws frames of a model through a cache of its own, in the CPU's place: an accelerator's, on
-/// which cache, rays and paths stay. For one renderer, and one call at a time.
+/// Draws frames of a model through a cache of its own or straight from the network, in the CPU's
+/// place: an accelerator's, on which cache, rays and paths stay. For one renderer, and one call at
+/// a time.
 ///
 /// Pictures are those of the CPU but for rounding, and for what is missing in pictures that a time
 /// limit cuts short. All throw Error(Device) where the accelerator fails, or has no memory; it is
@@ -43,9 +44,7 @@ public:
   virtual TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,
                                  const std::function<bool()>& keepGoing) = 0;
 
-  /// The levels that there are.
-  virtual int levels() const = 0;
-  /// Of the accelerator's memory, by its cache, and bricks in there.
+  /// Of the accelerator's memory, by its cache, and bricks in there; 0 without one.
   virtual std::int64_t bytes() const = 0;
   virtual std::int64_t bricks() const = 0;
 };

@@ -22,4 +22,11 @@ INR_HOST_DEVICE inline FieldPoint MakeFieldPoint(const glm::dvec3& index, int le
   return {voxel, glm::vec3(index - glm::dvec3(voxel)), level};
 }
 
+/// Where a network is asked for it: in the unit cube. `dims`: voxels per axis.
+INR_HOST_DEVICE inline glm::vec3 NetworkPosition(const FieldPoint& point, const glm::dvec3& dims)
+{
+  const glm::dvec3 index = glm::dvec3(point.voxel) + glm::dvec3(point.fraction);
+  return glm::vec3((index + 0.5) / dims);
+}
+
 } // namespace inr

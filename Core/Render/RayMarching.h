@@ -58,6 +58,10 @@ INR_HOST_DEVICE inline double JitterOf(const MarchSettings& settings, std::uint6
   return ends ? 1.0 : RandomUnit(stream, ~std::uint64_t{0});
 }
 
+/// Samples of a ray that are placed at once where each asks the network: enough to fill a batch,
+/// few enough not to overshoot an opaque surface.
+constexpr int SamplesPerRound = 8;
+
 /// A sample to infer and what its answer is good for.
 struct MarchSample
 {

@@ -28,7 +28,7 @@ struct RendererOptions
   /// bricks come in within them only; see WorkLimit. CacheOptions::background is then off.
   bool deterministic = false;
   CacheOptions cache;
-  /// Infers the bricks of a model or, without a cache, the samples; null: the CPU does.
+  /// Draws a model's frames where it can, and else infers bricks or samples; null: the CPU does.
   std::shared_ptr<const Accelerator> accelerator;
 
   bool operator==(const RendererOptions& other) const

@@ -4,7 +4,6 @@
 #include "Core/Render/CellBlock.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 
@@ -14,12 +13,6 @@ namespace {
 
 constexpr int MaximumRows = 1 << 14;
 constexpr double Tolerance = 2e-4; // of a sample's opacity: errors of a ray's samples add up
-
-std::uint64_t NextNumber()
-{
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
-}
 
 double OpacityOf(double perUnit, double length)
 {
@@ -67,7 +60,7 @@ int SampleLengths(int levels)
 }
 
 StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
-    : Number(NextNumber()), StepLength(stepLength), Lengths(lengths)
+    : StepLength(stepLength), Lengths(lengths)
 {
   const auto lengthOf = [&](int length) {
     return stepLength * static_cast<double>(StepsOf(length));

@@ -36,8 +36,6 @@ public:
 
   /// Over normalised values, or over ColorLookup::coordinate for a logarithmic colour table.
   const StepLookup& lookup() const { return this->Lookup; }
-  /// A number that no other table has or had.
-  std::uint64_t number() const { return this->Number; }
   /// Behind lookup().entries.
   std::int64_t count() const { return static_cast<std::int64_t>(this->Entries.size()); }
   bool fits(double stepLength, int lengths) const
@@ -46,7 +44,6 @@ public:
   }
 
 private:
-  std::uint64_t Number;
   double StepLength;
   int Lengths;
   std::vector<glm::vec4> Entries;

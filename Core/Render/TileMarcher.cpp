@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/TileMarcher.h"
 
+#include "Core/Render/TileLoop.h"
+#include "Core/Render/Timer.h"
+
 #include <algorithm>
 
 namespace inr {
@@ -254,6 +257,25 @@ void TileMarcher::writePixels(const Tile& tile, Image& rgba, Image* depth) const
       *depth->pixel(x, y) = static_cast<float>(this->depthOf(state));
     }
   }
+}
+
+FrameStatistics MarchTiles(const MarchScene& scene, const Arena& arena, Image& rgba, Image* depth,
+                           const std::function<bool()>& keepGoing)
+{
+  const Timer timer;
+  const int edge = EdgeFor(scene.evaluator.pointsAtOnce(), SamplesPerRound);
+  const Tiling tiling(scene.frame.width, scene.frame.height, edge);
+  std::vector<FrameStatistics> tiles(static_cast<std::size_t>(tiling.count()));
+  ForEachTile(arena, tiling.count(), keepGoing, [&](std::int64_t k) {
+    TileMarcher marcher(scene);
+    tiles[static_cast<std::size_t>(k)] = marcher.march(tiling.tile(k), rgba, depth);
+  });
+  FrameStatistics statistics;
+  for (const FrameStatistics& tile : tiles) {
+    statistics.add(tile);
+  }
+  statistics.marchSeconds = timer.seconds();
+  return statistics;
 }
 
 } // namespace inr

@@ -8,9 +8,12 @@
 #include "Core/Render/Shading.h"
 #include "Core/Render/Tiling.h"
 
+#include <functional>
 #include <vector>
 
 namespace inr {
+
+class Arena;
 
 /// What a frame's tiles share. All read-only.
 struct MarchScene
@@ -29,10 +32,6 @@ struct MarchScene
 class TileMarcher
 {
 public:
-  /// Samples per ray and round: enough to fill a batch, few enough not to overshoot an opaque
-  /// surface.
-  static constexpr int SamplesPerRound = 8;
-
   explicit TileMarcher(const MarchScene& scene) : Scene(scene) {}
 
   /// Writes the tile's pixels; `depth` may be null.
@@ -89,5 +88,9 @@ private:
   std::vector<float> Begins;        ///< where surfaces are found, values before each sample
   std::vector<Crossing> Crossings;
 };
+
+/// Marches a whole picture. Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
+FrameStatistics MarchTiles(const MarchScene& scene, const Arena& arena, Image& rgba, Image* depth,
+                           const std::function<bool()>& keepGoing);
 
 } // namespace inr

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Who draws a renderer's frames: an accelerator or the CPU, through a cache or not.
+#include "Core/Render/CachedPaths.h"
+#include "Core/Render/RendererImplementation.h"
+#include "Core/Render/TileMarcher.h"
+
+#include <optional>
+#include <utility>
+
+namespace inr {
+
+MarchWay Renderer::Implementation::wayOf(const Frame& frame) const
+{
+  MarchWay way{RayGeometry(frame, this->Volume.dims), {}, ShadingOf(frame)};
+  MarchSettings& settings = way.settings;
+  settings.dims = glm::dvec3(this->Volume.dims);
+  settings.step = frame.sampleDistance;
+  settings.adaptive = frame.adaptiveSampling && frame.blending.mode == BlendMode::Composite;
+  settings.unitsPerT = way.geometry.worldPerUnit() / frame.unitDistance;
+  settings.projector = this->projector();
+  if (frame.cropping && !BoxOf(*frame.cropping).full) { // rays end where a box does
+    settings.crops = true;
+    settings.cropping = *frame.cropping;
+  }
+  return way;
+}
+
+FrameStatistics Renderer::Implementation::marchCached(const Frame& frame, MarchWay& way,
+                                                      const WorkLimit& limit,
+                                                      const PassOutput& output,
+                                                      const std::function<bool()>& keepGoing)
+{
+  const BrickStore::Call call = this->Cached->call();
+  const std::int64_t measured = this->measuredPoints();
+  const bool final = !this->choosesLevels(frame, way.settings) ||
+                     this->chooseLevels(frame, limit, keepGoing, way.settings);
+  Frame meanwhile = frame; // until all is measured, the picture is as by distance
+  meanwhile.levelOfDetailScale = final ? frame.levelOfDetailScale : 1.0;
+  FrameStatistics statistics =
+      this->Cached->render(meanwhile, way.geometry, this->Cells, *this->Colors, way.settings,
+                           way.lit(), limit, output, keepGoing);
+  statistics.complete = statistics.complete && final;
+  statistics.work.bricks = call.done();
+  statistics.work.networkSamples += this->measuredPoints() - measured;
+  return statistics;
+}
+
+FrameStatistics Renderer::Implementation::marchHere(const Frame& frame, MarchWay& way,
+                                                    const Evaluator& field, const WorkLimit& limit,
+                                                    const PassOutput& output,
+                                                    const std::function<bool()>& keepGoing)
+{
+  if (this->Cached) {
+    return this->marchCached(frame, way, limit, output, keepGoing);
+  }
+  const MarchScene scene{frame, way.geometry, this->Cells, this->Colors->lookup(),
+                         field, way.settings, way.lit()};
+  return MarchTiles(scene, this->Threads, output.rgba, output.depth, keepGoing);
+}
+
+std::optional<FrameStatistics>
+Renderer::Implementation::marchElsewhere(const Frame& frame, const MarchWay& way,
+                                         const WorkLimit& limit, const PassOutput& output,
+                                         const std::function<bool()>& keepGoing)
+{
+  return this->Drawn->march({frame, way.geometry, way.settings, this->Colors->lookup(), way.lit()},
+                            limit, output, keepGoing);
+}
+
+FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
+                                                const std::function<bool()>& keepGoing)
+{
+  this->Paths.reset();
+  MarchWay way = this->wayOf(frame);
+  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+  const bool chooses = this->Cached && this->choosesLevels(frame, way.settings);
+  if (!chooses && this->isDrawnElsewhere(frame, keepGoing)) {
+    if (const std::optional<FrameStatistics> statistics =
+            this->marchElsewhere(frame, way, limit, output, keepGoing)) {
+      return *statistics;
+    }
+  }
+  return this->marchHere(frame, way, *this->Samples, limit, output, keepGoing);
+}
+
+bool Renderer::Implementation::isDrawnElsewhere(const Frame& frame,
+                                                const std::function<bool()>& keepGoing)
+{
+  if (!this->Drawn) {
+    return false;
+  }
+  const WorkLimit limit(0, this->Options.deterministic);
+  const auto elsewhere = [&](const Frame& small, const PassOutput& output) {
+    this->marchElsewhere(small, this->wayOf(small), limit, output, keepGoing);
+  };
+  const auto here = [&](const Frame& small, const PassOutput& output) {
+    MarchWay way = this->wayOf(small);
+    this->marchHere(small, way, *this->Field, limit, output, keepGoing);
+  };
+  // Where pictures make do with what fits, that is nowhere the same, but for the coarsest level.
+  this->Drawn->prove(frame, this->Options.cache.onlyWhatFits ? 1e9 : 1.0, elsewhere, here);
+  return this->Drawn->draws(frame);
+}
+
+TracedTiles Renderer::Implementation::traceRound(const PathRound& round, const WorkLimit& limit,
+                                                 const std::function<bool()>& keepGoing)
+{
+  if (this->Drawn && this->Drawn->draws(round.tracer.frame())) {
+    if (std::optional<TracedTiles> traced = this->Drawn->tracePaths(round, limit, keepGoing)) {
+      return std::move(*traced);
+    }
+  }
+  return this->Cached
+             ? this->Cached->tracePaths(round, limit, keepGoing)
+             : TraceWithNetwork(round, *this->Samples, this->Volume.dims, this->Threads, keepGoing);
+}
+
+FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
+                                                     const std::function<bool()>& keepGoing)
+{
+  if (!this->Paths) {
+    this->Paths.emplace();
+  }
+  PathMedium medium{this->Volume.dims, this->Cells, this->Colors->lookup()};
+  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+  this->isDrawnElsewhere(frame, keepGoing); // is found out beforehand
+  const TraceTiles trace = [&](const PathRound& round) {
+    return this->traceRound(round, limit, keepGoing);
+  };
+  if (!this->Cached) {
+    return this->Paths->advance(frame, medium, trace, limit, output);
+  }
+  const BrickStore::Call call = this->Cached->call();
+  medium.levels = this->Cached->store().cache().hierarchy().levels();
+  FrameStatistics statistics = this->Paths->advance(frame, medium, trace, limit, output);
+  statistics.work.bricks = call.done();
+  return statistics;
+}
+
+} // namespace inr

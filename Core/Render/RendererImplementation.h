@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Parallel.h"
+#include "Core/Render/AcceleratedFrames.h"
+#include "Core/Render/CachedRenderer.h"
+#include "Core/Render/LevelChooser.h"
+#include "Core/Render/PathPicture.h"
+#include "Core/Render/Renderer.h"
+#include "Core/Render/WorkLimit.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace inr {
+
+/// How a frame's rays are marched.
+struct MarchWay
+{
+  RayGeometry geometry;
+  MarchSettings settings;
+  std::optional<Shading> shading;
+
+  const Shading* lit() const { return this->shading ? &*this->shading : nullptr; }
+};
+
+/// What a renderer consists of.
+struct Renderer::Implementation
+{
+  /// `model`: null for another field.
+  Implementation(std::shared_ptr<const Evaluator> field, std::shared_ptr<const void> identity,
+                 const ModelPointer& model, VolumeInfo volume, const MacroCells& cells,
+                 RendererOptions options);
+
+  /// Whether the accelerator draws such a frame itself; it is then known to draw rightly.
+  bool isDrawnElsewhere(const Frame& frame, const std::function<bool()>& keepGoing);
+  /// Has it made what frames will ask for, so that it is known beforehand whether it can.
+  void tryAccelerator();
+
+  Projector projector() const
+  {
+    return ProjectorFor(this->Seen, this->Volume, this->Cells.bounds(), this->Surfaces);
+  }
+  void build();
+  /// Finds what matters to pictures blended like this, unless that is known.
+  void buildFor(const Blending& blending);
+  std::int64_t measuredPoints() const { return this->Levels ? this->Levels->measuredPoints() : 0; }
+  /// Whether what comes from coarser levels can be chosen for such a frame.
+  bool choosesLevels(const Frame& frame, const MarchSettings& settings) const;
+  /// Puts the choice into `settings`; whether it is final.
+  bool chooseLevels(const Frame& frame, const WorkLimit& limit,
+                    const std::function<bool()>& keepGoing, MarchSettings& settings);
+
+  MarchWay wayOf(const Frame& frame) const;
+  FrameStatistics march(const Frame& frame, const PassOutput& output,
+                        const std::function<bool()>& keepGoing);
+  /// By the accelerator, if that does not fail.
+  std::optional<FrameStatistics> marchElsewhere(const Frame& frame, const MarchWay& way,
+                                                const WorkLimit& limit, const PassOutput& output,
+                                                const std::function<bool()>& keepGoing);
+  /// By the CPU; without a cache, with samples that `field` infers.
+  FrameStatistics marchHere(const Frame& frame, MarchWay& way, const Evaluator& field,
+                            const WorkLimit& limit, const PassOutput& output,
+                            const std::function<bool()>& keepGoing);
+  FrameStatistics marchCached(const Frame& frame, MarchWay& way, const WorkLimit& limit,
+                              const PassOutput& output, const std::function<bool()>& keepGoing);
+  TracedTiles traceRound(const PathRound& round, const WorkLimit& limit,
+                         const std::function<bool()>& keepGoing);
+  FrameStatistics tracePaths(const Frame& frame, const PassOutput& output,
+                             const std::function<bool()>& keepGoing);
+
+  std::shared_ptr<const Evaluator> Field; ///< by the CPU
+  std::shared_ptr<const void>
+      Identity; ///< of the field: renderers that have the same share a cache
+  VolumeInfo Volume;
+  RendererOptions Options;
+  std::shared_ptr<AcceleratedField> Accelerated; ///< null where only the CPU computes
+  std::shared_ptr<const Evaluator> Samples;      ///< of frames without a cache: the field
+  Arena Threads;
+  Majorants Cells;
+  std::optional<TransferFunction> Function;
+  std::optional<ColorTable> Colors;
+  bool Built = false;                     ///< the majorants, for the colours and for `Seen`
+  Blending Seen;                          ///< how pictures are blended that the majorants are for
+  std::vector<float> Surfaces;            ///< of these pictures
+  std::optional<CachedRenderer> Cached;   ///< where there is to be a cache
+  std::optional<AcceleratedFrames> Drawn; ///< where there is an accelerator
+  std::optional<PathPicture> Paths;       ///< while paths are traced
+  std::optional<LevelChooser> Levels;     ///< once a frame had a tolerance
+  std::int64_t MajorantBuilds = 0;
+};
+
+} // namespace inr
