@@ -44,6 +44,11 @@ public:
     return MakeRenderer(this->uploaded(model), dims, options);
   }
 
+  std::shared_ptr<AcceleratedRenderer> makeNetworkRenderer(const ModelPointer& model) const override
+  {
+    return MakeNetworkRenderer(this->uploaded(model));
+  }
+
 private:
   /// One copy for all that is made of a model.
   std::shared_ptr<const DeviceModel> uploaded(const ModelPointer& model) const

@@ -139,6 +139,23 @@ void DeviceModel::inferPoints(const LaunchPlan& plan, const float* positions, st
   });
 }
 
+void DeviceModel::inferPoints(const LaunchPlan& plan, const float* positions,
+                              const std::uint64_t* end, float* values, float* scratch,
+                              const Stream& stream) const
+{
+  const CurrentDevice current(this->Where.ordinal);
+  if (this->Float) {
+    const FloatPoints kernel{this->Float->view, positions, 0, values, scratch, end};
+    LaunchKernel(kernel, plan.blocks, 0, stream.get());
+    return;
+  }
+  WithTiles(this->Half->packed.neuronTiles, [&](auto tiles) {
+    const FusedPoints<decltype(tiles)::value> kernel{this->Half->view, plan.shared, positions, 0,
+                                                     values,           end};
+    LaunchKernel(kernel, plan.blocks, plan.sharedBytes, stream.get());
+  });
+}
+
 void DeviceModel::inferBricks(const LaunchPlan& plan, const BrickJob* jobs, std::int64_t count,
                               std::int64_t items, float* values, float* scratch,
                               const Stream& stream) const

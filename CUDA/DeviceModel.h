@@ -43,6 +43,9 @@ public:
   /// plan says.
   void inferPoints(const LaunchPlan& plan, const float* positions, std::int64_t count,
                    float* values, float* scratch, const Stream& stream) const;
+  /// The same of as many as are found at `end` by then.
+  void inferPoints(const LaunchPlan& plan, const float* positions, const std::uint64_t* end,
+                   float* values, float* scratch, const Stream& stream) const;
   void inferBricks(const LaunchPlan& plan, const BrickJob* jobs, std::int64_t count,
                    std::int64_t items, float* values, float* scratch, const Stream& stream) const;
   /// The same of as many as are found at `end` by then.

@@ -36,6 +36,9 @@ std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const DeviceM
 std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>& model,
                                                   const glm::i64vec3& dims,
                                                   const CacheOptions& options);
+/// The same straight from its network.
+std::shared_ptr<AcceleratedRenderer>
+MakeNetworkRenderer(const std::shared_ptr<const DeviceModel>& model);
 
 } // namespace cuda
 } // namespace inr

@@ -36,6 +36,11 @@ std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const De
   Refuse();
 }
 
+std::shared_ptr<AcceleratedRenderer> MakeNetworkRenderer(const std::shared_ptr<const DeviceModel>&)
+{
+  Refuse();
+}
+
 std::unique_ptr<AcceleratedTraining> StartTraining(const Device&, const TrainingTask&) { Refuse(); }
 
 } // namespace cuda

@@ -46,6 +46,32 @@ INR_HOST_DEVICE inline std::uint32_t AtomicMax(std::uint32_t& largest, std::uint
 #endif
 }
 
+/// The same of one sum for all threads that are here at once: of a warp, one adds for all. They get
+/// places one after another.
+INR_HOST_DEVICE inline std::uint64_t AtomicAddTogether(std::uint64_t& sum, std::uint32_t summand)
+{
+#ifdef __CUDA_ARCH__
+  const unsigned active = __activemask();
+  const int lane = static_cast<int>(threadIdx.x % 32);
+  std::uint32_t before = 0;
+  std::uint32_t total = 0;
+  for (unsigned rest = active; rest != 0; rest &= rest - 1) {
+    const int other = __ffs(static_cast<int>(rest)) - 1;
+    const std::uint32_t part = __shfl_sync(active, summand, other);
+    before += other < lane ? part : 0;
+    total += part;
+  }
+  const int first = __ffs(static_cast<int>(active)) - 1;
+  std::uint64_t begin = 0;
+  if (lane == first) {
+    begin = AtomicAdd(sum, std::uint64_t{total});
+  }
+  return __shfl_sync(active, begin, first) + before;
+#else
+  return AtomicAdd(sum, std::uint64_t{summand});
+#endif
+}
+
 /// Puts `wanted` where `expected` is.
 INR_HOST_DEVICE inline std::uint64_t AtomicExchangeIf(std::uint64_t& place, std::uint64_t expected,
                                                       std::uint64_t wanted)

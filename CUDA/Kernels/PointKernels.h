@@ -62,18 +62,24 @@ template <int Tiles> struct FusedPoints
   FusedShared shared;
   const float* positions; ///< x, y, z; clamped to [0, 1], a NaN is 0
   std::int64_t count;
-  float* values; ///< NaN where a number left the range of halves
+  float* values;                      ///< NaN where a number left the range of halves
+  const std::uint64_t* end = nullptr; ///< where not null, of so many points instead
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
+    const std::int64_t count =
+        this->end != nullptr ? static_cast<std::int64_t>(*this->end) : this->count;
+    const std::int64_t batches = (count + WarpSize - 1) / WarpSize;
+    if (std::int64_t{block.index()} * WarpsPerBlock >= batches) {
+      return;
+    }
     const FusedNetwork network =
         ShareWeights(block, this->model.network, this->shared.keepsWeights);
     block.warps([&](auto& warp) {
-      const std::int64_t batches = (this->count + WarpSize - 1) / WarpSize;
       const std::int64_t first = std::int64_t{block.index()} * WarpsPerBlock + warp.index();
       const std::int64_t step = std::int64_t{block.count()} * WarpsPerBlock;
       for (std::int64_t batch = first; batch < batches; batch += step) {
-        this->infer(block.shared(), warp, network, batch * WarpSize);
+        this->infer(block.shared(), warp, network, batch * WarpSize, count);
       }
     });
   }
@@ -81,7 +87,7 @@ template <int Tiles> struct FusedPoints
 private:
   template <class Warp>
   INR_HOST_DEVICE void infer(unsigned char* memory, Warp& warp, const FusedNetwork& network,
-                             std::int64_t first) const
+                             std::int64_t first, std::int64_t count) const
   {
     const int stride = RowStride(network.inputTiles);
     HalfBits* const rows =
@@ -89,14 +95,14 @@ private:
     float* const results =
         reinterpret_cast<float*>(memory + this->shared.results) + warp.index() * WarpSize;
     warp.exchange([&](int lane) {
-      const std::int64_t sample = first + lane < this->count ? first + lane : this->count - 1;
+      const std::int64_t sample = first + lane < count ? first + lane : count - 1;
       const float* const xyz = this->positions + 3 * sample;
       const Point point{ClampToUnit(xyz[0]), ClampToUnit(xyz[1]), ClampToUnit(xyz[2])};
       this->encode(point, rows + lane * stride);
     });
     RunNetwork<Tiles>(warp, network, rows, stride, results);
     warp.lanes([&](int lane) {
-      if (first + lane < this->count) {
+      if (first + lane < count) {
         this->values[first + lane] = results[lane];
       }
     });
@@ -123,14 +129,17 @@ struct FloatPoints
   FloatModel model;
   const float* positions; ///< as above
   std::int64_t count;
-  float* values;  ///< NaN where a number left the range of floats
-  float* scratch; ///< model.scratchPerThread floats for every thread
+  float* values;                      ///< NaN where a number left the range of floats
+  float* scratch;                     ///< model.scratchPerThread floats for every thread
+  const std::uint64_t* end = nullptr; ///< where not null, of so many points instead
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
+    const std::int64_t count =
+        this->end != nullptr ? static_cast<std::int64_t>(*this->end) : this->count;
     block.threads([&](int thread) {
       const ThreadScratch scratch(this->model, this->scratch, block, thread, Threads);
-      for (std::int64_t k = scratch.index(); k < this->count; k += scratch.threads()) {
+      for (std::int64_t k = scratch.index(); k < count; k += scratch.threads()) {
         const float* const xyz = this->positions + 3 * k;
         const Point point{ClampToUnit(xyz[0]), ClampToUnit(xyz[1]), ClampToUnit(xyz[2])};
         this->values[k] = EvaluateFloat(this->model, point, scratch);

@@ -67,19 +67,11 @@ public:
 
   void inferPoints(const float* positions, std::int64_t count, float* values) const
   {
-    if (this->Float) {
-      std::vector<float> scratch = this->scratch();
-      const inr::cuda::FloatPoints kernel{this->floatView(), positions, count, values,
-                                          scratch.data()};
-      this->Launch.run(kernel, 0);
-      return;
-    }
-    const inr::cuda::FusedShared shared = this->plan(false);
-    inr::cuda::WithTiles(this->Half->neuronTiles, [&](auto tiles) {
-      const inr::cuda::FusedPoints<decltype(tiles)::value> kernel{this->Half->view(), shared,
-                                                                  positions, count, values};
-      this->Launch.run(kernel, shared.latticeEnd);
-    });
+    this->inferPoints(positions, count, nullptr, values);
+  }
+  void inferPoints(const float* positions, const std::uint64_t* end, float* values) const
+  {
+    this->inferPoints(positions, 0, end, values);
   }
 
   void inferBricks(const inr::cuda::BrickBatch& batch, float* values) const
@@ -94,6 +86,24 @@ public:
   }
 
 private:
+  void inferPoints(const float* positions, std::int64_t count, const std::uint64_t* end,
+                   float* values) const
+  {
+    if (this->Float) {
+      std::vector<float> scratch = this->scratch();
+      const inr::cuda::FloatPoints kernel{this->floatView(), positions, count, values,
+                                          scratch.data(),    end};
+      this->Launch.run(kernel, 0);
+      return;
+    }
+    const inr::cuda::FusedShared shared = this->plan(false);
+    inr::cuda::WithTiles(this->Half->neuronTiles, [&](auto tiles) {
+      const inr::cuda::FusedPoints<decltype(tiles)::value> kernel{
+          this->Half->view(), shared, positions, count, values, end};
+      this->Launch.run(kernel, shared.latticeEnd);
+    });
+  }
+
   void inferBricks(const inr::cuda::BrickJob* jobs, std::int64_t count, std::int64_t items,
                    const inr::cuda::BrickEnd* end, float* values) const
   {

@@ -5,6 +5,7 @@
 
 #include "CUDA/DeviceCache.h"
 #include "CUDA/DeviceRenderer.h"
+#include "CUDA/NetworkRenderer.h"
 #include "Core/Cache/Accelerator.h"
 #include "Testing/CUDA/Emulated.h"
 #include "Testing/CUDA/EmulatedInference.h"
@@ -46,6 +47,14 @@ public:
     }
     return this->makeRendererOn<HostMachine>(this->Launch, model, dims, options);
   }
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeNetworkRenderer(const inr::ModelPointer& model) const override
+  {
+    if (this->Does == Duty::Infers) {
+      return nullptr;
+    }
+    return this->makeNetworkRendererOn<HostMachine>(this->Launch, model);
+  }
 
 protected:
   /// `where`: of what the machine is made.
@@ -59,6 +68,14 @@ protected:
         where, EmulatedInference(this->on(model)), inr::Hierarchy(dims, options.brickSize),
         options.precision, options.bytes);
     return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options);
+  }
+  template <class Machine, class Where>
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeNetworkRendererOn(const Where& where, const inr::ModelPointer& model,
+                        const inr::cuda::WaveSizes& sizes = {}) const
+  {
+    return std::make_shared<inr::cuda::NetworkRenderer<Machine, EmulatedInference>>(
+        where, EmulatedInference(this->on(model)), sizes);
   }
 
 private:

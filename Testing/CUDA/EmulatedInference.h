@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A model's kernels for a DeviceCache, run on the host.
+// A model's kernels for a DeviceCache and a DeviceWave, run on the host.
 #pragma once
 
 #include "Testing/CUDA/Emulated.h"
@@ -22,6 +22,11 @@ public:
              const inr::cuda::BrickEnd* end, float* values) const
   {
     this->Model->inferBricks(jobs, end, values);
+  }
+  void infer(const HostMachine& /*machine*/, const float* positions, const std::uint64_t* count,
+             float* values) const
+  {
+    this->Model->inferPoints(positions, count, values);
   }
 
 private:

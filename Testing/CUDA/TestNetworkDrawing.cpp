@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Pictures straight from the network by the kernels, against those of Core's renderer.
+#include "Testing/CUDA/DrawingScene.h"
+#include "Testing/CUDA/FailingMachine.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+/// Draws such pictures by waves of some size, as a launch is imitated; or on a failing machine.
+class NetworkAccelerator : public EmulatedAccelerator
+{
+public:
+  explicit NetworkAccelerator(HostLaunch launch, const inr::cuda::WaveSizes& sizes = {},
+                              std::shared_ptr<FailingOrders> orders = nullptr)
+      : EmulatedAccelerator(inr::cuda::Precision::Float32, Duty::InfersAndDraws, launch),
+        Launch(launch), Sizes(sizes), Orders(std::move(orders))
+  {}
+
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeNetworkRenderer(const inr::ModelPointer& model) const override
+  {
+    return this->Orders
+               ? this->makeNetworkRendererOn<FailingMachine>(this->Orders, model, this->Sizes)
+               : this->makeNetworkRendererOn<HostMachine>(this->Launch, model, this->Sizes);
+  }
+
+private:
+  HostLaunch Launch;
+  inr::cuda::WaveSizes Sizes;
+  std::shared_ptr<FailingOrders> Orders;
+};
+
+std::shared_ptr<const inr::Accelerator> Failing(std::shared_ptr<FailingOrders> orders,
+                                                const inr::cuda::WaveSizes& sizes = {})
+{
+  return std::make_shared<NetworkAccelerator>(HostLaunch(), sizes, std::move(orders));
+}
+
+inr::RendererOptions Uncached(std::shared_ptr<const inr::Accelerator> accelerator)
+{
+  inr::RendererOptions options = OptionsWith(std::move(accelerator));
+  options.cached = false;
+  return options;
+}
+
+inr::Frame SmallFrame(inr::RenderMode mode)
+{
+  inr::Frame frame = PlainFrame();
+  frame.width = 20;
+  frame.height = 14;
+  frame.mode = mode;
+  frame.samplesPerPixel = 1;
+  frame.shading = inr::Material();
+  frame.paths.ambientLight = glm::vec3(0.3f, 0.4f, 0.5f);
+  LightUp(frame);
+  return frame;
+}
+
+constexpr inr::RenderMode Modes[] = {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing};
+
+bool ShowsSomething(const inr::Image& image)
+{
+  return *std::max_element(image.pixels.begin(), image.pixels.end()) > 0.1f;
+}
+
+/// Which part of the values is off by more than `most`.
+double Others(const inr::Image& a, const inr::Image& b, float most)
+{
+  std::size_t others = 0;
+  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+    others += std::abs(a.pixels[k] - b.pixels[k]) <= most ? 0 : 1;
+  }
+  return static_cast<double>(others) / static_cast<double>(a.pixels.size());
+}
+
+void ExpectAsMany(std::int64_t drawn, std::int64_t truth)
+{
+  // Rounding ends a few rays a round earlier or later.
+  EXPECT_NEAR(static_cast<double>(drawn), static_cast<double>(truth),
+              1e-3 * static_cast<double>(truth));
+}
+
+class NetworkDrawing : public testing::TestWithParam<Case>
+{};
+
+TEST_P(NetworkDrawing, GivesThePicturesOfTheCpu)
+{
+  inr::Frame frame = PlainFrame();
+  GetParam().change(frame);
+  const Drawn truth = Draw(frame, Uncached(nullptr));
+  ASSERT_TRUE(ShowsSomething(truth.rgba));
+  const Drawn drawn = Draw(frame, Uncached(Device()));
+  EXPECT_TRUE(drawn.statistics.accelerated);
+  std::cout << inr::ImagePsnr(drawn.rgba, truth.rgba) << " dB\n";
+  EXPECT_GE(inr::ImagePsnr(drawn.rgba, truth.rgba), 100);
+  EXPECT_LT(Others(drawn.depth, truth.depth, 1e-4f), 0.01);
+  EXPECT_TRUE(drawn.samples.pixels.empty());
+  EXPECT_TRUE(drawn.statistics.complete);
+  EXPECT_EQ(drawn.statistics.rays, truth.statistics.rays);
+  ExpectAsMany(drawn.statistics.samples, truth.statistics.samples);
+  ExpectAsMany(drawn.statistics.clamped, truth.statistics.clamped);
+  ExpectAsMany(drawn.statistics.work.networkSamples, truth.statistics.work.networkSamples);
+  ExpectAsMany(drawn.statistics.work.gradients, truth.statistics.work.gradients);
+}
+
+const Case Marched[] = {
+    {"Plain", [](inr::Frame&) {}},
+    {"EverySample", [](inr::Frame& frame) { frame.adaptiveSampling = false; }},
+    {"Fine", [](inr::Frame& frame) { frame.sampleDistance = 0.11; }},
+    {"Lit",
+     [](inr::Frame& frame) {
+       frame.shading = inr::Material();
+       LightUp(frame);
+     }},
+    {"Largest", Projected(inr::BlendMode::MaximumIntensity)},
+    {"Smallest", Projected(inr::BlendMode::MinimumIntensity)},
+    {"Average", Projected(inr::BlendMode::AverageIntensity)},
+    {"Sum", Projected(inr::BlendMode::Additive)},
+    {"Cropped", Crop},
+    {"Clipped",
+     [](inr::Frame& frame) {
+       frame.clippingPlanes = {PlaneAcross({1, 0.3, -0.2})};
+     }},
+    {"LitPiece",
+     [](inr::Frame& frame) {
+       frame.piece = {PlaneAcross({0.1, 1, 0.4})};
+       frame.shading = inr::Material();
+       LightUp(frame);
+     }},
+    {"BehindSomething", [](inr::Frame& frame) { frame.opaqueDepth = SomeDepth().data(); }},
+    {"Opaque", [](inr::Frame& frame) { frame.unitDistance = 0.02; }},
+    {"LitOpaque",
+     [](inr::Frame& frame) {
+       frame.unitDistance = 0.02;
+       frame.shading = inr::Material();
+       LightUp(frame);
+     }},
+    {"OneColumn", [](inr::Frame& frame) { frame.width = 1; }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Kernels, NetworkDrawing, testing::ValuesIn(Marched), NameOfCase);
+
+/// Paths meet the same random numbers; a few may part ways for rounding.
+TEST(NetworkDrawing, TracesThePathsOfTheCpu)
+{
+  inr::Frame frame = PlainFrame();
+  frame.mode = inr::RenderMode::PathTracing;
+  frame.samplesPerPixel = 3;
+  frame.paths.ambientLight = glm::vec3(0.3f, 0.4f, 0.5f);
+  frame.paths.anisotropy = 0.4;
+  frame.clippingPlanes = {PlaneAcross({1, 0.3, -0.2})};
+  frame.opaqueDepth = SomeDepth().data();
+  LightUp(frame);
+  const Drawn truth = Draw(frame, Uncached(nullptr));
+  ASSERT_TRUE(ShowsSomething(truth.rgba));
+  const Drawn drawn = Draw(frame, Uncached(Device()));
+  EXPECT_TRUE(drawn.statistics.accelerated);
+  EXPECT_LT(Others(drawn.rgba, truth.rgba, 1e-3f), 0.01);
+  EXPECT_LT(Others(drawn.depth, truth.depth, 1e-4f), 0.01);
+  EXPECT_EQ(drawn.statistics.paths, 3);
+  EXPECT_EQ(drawn.statistics.rays, truth.statistics.rays);
+  const auto about = [](std::int64_t count) { return 0.01 * static_cast<double>(count); };
+  EXPECT_NEAR(static_cast<double>(drawn.statistics.work.networkSamples),
+              static_cast<double>(truth.statistics.work.networkSamples),
+              about(truth.statistics.work.networkSamples));
+  EXPECT_NEAR(static_cast<double>(drawn.statistics.work.scatterings),
+              static_cast<double>(truth.statistics.work.scatterings),
+              about(truth.statistics.work.scatterings));
+  EXPECT_NEAR(static_cast<double>(drawn.statistics.work.lightSteps),
+              static_cast<double>(truth.statistics.work.lightSteps),
+              about(truth.statistics.work.lightSteps));
+}
+
+/// However few rays go on together, and in which order threads come.
+TEST(NetworkDrawing, DependsNeitherOnTheSizeOfWavesNorOnTheOrderOfThreads)
+{
+  HostLaunch backward;
+  backward.backward = true;
+  HostLaunch few;
+  few.blocks = 1;
+  for (const inr::RenderMode mode : Modes) {
+    const inr::Frame frame = SmallFrame(mode);
+    const Drawn drawn = Draw(frame, Uncached(Device()));
+    ASSERT_TRUE(ShowsSomething(drawn.rgba));
+    const auto with = [&](HostLaunch launch, const inr::cuda::WaveSizes& sizes) {
+      return Draw(frame, Uncached(std::make_shared<NetworkAccelerator>(launch, sizes)));
+    };
+    for (const std::int64_t most : {5, 37, 200}) {
+      const Drawn small = with({}, {most, most});
+      EXPECT_EQ(small.rgba.pixels, drawn.rgba.pixels) << most;
+      EXPECT_EQ(small.depth.pixels, drawn.depth.pixels) << most;
+      EXPECT_EQ(small.statistics.samples, drawn.statistics.samples) << most;
+      EXPECT_EQ(small.statistics.rays, drawn.statistics.rays) << most;
+    }
+    EXPECT_EQ(with(backward, {37, 37}).rgba.pixels, drawn.rgba.pixels);
+    EXPECT_EQ(with(few, {}).rgba.pixels, drawn.rgba.pixels);
+  }
+}
+
+/// Frames of other sizes and kinds, one after another by the same renderer.
+TEST(NetworkDrawing, DrawsOneFrameAfterAnother)
+{
+  inr::Renderer renderer = RendererOf(Uncached(Device()));
+  for (const int width : {6, 20, 9}) {
+    for (const bool lit : {false, true}) {
+      for (const inr::RenderMode mode : Modes) {
+        inr::Frame frame = SmallFrame(mode);
+        frame.width = width;
+        if (!lit) {
+          frame.shading.reset();
+        }
+        inr::Image image;
+        EXPECT_TRUE(renderer.render(frame, image).complete);
+        const Drawn alone = Draw(frame, Uncached(Device()));
+        EXPECT_EQ(image.pixels, alone.rgba.pixels);
+      }
+    }
+  }
+}
+
+TEST(NetworkDrawing, StopsWhenItIsAskedTo)
+{
+  for (const inr::RenderMode mode : Modes) {
+    const auto orders = std::make_shared<FailingOrders>();
+    inr::Renderer renderer = RendererOf(Uncached(Failing(orders, {3, 3})));
+    const inr::Frame frame = SmallFrame(mode);
+    inr::Image image;
+    renderer.render(frame, image); // nothing is left to be proven
+    const inr::Image whole = image;
+    inr::Frame next = frame;
+    next.seed = 1;
+    for (const int most : {0, 1, 3}) {
+      int asked = 0;
+      const int before = orders->orders;
+      try {
+        renderer.render(next, image, nullptr, [&] { return asked++ < most; });
+        ADD_FAILURE() << "it went on";
+      } catch (const inr::Error& error) {
+        EXPECT_EQ(error.code(), inr::ErrorCode::Cancelled);
+      }
+      EXPECT_EQ(asked, most + 1);
+      const int done = (orders->orders - before) / inr::cuda::WaveCounts::Rounds;
+      EXPECT_EQ(done > 0, most > 0);
+      EXPECT_LE(done, 3 * most + 1); // kernels of a round
+    }
+    renderer.render(frame, image);
+    EXPECT_EQ(image.pixels, whole.pixels);
+    EXPECT_FALSE(renderer.acceleratorFailure());
+  }
+}
+
+/// Whatever it was told last.
+TEST(NetworkDrawing, LeavesAllToTheCpuWhenTheDeviceIsLost)
+{
+  for (const inr::RenderMode mode : Modes) {
+    const inr::Frame frame = SmallFrame(mode);
+    const Drawn truth = Draw(frame, Uncached(nullptr));
+    const auto counting = std::make_shared<FailingOrders>();
+    ASSERT_TRUE(Draw(frame, Uncached(Failing(counting))).statistics.accelerated);
+    const int last = counting->orders - 8; // the picture is on its way to the host
+    ASSERT_GT(last, 50);
+    for (int order = 0; order < counting->orders; order += order < 30 || order > last ? 1 : 23) {
+      const auto orders = std::make_shared<FailingOrders>();
+      orders->failsAt = order;
+      inr::Renderer renderer = RendererOf(Uncached(Failing(orders)));
+      inr::Image image;
+      inr::Image depth;
+      EXPECT_TRUE(renderer.render(frame, image, &depth).complete);
+      EXPECT_EQ(image.pixels, truth.rgba.pixels) << order;
+      EXPECT_EQ(depth.pixels, truth.depth.pixels) << order;
+      EXPECT_TRUE(renderer.acceleratorFailure()) << order;
+      EXPECT_EQ(orders->orders, order + 1) << "it was asked again";
+    }
+  }
+}
+
+/// One that draws another picture is found out at the first.
+TEST(NetworkDrawing, IsNotTrustedUnseen)
+{
+  for (const inr::RenderMode mode : Modes) {
+    const inr::Frame frame = SmallFrame(mode);
+    const auto orders = std::make_shared<FailingOrders>();
+    orders->lies = true;
+    inr::Renderer renderer = RendererOf(Uncached(Failing(orders)));
+    inr::Image image;
+    EXPECT_FALSE(renderer.render(frame, image).accelerated);
+    ASSERT_TRUE(renderer.acceleratorFailure());
+    EXPECT_NE(renderer.acceleratorFailure()->reason.find("dB from the CPU's"), std::string::npos);
+    EXPECT_EQ(image.pixels, Draw(frame, Uncached(nullptr)).rgba.pixels);
+  }
+}
+
+/// What rays find surfaces in is the CPU's.
+TEST(NetworkDrawing, LeavesSurfacesToTheCpu)
+{
+  inr::Frame frame = SmallFrame(inr::RenderMode::RayMarching);
+  frame.blending.mode = inr::BlendMode::Isosurface;
+  frame.blending.isosurfaces = {0.3};
+  const Drawn truth = Draw(frame, Uncached(nullptr));
+  ASSERT_TRUE(ShowsSomething(truth.rgba));
+  const Drawn drawn = Draw(frame, Uncached(Device()));
+  EXPECT_FALSE(drawn.statistics.accelerated);
+  EXPECT_GE(inr::ImagePsnr(drawn.rgba, truth.rgba), 60);
+}
+
+/// How many of a thousand values leave float32's range on their way.
+std::int64_t Marked(const inr::ModelPointer& model, HostLaunch launch)
+{
+  std::vector<float> places;
+  std::vector<float> values(1000);
+  for (std::size_t k = 0; k < 3 * values.size(); ++k) {
+    places.push_back(static_cast<float>(inr::RandomUnit(3, k)));
+  }
+  EmulatedModel(model, inr::cuda::Precision::Float32, launch)
+      .inferPoints(places.data(), 1000, values.data());
+  const auto isMarked = [](float value) { return std::isnan(value); };
+  return std::count_if(values.begin(), values.end(), isMarked);
+}
+
+/// With parameters so large that some do, and others do not.
+inr::ModelPointer Overflowing(HostLaunch launch)
+{
+  auto model = std::make_shared<inr::Model>(*TrainedModel());
+  while (Marked(model, launch) < 50) {
+    for (float& parameter : model->parameters) {
+      parameter *= 1.5f;
+    }
+  }
+  return model;
+}
+
+TEST(NetworkDrawing, HasCoreComputeWhatOverflows)
+{
+  HostLaunch launch;
+  launch.overflows = true;
+  const inr::ModelPointer model = Overflowing(launch);
+  ASSERT_LT(Marked(model, launch), 950);
+  for (const inr::RenderMode mode : Modes) {
+    for (const bool lit : {false, true}) {
+      inr::Frame frame = SmallFrame(mode);
+      if (!lit) {
+        frame.shading.reset();
+      }
+      const auto draw = [&](std::shared_ptr<const inr::Accelerator> accelerator) {
+        const bool accelerated = accelerator != nullptr;
+        inr::Renderer renderer(model, Uncached(std::move(accelerator)));
+        renderer.setTransferFunction(ColoursOf(model->volume));
+        inr::Image image;
+        EXPECT_EQ(renderer.render(frame, image).accelerated, accelerated);
+        EXPECT_FALSE(renderer.acceleratorFailure()) << renderer.acceleratorFailure()->reason;
+        return image;
+      };
+      const inr::Image truth = draw(nullptr);
+      ASSERT_TRUE(ShowsSomething(truth));
+      const inr::Image image = draw(std::make_shared<NetworkAccelerator>(launch));
+      EXPECT_LT(Others(image, truth, 1e-3f), 0.01);
+    }
+  }
+}
+
+} // namespace
