@@ -46,8 +46,8 @@ INR_HOST_DEVICE inline std::uint32_t AtomicMax(std::uint32_t& largest, std::uint
 #endif
 }
 
-/// The same of one sum for all threads that are here at once: of a warp, one adds for all. They get
-/// places one after another.
+/// AtomicAdd to the same sum by all threads that are here: of a warp's, one adds for those that are
+/// here at once. They get places one after another.
 INR_HOST_DEVICE inline std::uint64_t AtomicAddTogether(std::uint64_t& sum, std::uint32_t summand)
 {
 #ifdef __CUDA_ARCH__
