@@ -199,10 +199,10 @@ public:
   /// where there is room for it; else samples are drawn in the host's memory, or from what is read
   /// in pieces, while it computes. It trains in float32, to the CPU's parameters but for rounding
   /// and the order of sums; its first step is compared with the CPU's. One that fails, at whatever
-  /// time, is given up with a warning, and the CPU goes on from a copy of an earlier step: 200 steps
-  /// old at most or, where copies are slow, as old as fifty of them take. So is one whose memory is
-  /// short, of which AUTO says nothing. Each Write tries it again. Several processes train on the
-  /// CPU. Default AUTO.
+  /// time, is given up with a warning, and the CPU goes on from a copy of an earlier step: 200
+  /// steps old at most or, where copies are slow, as old as fifty of them take. So is one whose
+  /// memory is short, of which AUTO says nothing. Each Write tries it again. Several processes
+  /// train on the CPU. Default AUTO.
   void SetBackend(int backend);
   vtkGetMacro(Backend, int);
   ///@}

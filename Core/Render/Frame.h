@@ -135,8 +135,8 @@ struct FrameStatistics
   /// All samples that may show something were taken, and each came from the level it asked for or,
   /// if the options are to make do with that, the best that a full cache has.
   bool complete = true;
-  std::int64_t paths = 0;  ///< of path tracing: through each pixel, in the picture shown
-  LevelSpan levels;        ///< of the cache, that samples came from
+  std::int64_t paths = 0; ///< of path tracing: through each pixel, in the picture shown
+  LevelSpan levels;       ///< of the cache, that samples came from
   /// Whether an accelerator has drawn it, or part of it; else the CPU did, of what that inferred.
   bool accelerated = false;
   double seconds = 0;      ///< wall time

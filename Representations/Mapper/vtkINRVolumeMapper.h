@@ -94,13 +94,13 @@ public:
   ///@{
   /**
    * What draws; one of Backends, anything else is refused. A GPU has the model, the cache
-   * (CacheSize at most, and half of its free memory), the rays and the paths; but of isosurfaces,
-   * of pictures with translucent surfaces or an ErrorTolerance and of those with CacheMode
-   * NETWORK_ONLY, the CPU draws what the GPU infers. Its values are float32, as the CPU's are, but
-   * for the order of summation. One that fails, at whatever time, or draws another picture than the
-   * CPU, is given up for the CPU with a warning, without change in a picture, until this is called
-   * again, if only with the same. So is one whose memory is short, of which AUTO says nothing. A
-   * change empties the cache. GetBackendInUse() says what is at work. Default AUTO.
+   * (CacheSize at most, and half of its free memory), the rays and the paths; but of isosurfaces
+   * and of pictures with translucent surfaces or an ErrorTolerance, the CPU draws what the GPU
+   * infers. Its values are float32, as the CPU's are, but for the order of summation. One that
+   * fails, at whatever time, or draws another picture than the CPU, is given up for the CPU with a
+   * warning, without change in a picture, until this is called again, if only with the same. So is
+   * one whose memory is short, of which AUTO says nothing. A change empties the cache.
+   * GetBackendInUse() says what is at work. Default AUTO.
    */
   void SetBackend(int backend);
   vtkGetMacro(Backend, int);

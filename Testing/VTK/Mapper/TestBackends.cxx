@@ -258,8 +258,7 @@ TEST(Backends, OfThisMachineDraw)
   one.mapper->SetBackend(vtkINRVolumeMapper::CUDA);
   EXPECT_GE(inr::ImagePsnr(one.scene.capture(), truth), 50);
   const bool accelerated =
-      std::string(one.mapper->GetBackendInUse()).find("CUDA float32") !=
-      std::string::npos;
+      std::string(one.mapper->GetBackendInUse()).find("CUDA float32") != std::string::npos;
   EXPECT_EQ(messages.warnings, accelerated ? 0 : 1) << messages.last;
 }
 
