@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The trainer's gradients against finite differences of its own loss.
+#include "Core/Training/AdamSchedule.h"
 #include "Core/Training/GradientDescent.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
@@ -184,6 +185,33 @@ TEST(GradientDescent, AStoppedStepChangesNothing)
   }
   EXPECT_GT(stops, 3);
   EXPECT_EQ(stopped.parameters(), expected.parameters());
+}
+
+/// Every parameter of the network by the number of steps, against float64.
+TEST(GradientDescent, UpdatesTheNetworkAsAdamDoes)
+{
+  constexpr std::size_t some = 200;
+  constexpr double decay = 1e-6;
+  const Field<float> field = Waves();
+  const inr::InMemorySource source(field.data(), -1, 1);
+  inr::StratifiedBatches batches(source);
+  const inr::Arena threads(2);
+  inr::GradientDescent descent(SmallDescription(), 1, inr::ChooseInstructionSet(""), threads);
+  const std::vector<inr::AdamStep> updates = inr::AdamUpdates();
+  std::vector<double> first(some);
+  std::vector<double> second(some);
+  for (std::size_t t = 1; t <= 120; ++t) {
+    const std::vector<float> before = descent.parameters();
+    ASSERT_TRUE(descent.step(batches));
+    for (std::size_t k = 0; k < some; ++k) {
+      const double gradient = descent.gradient()[k] + decay * before[k];
+      const double kept = updates[t].beta2;
+      first[k] = 0.9 * first[k] + 0.1 * gradient;
+      second[k] = kept * second[k] + (1 - kept) * gradient * gradient;
+      const double step = 0.01 * updates[t].rate * first[k] / std::sqrt(second[k]);
+      ASSERT_NEAR(descent.parameters()[k], before[k] - step, 1e-5) << k << " in step " << t;
+    }
+  }
 }
 
 TEST(LearningRate, IsConstantThenFallsInALine)

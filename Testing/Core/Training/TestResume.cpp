@@ -2,6 +2,7 @@
 //
 // Trainings that are stopped and go on from their checkpoint.
 #include "Core/Error.h"
+#include "Core/Training/AdamSchedule.h"
 #include "Core/Training/Checkpoint.h"
 #include "Core/Training/GradientDescent.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
@@ -192,6 +193,7 @@ TEST_F(Resume, IgnoresWhatIsOfAnotherTrainingAndSaysWhy)
 {
   this->stopAfter(3, this->options(6));
   const std::string kept = ReadBytes(this->Path);
+  EXPECT_NE(kept.find(inr::OptimiserName), std::string::npos) << "one of another is taken up";
   const auto expectIgnored = [&](const inr::TrainingOptions& options, const std::string& words) {
     const inr::ModelPointer model = this->train(options);
     ASSERT_EQ(this->count(CheckpointEvent::Ignored), 1) << words;
