@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "CUDA/Device.h"
+#include "CUDA/Device/Device.h"
 #include "Core/Training/TrainingAccelerator.h"
 
 #include <memory>

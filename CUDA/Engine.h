@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "CUDA/Device.h"
-#include "CUDA/Precision.h"
+#include "CUDA/Device/Device.h"
+#include "CUDA/Inference/Precision.h"
 #include "Core/Cache/BrickSource.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/CachedRenderer.h"

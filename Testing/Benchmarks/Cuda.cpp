@@ -4,8 +4,8 @@
 //   bench_cuda --device   its name, and nothing else
 //
 // Ends with status 77 where there is no GPU, and says why. cuda.py writes the result file.
-#include "CUDA/BrickBatch.h"
-#include "CUDA/DeviceModel.h"
+#include "CUDA/Inference/BrickBatch.h"
+#include "CUDA/Inference/DeviceModel.h"
 #include "Core/Error.h"
 #include "Testing/Benchmarks/CudaCeiling.h"
 #include "Testing/Benchmarks/Models.h"

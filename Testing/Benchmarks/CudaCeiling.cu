@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CUDA/Kernels/Tiles.h"
-#include "CUDA/Runtime.h"
+#include "CUDA/Device/Kernels/Tiles.h"
+#include "CUDA/Device/Runtime.h"
 #include "Testing/Benchmarks/CudaCeiling.h"
 
 namespace {

@@ -3,7 +3,7 @@
 // What a renderer's kernels do with a cache of bricks.
 #pragma once
 
-#include "CUDA/Kernels/CacheView.h"
+#include "CUDA/Cache/Kernels/CacheView.h"
 
 #include <vector>
 

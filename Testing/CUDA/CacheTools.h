@@ -3,7 +3,7 @@
 // For tests of a DeviceCache on the host.
 #pragma once
 
-#include "CUDA/CacheLayout.h"
+#include "CUDA/Cache/CacheLayout.h"
 #include "Core/Cache/BrickPool.h"
 #include "Core/Random.h"
 #include "Testing/CUDA/AskFor.h"

@@ -3,10 +3,10 @@
 // The kernels of the GPU, run on the host: the same source, with loops in place of threads.
 #pragma once
 
-#include "CUDA/BrickBatch.h"
-#include "CUDA/Kernels/BrickKernels.h"
-#include "CUDA/Overflow.h"
-#include "CUDA/PackedModel.h"
+#include "CUDA/Inference/BrickBatch.h"
+#include "CUDA/Inference/Kernels/BrickKernels.h"
+#include "CUDA/Inference/Overflow.h"
+#include "CUDA/Inference/PackedModel.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 // The GPU's kernels as an accelerator for renderers, run on the host.
 #pragma once
 
-#include "CUDA/DeviceCache.h"
-#include "CUDA/DeviceRenderer.h"
-#include "CUDA/NetworkRenderer.h"
+#include "CUDA/Cache/DeviceCache.h"
+#include "CUDA/Render/DeviceRenderer.h"
+#include "CUDA/Render/NetworkRenderer.h"
 #include "Core/Cache/Accelerator.h"
 #include "Testing/CUDA/Emulated.h"
 #include "Testing/CUDA/EmulatedInference.h"

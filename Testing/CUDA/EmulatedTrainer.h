@@ -3,7 +3,7 @@
 // The GPU's trainer, run on the host.
 #pragma once
 
-#include "CUDA/MachineTraining.h"
+#include "CUDA/Training/MachineTraining.h"
 #include "Core/Training/TrainingAccelerator.h"
 #include "Testing/CUDA/HostMachine.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A machine (CUDA/Machine.h) that is the host: the kernels' threads take turns.
+// A machine (CUDA/Device/Machine.h) that is the host: the kernels' threads take turns.
 #pragma once
 
 #include "Testing/CUDA/Emulated.h"

@@ -3,7 +3,7 @@
 // Bricks of voxels by a rule, which costs less than a network, for a DeviceCache on the host.
 #pragma once
 
-#include "CUDA/BrickBatch.h"
+#include "CUDA/Inference/BrickBatch.h"
 #include "Core/Model/Model.h"
 #include "Core/Random.h"
 #include "Testing/CUDA/HostMachine.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Many frames of the cache in a device's memory, on the host, against a simple one.
-#include "CUDA/DeviceCache.h"
+#include "CUDA/Cache/DeviceCache.h"
 #include "Testing/CUDA/CacheModel.h"
 #include "Testing/CUDA/CacheTools.h"
 #include "Testing/CUDA/LateMachine.h"

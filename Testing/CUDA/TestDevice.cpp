@@ -2,8 +2,8 @@
 //
 // What is said of GPUs and of models that they cannot have.
 #include "CUDA/Engine.h"
-#include "CUDA/Kernels/LatticeShare.h"
-#include "CUDA/PackedModel.h"
+#include "CUDA/Inference/Kernels/LatticeShare.h"
+#include "CUDA/Inference/PackedModel.h"
 #include "Core/Error.h"
 #include "Testing/Core/RandomModel.h"
 

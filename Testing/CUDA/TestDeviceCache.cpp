@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The cache in a device's memory, on the host.
-#include "CUDA/DeviceCache.h"
+#include "CUDA/Cache/DeviceCache.h"
 #include "Core/Cache/BrickCache.h"
 #include "Core/Error.h"
 #include "Testing/CUDA/CacheTools.h"

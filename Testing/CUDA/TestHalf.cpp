@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CUDA/Kernels/Half.h"
+#include "CUDA/Device/Kernels/Half.h"
 
 #include <Imath/half.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Wishes of many threads against a map of sums.
-#include "CUDA/Kernels/CacheTables.h"
+#include "CUDA/Cache/Kernels/CacheTables.h"
 #include "Testing/CUDA/AskFor.h"
 #include "Testing/CUDA/HostMachine.h"
 

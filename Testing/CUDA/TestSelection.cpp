@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The tournament against sorting.
-#include "CUDA/Selector.h"
+#include "CUDA/Cache/Selector.h"
 #include "Core/Random.h"
 #include "Testing/CUDA/HostMachine.h"
 

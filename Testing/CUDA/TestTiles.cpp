@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Which lane has which element is written down here once more, from the tables of PTX's manual.
-#include "CUDA/Kernels/FusedNetwork.h"
+#include "CUDA/Inference/Kernels/FusedNetwork.h"
 #include "Core/Random.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A cache of bricks that lives in a device's memory: it is filled there, by kernels, from what
+// kernels ask for. The host orders and is told a few numbers.
+#pragma once
+
+#include "CUDA/Cache/CacheLayout.h"
+#include "CUDA/Cache/Kernels/CacheTables.h"
+#include "CUDA/Cache/Kernels/StoreBricks.h"
+#include "CUDA/Cache/Selector.h"
+#include "CUDA/Inference/Overflow.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace inr {
+namespace cuda {
+
+/// `Machine`: see CUDA/Device/Machine.h. `Inference` computes voxels on it; see DeviceInference.
+///
+/// As with Core's BrickCache, time runs in frames: during one, kernels find, view, touch and
+/// request; between frames load changes what is mapped. What is done is done in the machine's
+/// order, and only load and finishLoad wait for it. After an Error(Device) it is of no use any
+/// more.
+template <class Machine, class Inference> class DeviceCache
+{
+public:
+  /// Everything stays within `bytes`; the coarsest brick comes in for good. Throws what LayOutCache
+  /// throws, and what the machine does, which must live longer.
+  DeviceCache(Machine& machine, Inference inference, const Hierarchy& hierarchy,
+              CachePrecision precision, std::int64_t bytes)
+      : Where(machine), Infer(std::move(inference)), Levels(hierarchy),
+        Layout(LayOutCache(hierarchy, precision, bytes, this->Infer.bytes())), Precision(precision),
+        Tables(Available(machine, this->Layout), this->Layout, hierarchy, precision)
+  {
+    machine.toMachine(this->Tables.levels.data(), &hierarchy.view().level(0), hierarchy.levels());
+    machine.fill(this->Tables.uses.data(), 0, this->Layout.capacity);
+    this->clearRequests();
+    this->map();
+    this->loadCoarsest();
+  }
+
+  const Hierarchy& hierarchy() const { return this->Levels; }
+  CachePrecision precision() const { return this->Precision; }
+  std::int64_t capacity() const { return this->Layout.capacity; } ///< bricks
+  std::int64_t mapped() const { return this->Mapped; }
+  std::int64_t bytes() const { return this->Layout.bytes; } ///< of the machine's memory
+
+  /// What kernels of the present frame are passed.
+  CacheView view() const
+  {
+    const glm::ivec3& dims = this->Levels.brickDims();
+    CacheView view{};
+    view.hierarchy = {this->Tables.levels.data(), this->Levels.levels(), dims};
+    view.precision = this->Precision;
+    view.bytesPerBrick = this->Levels.voxelsPerBrick() * BytesPerVoxel(this->Precision);
+    view.rowStride = dims.x;
+    view.layerStride = std::int64_t{dims.x} * dims.y;
+    view.frame = this->Frame;
+    view.capacity = this->Layout.capacity;
+    view.pages = this->Tables.pages.data();
+    view.pageMask = static_cast<std::uint32_t>(this->Layout.pages - 1);
+    view.voxels = this->Tables.voxels.data();
+    view.scales = this->Tables.scales.data();
+    view.owners = this->Tables.owners.data();
+    view.uses = this->Tables.uses.data();
+    view.requests = {this->Tables.requests.data(),
+                     static_cast<std::uint32_t>(this->Layout.requests - 1),
+                     &this->Tables.counts.data()->requests};
+    return view;
+  }
+
+  /// Bricks touched or loaded from here on keep their slots until the next call.
+  void beginFrame() { ++this->Frame; }
+
+  struct Loaded
+  {
+    std::int64_t requested;  ///< different bricks, since the last call
+    std::int64_t overflowed; ///< more than 0: there were others, for which there was no room
+    std::int64_t loaded;     ///< bricks
+    std::int64_t repaired;   ///< voxels of them that Core had to compute
+    bool full;               ///< there were more than fitted beside what the present frame uses
+  };
+  /// Infers and maps at most `most` of the bricks that were requested since the last call, and
+  /// forgets the others: those of the greatest contribution first, or the coarsest.
+  ///
+  /// Core's other order is that in which bricks were first wanted, which threads of a GPU do not
+  /// have. Waits once for each CacheLayout::atOnce bricks: only then the host knows whether there
+  /// are more to begin with, and that no voxel is left for Core to compute.
+  Loaded load(std::int64_t most, bool byContribution)
+  {
+    this->finishLoad();
+    Loaded all{};
+    for (bool more = true; more;) {
+      const std::int64_t wanted = std::min(most - all.loaded, this->Layout.atOnce);
+      this->list(wanted, byContribution);
+      this->infer(this->Where);
+      const Loaded some = this->storeListed(wanted);
+      more = some.loaded == wanted && all.loaded + wanted < most;
+      all = {some.requested, some.overflowed, all.loaded + some.loaded,
+             all.repaired + some.repaired, some.full};
+    }
+    this->clearRequests();
+    return all;
+  }
+
+  /// The same, of at most CacheLayout::atOnce bricks, in two steps: `beside`, another machine with
+  /// the same memory, infers while this one goes on with frames. Nothing is waited for. Bricks
+  /// that are on their way are not known to be: who still wants them asks for them again, which
+  /// does no harm.
+  void beginLoad(Machine& beside, std::int64_t most, bool byContribution)
+  {
+    this->finishLoad();
+    this->Listed = std::min(most, this->Layout.atOnce);
+    this->list(this->Listed, byContribution);
+    this->clearRequests();
+    beside.after(this->Where);
+    this->infer(beside);
+    this->Beside = &beside;
+  }
+  bool isLoading() const { return this->Beside != nullptr; } ///< begun and not finished
+  /// Whether finishLoad would not wait for bricks to be inferred.
+  bool hasInferred() const { return !this->isLoading() || this->Beside->isIdle(); }
+  /// Maps what was begun, if anything was, in the place of nothing that the present frame uses.
+  /// Waits for it, as load does.
+  Loaded finishLoad()
+  {
+    if (!this->isLoading()) {
+      return {};
+    }
+    this->Where.after(*std::exchange(this->Beside, nullptr));
+    this->findSlots(this->Listed); // others than they were: frames have used some since
+    return this->storeListed(this->Listed);
+  }
+
+  /// Forgets all bricks but the coarsest, those of the present frame included. What was begun still
+  /// comes in.
+  void clear()
+  {
+    this->Where.fill(this->Tables.uses.data() + Pinned, 0, this->Layout.capacity - Pinned);
+    this->map();
+    this->Mapped = Pinned;
+  }
+
+private:
+  static constexpr std::int64_t Pinned = 1; ///< slots: the first one has the coarsest brick
+
+  template <class T> using Array = typename Machine::template Array<T>;
+
+  struct Storage
+  {
+    Storage(const Machine& machine, const CacheLayout& layout, const Hierarchy& hierarchy,
+            CachePrecision precision)
+        : levels(machine.template allocate<HierarchyLevel>(hierarchy.levels())),
+          voxels(machine.template allocate<unsigned char>(
+              layout.capacity * hierarchy.voxelsPerBrick() * BytesPerVoxel(precision) +
+              CacheLayout::BytesBehind)),
+          scales(machine.template allocate<BrickScale>(layout.capacity)),
+          owners(machine.template allocate<BrickKey>(layout.capacity)),
+          uses(machine.template allocate<std::uint64_t>(layout.capacity)),
+          pages(machine.template allocate<PageEntry>(layout.pages)),
+          requests(machine.template allocate<RequestEntry>(layout.requests)),
+          selector(machine, std::max(layout.capacity, layout.requests), layout.atOnce),
+          bricks(machine.template allocate<RankEntry>(layout.atOnce)),
+          slots(machine.template allocate<RankEntry>(layout.atOnce)),
+          jobs(machine.template allocate<BrickJob>(layout.atOnce)),
+          values(machine.template allocate<float>(layout.atOnce * hierarchy.voxelsPerBrick())),
+          marked(machine.template allocate<std::uint32_t>(layout.atOnce)),
+          counts(machine.template allocate<CacheCounts>(1))
+    {}
+
+    Array<HierarchyLevel> levels;
+    Array<unsigned char> voxels;
+    Array<BrickScale> scales;
+    Array<BrickKey> owners;
+    Array<std::uint64_t> uses;
+    Array<PageEntry> pages;
+    Array<RequestEntry> requests;
+    Selector<Machine> selector;
+    Array<RankEntry> bricks;
+    Array<RankEntry> slots;
+    Array<BrickJob> jobs;
+    Array<float> values;
+    Array<std::uint32_t> marked;
+    Array<CacheCounts> counts;
+  };
+
+  static Machine& Available(Machine& machine, const CacheLayout& layout)
+  {
+    machine.requireFree(layout.bytes, "the cache of bricks");
+    return machine;
+  }
+
+  /// Slots that may take other bricks.
+  void findSlots(std::int64_t most)
+  {
+    this->Tables.selector.select(this->Where,
+                                 ReplaceableSlots{this->Tables.uses.data(), this->Frame, Pinned},
+                                 this->Layout.capacity, most, this->Tables.slots.data());
+  }
+
+  /// The bricks that are to come in, as long as there are slots for them.
+  void list(std::int64_t most, bool byContribution)
+  {
+    this->Tables.selector.select(this->Where, WantedBricks{this->view(), byContribution},
+                                 this->Layout.requests, most, this->Tables.bricks.data());
+    this->findSlots(most);
+    this->listRanked(most);
+  }
+
+  void listRanked(std::int64_t most)
+  {
+    const ListBricks kernel{this->view().hierarchy,    this->Tables.bricks.data(),
+                            this->Tables.slots.data(), most,
+                            this->Tables.jobs.data(),  this->Tables.counts.data()};
+    this->Where.run(kernel, ListBricks::Threads, ListBricks::SharedBytes);
+  }
+
+  void infer(Machine& machine)
+  {
+    this->Infer.infer(machine, this->Tables.jobs.data(), &this->Tables.counts.data()->end,
+                      this->Tables.values.data());
+  }
+
+  Loaded storeListed(std::int64_t most)
+  {
+    this->store(most);
+    this->map();
+    CacheCounts counts{};
+    this->Where.toHost(&counts, this->Tables.counts.data(), 1);
+    const auto stored = static_cast<std::int64_t>(counts.stored);
+    if (counts.marked > 0) {
+      this->repair(stored);
+      this->store(most);
+    }
+    this->Mapped = std::min(this->Mapped + stored, this->Layout.capacity);
+    return {static_cast<std::int64_t>(counts.listed.bricks),
+            static_cast<std::int64_t>(counts.listed.overflowed), stored,
+            static_cast<std::int64_t>(counts.marked), stored < counts.wanted};
+  }
+
+  void store(std::int64_t most)
+  {
+    const StoreBricks kernel{this->view(),
+                             this->Tables.bricks.data(),
+                             this->Tables.slots.data(),
+                             this->Tables.values.data(),
+                             this->Tables.counts.data(),
+                             this->Tables.marked.data()};
+    this->Where.run(kernel, most * StoreBricks::Threads, StoreBricks::SharedBytes);
+  }
+
+  void map()
+  {
+    this->Where.fill(this->Tables.pages.data(), 0xff, this->Layout.pages); // NoBrick, and -1
+    this->Where.run(MapSlots{this->view()}, this->Layout.capacity);
+  }
+
+  void clearRequests()
+  {
+    this->Where.run(ClearRequests{this->view().requests}, this->Layout.requests);
+  }
+
+  /// Voxels that are no numbers, by Core: hardly ever.
+  void repair(std::int64_t count)
+  {
+    if (!this->Core) {
+      this->Core = MakeBrickSource(MakeEvaluator(this->Infer.source()), this->Levels);
+    }
+    std::vector<RankEntry> bricks(static_cast<std::size_t>(count));
+    std::vector<std::uint32_t> marked(bricks.size());
+    this->Where.toHost(bricks.data(), this->Tables.bricks.data(), count);
+    this->Where.toHost(marked.data(), this->Tables.marked.data(), count);
+    const std::int64_t voxels = this->Levels.voxelsPerBrick();
+    std::vector<float> values(static_cast<std::size_t>(voxels));
+    for (std::int64_t k = 0; k < count; ++k) {
+      if (marked[static_cast<std::size_t>(k)] > 0) {
+        float* const brick = this->Tables.values.data() + k * voxels;
+        const BrickKey key = WantedBricks::KeyOf(bricks[static_cast<std::size_t>(k)]);
+        this->Where.toHost(values.data(), brick, voxels);
+        RepairLayers(*this->Core, key, 0, this->Levels.brickDims().z, values.data());
+        this->Where.toMachine(brick, values.data(), voxels);
+      }
+    }
+  }
+
+  void loadCoarsest()
+  {
+    const RankEntry brick = WantedBricks::EntryOf(this->Levels.coarsest());
+    const RankEntry slot{0, 0};
+    this->Where.toMachine(this->Tables.bricks.data(), &brick, 1);
+    this->Where.toMachine(this->Tables.slots.data(), &slot, 1);
+    this->listRanked(1);
+    this->infer(this->Where);
+    this->storeListed(1);
+  }
+
+  Machine& Where;
+  Inference Infer;
+  Hierarchy Levels;
+  CacheLayout Layout;
+  CachePrecision Precision;
+  Storage Tables;
+  std::uint64_t Frame = 1;
+  std::int64_t Mapped = 0;
+  Machine* Beside = nullptr;               ///< that infers what was begun
+  std::int64_t Listed = 0;                 ///< bricks of that, at most
+  std::shared_ptr<const BrickSource> Core; ///< once it was needed
+};
+
+} // namespace cuda
+} // namespace inr

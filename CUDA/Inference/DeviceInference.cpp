@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Inference/DeviceInference.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace inr {
+namespace cuda {
+
+namespace {
+
+constexpr auto FloatBytes = static_cast<std::int64_t>(sizeof(float));
+
+LaunchPlan PlanWithin(const DeviceModel& model, std::int64_t bytes)
+{
+  LaunchPlan plan = model.plan(true);
+  const std::int64_t perBlock = plan.scratch / plan.blocks;
+  if (perBlock > 0) {
+    plan.blocks = std::clamp<std::int64_t>(bytes / FloatBytes / perBlock, 1, plan.blocks);
+    plan.scratch = plan.blocks * perBlock;
+  }
+  return plan;
+}
+
+} // namespace
+
+DeviceInference::DeviceInference(std::shared_ptr<const DeviceModel> model, std::int64_t bytes)
+    : Uploaded(std::move(model)), Plan(PlanWithin(*this->Uploaded, bytes)),
+      Scratch(this->Uploaded->device().ordinal, Memory::Place::Device,
+              std::max<std::int64_t>(this->Plan.scratch, 1))
+{}
+
+std::int64_t DeviceInference::bytes() const { return this->Scratch.size() * FloatBytes; }
+
+void DeviceInference::infer(GpuMachine& machine, const BrickJob* jobs, const BrickEnd* end,
+                            float* values) const
+{
+  this->Uploaded->inferBricks(this->Plan, jobs, end, values, this->Scratch.data(),
+                              machine.stream());
+}
+
+} // namespace cuda
+} // namespace inr

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Voxels of bricks, many bricks in one launch: fused in half precision, and in float32.
+#pragma once
+
+#include "CUDA/Inference/Kernels/LatticeShare.h"
+#include "CUDA/Inference/Kernels/PointKernels.h"
+
+namespace inr {
+namespace cuda {
+
+/// A block works on one cube of samples after another. Values are the same, to the last bit, as
+/// FusedPoints gives at the same positions.
+template <int Tiles> struct FusedBricks
+{
+  static constexpr int Threads = ThreadsPerBlock;
+
+  FusedModel model;
+  FusedShared shared;
+  const BrickJob* jobs;
+  std::int64_t jobCount;
+  std::int64_t items;            ///< of all jobs
+  float* values;                 ///< normalised; NaN where a number left the range of halves
+  const BrickEnd* end = nullptr; ///< where not null, of so many jobs and items instead
+
+  template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
+  {
+    const std::int64_t jobs = this->end != nullptr ? this->end->jobs : this->jobCount;
+    const std::int64_t items = this->end != nullptr ? this->end->items : this->items;
+    if (block.index() >= items) {
+      return;
+    }
+    const FusedNetwork network =
+        ShareWeights(block, this->model.network, this->shared.keepsWeights);
+    for (std::int64_t k = block.index(); k < items; k += block.count()) {
+      const BrickItem item = FindItem(this->jobs, jobs, k);
+      this->locate(block, item);
+      this->fetch(block);
+      block.warps([&](auto& warp) {
+        for (int batch = warp.index(); batch < SamplesPerItem / WarpSize; batch += WarpsPerBlock) {
+          this->infer(block.shared(), warp, network, batch * WarpSize);
+        }
+      });
+      this->write(block, item);
+    }
+  }
+
+private:
+  /// Cells of all samples' coordinates, and from them what of the lattice is kept. Two phases.
+  template <class Block> INR_HOST_DEVICE void locate(Block& block, const BrickItem& item) const
+  {
+    const GridView<HalfBits>& grid = this->model.grid;
+    LevelCells* const cells = this->cells(block.shared());
+    block.threads([&](int thread) {
+      constexpr int coordinates = 3 * ItemSize;
+      for (int k = thread; k < grid.levelCount * coordinates; k += Threads) {
+        const int axis = k % coordinates / ItemSize;
+        const int sample = k % ItemSize;
+        const float u = SampleCoordinate(*item.job, axis, item.firstSample(axis) + sample);
+        cells[k / coordinates].axes[axis][sample] =
+            LocateOnAxis(grid.levels[k / coordinates].scale, grid.interpolation, u);
+      }
+    });
+    LatticePlan* const plans = this->plans(block.shared());
+    const int bytes = this->shared.latticeEnd - this->shared.lattice;
+    const int bytesPerPoint = grid.features * static_cast<int>(sizeof(HalfBits));
+    block.threads([&](int thread) {
+      for (int l = thread; l < grid.levelCount; l += Threads) {
+        plans[l] = PlanLattice(cells, l, bytes / bytesPerPoint);
+      }
+    });
+  }
+
+  /// The part of the lattice that is kept. A phase.
+  template <class Block> INR_HOST_DEVICE void fetch(Block& block) const
+  {
+    const GridView<HalfBits>& grid = this->model.grid;
+    const LatticePlan* const plans = this->plans(block.shared());
+    block.threads([&](int thread) {
+      WithFeatures(grid.features, [&](auto features) {
+        constexpr int count = decltype(features)::value;
+        for (int l = 0; l < grid.levelCount; ++l) {
+          FetchLattice<count>(grid, l, plans[l], this->template lattice<count>(block.shared()),
+                              thread, Threads);
+        }
+      });
+    });
+  }
+
+  /// 32 samples, from number `first` of the item on.
+  template <class Warp>
+  INR_HOST_DEVICE void infer(unsigned char* memory, Warp& warp, const FusedNetwork& network,
+                             int first) const
+  {
+    const int stride = RowStride(network.inputTiles);
+    HalfBits* const rows =
+        reinterpret_cast<HalfBits*>(memory + this->shared.rows) + warp.index() * WarpSize * stride;
+    warp.exchange([&](int lane) {
+      const int k = first + lane;
+      const int sample[3] = {k % ItemSize, k / ItemSize % ItemSize, k / (ItemSize * ItemSize)};
+      this->encode(memory, sample, rows + lane * stride);
+    });
+    RunNetwork<Tiles>(warp, network, rows, stride, this->results(memory) + first);
+  }
+
+  INR_HOST_DEVICE void encode(unsigned char* memory, const int (&sample)[3], HalfBits* row) const
+  {
+    const GridView<HalfBits>& grid = this->model.grid;
+    WithFeatures(grid.features, [&](auto features) {
+      constexpr int count = decltype(features)::value;
+      const auto encodeLevel = [&](int l, float(&sums)[count]) {
+        InterpolateShared<count>(grid, l, this->cells(memory)[l], this->plans(memory)[l],
+                                 this->template lattice<count>(memory), sample, sums);
+      };
+      EncodeRow<count>(grid.levelCount, encodeLevel, row);
+    });
+  }
+
+  /// The item's voxels. A phase.
+  template <class Block> INR_HOST_DEVICE void write(Block& block, const BrickItem& item) const
+  {
+    const BrickJob& job = *item.job;
+    const float* const results = this->results(block.shared());
+    const int side = ItemSize / job.points; // voxels
+    block.threads([&](int thread) {
+      for (int k = thread; k < side * side * side; k += Threads) {
+        const int within[3] = {k % side, k / side % side, k / (side * side)};
+        std::int64_t at[3];
+        for (int axis = 0; axis < 3; ++axis) {
+          at[axis] = std::int64_t{item.at[axis]} * side + within[axis];
+        }
+        if (at[0] < job.voxels[0] && at[1] < job.voxels[1] && at[2] < job.voxels[2]) {
+          const std::int64_t row = at[2] * job.voxels[1] + at[1];
+          this->values[job.firstValue + row * job.voxels[0] + at[0]] =
+              job.points == 1 ? Normalised(results[k]) : Mean(results, within);
+        }
+      }
+    });
+  }
+
+  /// Over a voxel's 2 x 2 x 2 samples.
+  INR_HOST_DEVICE static float Mean(const float* results, const int (&voxel)[3])
+  {
+    float sum = 0.0f;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int x = 2 * voxel[0] + (corner & 1);
+      const int y = 2 * voxel[1] + (corner >> 1 & 1);
+      const int z = 2 * voxel[2] + (corner >> 2);
+      sum += Normalised(results[(z * ItemSize + y) * ItemSize + x]);
+    }
+    return sum / 8;
+  }
+
+  INR_HOST_DEVICE LevelCells* cells(unsigned char* memory) const
+  {
+    return reinterpret_cast<LevelCells*>(memory + this->shared.cells);
+  }
+  INR_HOST_DEVICE LatticePlan* plans(unsigned char* memory) const
+  {
+    return reinterpret_cast<LatticePlan*>(memory + this->shared.plans);
+  }
+  template <int Features>
+  INR_HOST_DEVICE Entry<HalfBits, Features>* lattice(unsigned char* memory) const
+  {
+    return reinterpret_cast<Entry<HalfBits, Features>*>(memory + this->shared.lattice);
+  }
+  INR_HOST_DEVICE float* results(unsigned char* memory) const ///< of all the item's samples
+  {
+    return reinterpret_cast<float*>(memory + this->shared.results);
+  }
+};
+
+/// The same in float32, by the voxel.
+struct FloatBricks
+{
+  static constexpr int Threads = ThreadsPerBlock;
+
+  FloatModel model;
+  const BrickJob* jobs; ///< all of the same number of voxels
+  std::int64_t jobCount;
+  float* values;                 ///< normalised; NaN where a number left the range of floats
+  float* scratch;                ///< as for FloatPoints
+  const BrickEnd* end = nullptr; ///< where not null, of so many jobs instead
+
+  template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
+  {
+    const std::int64_t jobs = this->end != nullptr ? this->end->jobs : this->jobCount;
+    if (jobs == 0) {
+      return;
+    }
+    const std::int32_t* const dims = this->jobs[0].voxels;
+    const std::int64_t voxels = std::int64_t{dims[0]} * dims[1] * dims[2];
+    block.threads([&](int thread) {
+      const ThreadScratch scratch(this->model, this->scratch, block, thread, Threads);
+      for (std::int64_t k = scratch.index(); k < jobs * voxels; k += scratch.threads()) {
+        const BrickJob& job = this->jobs[k / voxels];
+        const auto within = static_cast<std::int32_t>(k % voxels);
+        this->values[job.firstValue + within] = this->voxel(job, within, scratch);
+      }
+    });
+  }
+
+private:
+  INR_HOST_DEVICE float voxel(const BrickJob& job, std::int32_t index,
+                              const ThreadScratch& scratch) const
+  {
+    const int x = index % job.voxels[0];
+    const int y = index / job.voxels[0] % job.voxels[1];
+    const int z = index / (job.voxels[0] * job.voxels[1]);
+    const int samples = job.points * job.points * job.points;
+    float sum = 0.0f;
+    for (int corner = 0; corner < samples; ++corner) {
+      const Point point{SampleCoordinate(job, 0, x * job.points + (corner & 1)),
+                        SampleCoordinate(job, 1, y * job.points + (corner >> 1 & 1)),
+                        SampleCoordinate(job, 2, z * job.points + (corner >> 2))};
+      sum += Normalised(EvaluateFloat(this->model, point, scratch));
+    }
+    return sum / static_cast<float>(samples);
+  }
+};
+
+} // namespace cuda
+} // namespace inr

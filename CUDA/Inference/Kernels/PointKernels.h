@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Values at scattered points: fused in half precision, and in float32.
+#pragma once
+
+#include "CUDA/Inference/Kernels/Encode.h"
+#include "CUDA/Inference/Kernels/FloatNetwork.h"
+#include "CUDA/Inference/Kernels/FusedNetwork.h"
+
+namespace inr {
+namespace cuda {
+
+/// A model in half precision, in the memory of whoever runs the kernel.
+struct FusedModel
+{
+  GridView<HalfBits> grid;
+  FusedNetwork network;
+};
+
+constexpr int ThreadsPerBlock = 128;
+constexpr int WarpsPerBlock = ThreadsPerBlock / WarpSize;
+
+/// Halves from one encoded row to the next; see LoadInputs.
+INR_HOST_DEVICE constexpr int RowStride(int inputTiles) { return inputTiles * TileSize + 8; }
+
+/// Where a fused kernel has what in its block's shared memory, in bytes.
+struct FusedShared
+{
+  bool keepsWeights;       ///< a copy of them comes first
+  std::int32_t rows;       ///< 32 encoded rows per warp
+  std::int32_t results;    ///< one per thread
+  std::int32_t cells;      ///< bricks only: 24 AxisCells per level
+  std::int32_t plans;      ///< and a LatticePlan per level
+  std::int32_t lattice;    ///< and the features of a part of the lattice
+  std::int32_t latticeEnd; ///< = all that is needed
+};
+
+/// The weights, from the copy in shared memory where there is one. A phase.
+template <class Block>
+INR_HOST_DEVICE inline FusedNetwork ShareWeights(Block& block, const FusedNetwork& network,
+                                                 bool keepsWeights)
+{
+  FusedNetwork shared = network;
+  if (keepsWeights) {
+    auto* const copy = reinterpret_cast<WeightShare*>(block.shared());
+    block.threads([&](int thread) {
+      for (std::int64_t k = thread; k < network.weightShares; k += ThreadsPerBlock) {
+        copy[k] = network.weights[k];
+      }
+    });
+    shared.weights = copy;
+  }
+  return shared;
+}
+
+/// `Tiles`: of 16 neurons, of a hidden layer.
+template <int Tiles> struct FusedPoints
+{
+  static constexpr int Threads = ThreadsPerBlock;
+
+  FusedModel model;
+  FusedShared shared;
+  const float* positions; ///< x, y, z; clamped to [0, 1], a NaN is 0
+  std::int64_t count;
+  float* values;                      ///< NaN where a number left the range of halves
+  const std::uint64_t* end = nullptr; ///< where not null, of so many points instead
+
+  template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
+  {
+    const std::int64_t count =
+        this->end != nullptr ? static_cast<std::int64_t>(*this->end) : this->count;
+    const std::int64_t batches = (count + WarpSize - 1) / WarpSize;
+    if (std::int64_t{block.index()} * WarpsPerBlock >= batches) {
+      return;
+    }
+    const FusedNetwork network =
+        ShareWeights(block, this->model.network, this->shared.keepsWeights);
+    block.warps([&](auto& warp) {
+      const std::int64_t first = std::int64_t{block.index()} * WarpsPerBlock + warp.index();
+      const std::int64_t step = std::int64_t{block.count()} * WarpsPerBlock;
+      for (std::int64_t batch = first; batch < batches; batch += step) {
+        this->infer(block.shared(), warp, network, batch * WarpSize, count);
+      }
+    });
+  }
+
+private:
+  template <class Warp>
+  INR_HOST_DEVICE void infer(unsigned char* memory, Warp& warp, const FusedNetwork& network,
+                             std::int64_t first, std::int64_t count) const
+  {
+    const int stride = RowStride(network.inputTiles);
+    HalfBits* const rows =
+        reinterpret_cast<HalfBits*>(memory + this->shared.rows) + warp.index() * WarpSize * stride;
+    float* const results =
+        reinterpret_cast<float*>(memory + this->shared.results) + warp.index() * WarpSize;
+    warp.exchange([&](int lane) {
+      const std::int64_t sample = first + lane < count ? first + lane : count - 1;
+      const float* const xyz = this->positions + 3 * sample;
+      const Point point{ClampToUnit(xyz[0]), ClampToUnit(xyz[1]), ClampToUnit(xyz[2])};
+      this->encode(point, rows + lane * stride);
+    });
+    RunNetwork<Tiles>(warp, network, rows, stride, results);
+    warp.lanes([&](int lane) {
+      if (first + lane < count) {
+        this->values[first + lane] = results[lane];
+      }
+    });
+  }
+
+  INR_HOST_DEVICE void encode(const Point& point, HalfBits* row) const
+  {
+    const GridView<HalfBits>& grid = this->model.grid;
+    WithFeatures(grid.features, [&](auto features) {
+      constexpr int count = decltype(features)::value;
+      const auto encodeLevel = [&](int l, float(&sums)[count]) {
+        InterpolateAt(grid, grid.levels[l], point, sums);
+      };
+      EncodeRow<count>(grid.levelCount, encodeLevel, row);
+    });
+  }
+};
+
+/// The same in float32: slower, for any model, and what the fused kernel is judged by.
+struct FloatPoints
+{
+  static constexpr int Threads = ThreadsPerBlock;
+
+  FloatModel model;
+  const float* positions; ///< as above
+  std::int64_t count;
+  float* values;                      ///< NaN where a number left the range of floats
+  float* scratch;                     ///< model.scratchPerThread floats for every thread
+  const std::uint64_t* end = nullptr; ///< where not null, of so many points instead
+
+  template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
+  {
+    const std::int64_t count =
+        this->end != nullptr ? static_cast<std::int64_t>(*this->end) : this->count;
+    block.threads([&](int thread) {
+      const ThreadScratch scratch(this->model, this->scratch, block, thread, Threads);
+      for (std::int64_t k = scratch.index(); k < count; k += scratch.threads()) {
+        const float* const xyz = this->positions + 3 * k;
+        const Point point{ClampToUnit(xyz[0]), ClampToUnit(xyz[1]), ClampToUnit(xyz[2])};
+        this->values[k] = EvaluateFloat(this->model, point, scratch);
+      }
+    });
+  }
+};
+
+} // namespace cuda
+} // namespace inr

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "CUDA/Render/DeviceMarcher.h"
+#include "CUDA/Render/DevicePaths.h"
+#include "CUDA/Render/DeviceStore.h"
+
+#include <memory>
+#include <utility>
+
+namespace inr {
+namespace cuda {
+
+/// Draws frames through a cache by kernels on a machine; see AcceleratedRenderer.
+template <class Machine, class Cache> class DeviceRenderer : public AcceleratedRenderer
+{
+public:
+  using Store = DeviceStore<Machine, Cache>;
+
+  DeviceRenderer(std::shared_ptr<Store> store, const CacheOptions& options)
+      : Shared(std::move(store)),
+        Marcher(this->Shared->machine, this->Shared->beside, this->Shared->cache, options),
+        Paths(this->Shared->machine, this->Shared->cache, options)
+  {}
+
+  void setColors(const Majorants& majorants, const ColorLookup& colors) override
+  {
+    const typename Store::Turn turn(*this->Shared);
+    this->Marcher.forget();
+    this->Paths.forget();
+    this->Colors.set(this->Shared->machine, majorants, colors);
+  }
+
+  FrameStatistics march(const MarchJob& job, const WorkLimit& limit, const PassOutput& output,
+                        const std::function<bool()>& keepGoing) override
+  {
+    const typename Store::Turn turn(*this->Shared);
+    return this->Marcher.march(job, this->Colors, limit, output, keepGoing);
+  }
+
+  TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,
+                         const std::function<bool()>& keepGoing) override
+  {
+    const typename Store::Turn turn(*this->Shared);
+    return this->Paths.trace(round, this->Colors, limit, keepGoing);
+  }
+
+  std::int64_t bytes() const override { return this->Shared->cache.bytes(); }
+  std::int64_t bricks() const override { return this->Shared->cache.mapped(); }
+
+private:
+  std::shared_ptr<Store> Shared;
+  DeviceColors<Machine> Colors;
+  DeviceMarcher<Machine, Cache> Marcher;
+  DevicePaths<Machine, Cache> Paths;
+};
+
+} // namespace cuda
+} // namespace inr

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "CUDA/Inference/DeviceInference.h"
+#include "CUDA/Render/DeviceRenderer.h"
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace inr {
+namespace cuda {
+
+using GpuCache = DeviceCache<GpuMachine, DeviceInference>;
+using GpuStore = DeviceStore<GpuMachine, GpuCache>;
+
+extern template class DeviceRenderer<GpuMachine, GpuCache>;
+
+/// The caches of a model on its GPU, as long as renderers have them: one for those that show it
+/// with as many voxels, in the same bricks and precision, and within as many bytes.
+class DeviceStores
+{
+public:
+  /// Takes what CacheOptions allow, and half of the GPU's free memory at most: others draw with it,
+  /// too. Throws Error(Device) where there is too little of it, and what DeviceCache throws.
+  std::shared_ptr<GpuStore> storeFor(const std::shared_ptr<const DeviceModel>& model,
+                                     const glm::i64vec3& dims, const CacheOptions& options);
+
+private:
+  struct Entry
+  {
+    glm::i64vec3 dims;
+    int brickSize;
+    CachePrecision precision;
+    std::int64_t bytes; ///< as wanted
+    std::weak_ptr<GpuStore> store;
+  };
+
+  std::mutex Mutex; ///< guards what follows
+  std::vector<Entry> Entries;
+};
+
+} // namespace cuda
+} // namespace inr

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The rays of a picture, a thread each, launch by launch: those that have ended are written, the
+// others are listed for the next launch, so that its warps are full.
+#pragma once
+
+#include "CUDA/Device/Kernels/Block.h"
+#include "CUDA/Render/Kernels/FrameCounts.h"
+#include "CUDA/Render/Kernels/RayMarch.h"
+#include "CUDA/Render/Kernels/RayOrder.h"
+
+namespace inr {
+namespace cuda {
+
+struct MarchRays
+{
+  static constexpr int Threads = 128;
+
+  const RenderScene* scene;
+  CacheView cache;
+  RayLists lists;
+  OnMiss onMiss;
+  int most;              ///< samples that a ray may come past before it is another one's turn
+  bool begin;            ///< else rays go on from where they are
+  RayProgress* progress; ///< of each ray of the window
+  PictureView picture;
+  FrameCounts* counts;
+
+  template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
+  {
+    this->lists.forEach(block, Threads,
+                        [&](std::uint32_t ray, std::int64_t pixel) { this->advance(ray, pixel); });
+  }
+
+private:
+  INR_HOST_DEVICE void advance(std::uint32_t ray, std::int64_t pixel) const
+  {
+    const int width = this->scene->rays.width;
+    RayProgress state;
+    if (!this->begin) {
+      state = this->progress[ray];
+    }
+    RayMarch march(*this->scene, this->cache, this->onMiss, static_cast<int>(pixel % width),
+                   static_cast<int>(pixel / width), state);
+    const RayMarch::Outcome outcome = march.advance(this->most);
+    if (outcome == RayMarch::Outcome::Ends) {
+      march.write(this->picture, pixel);
+    } else {
+      this->progress[ray] = state;
+      this->lists.list(ray, outcome == RayMarch::Outcome::Waits);
+    }
+    this->counts->add(march.counts());
+  }
+};
+
+} // namespace cuda
+} // namespace inr

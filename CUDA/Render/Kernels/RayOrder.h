@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "CUDA/Device/Kernels/Atomics.h"
+#include "Core/HostDevice.h"
+
+#include <cstdint>
+
+namespace inr {
+namespace cuda {
+
+/// In which order the rays of a picture are numbered: by the block of 8 x 4 pixels, so that those
+/// of a warp stay together; or as a list of pixels has them.
+struct RayOrder
+{
+  static constexpr int BlockWidth = 8;
+  static constexpr int BlockHeight = 4;
+  static constexpr int BlockSize = BlockWidth * BlockHeight;
+
+  int width; ///< of the picture
+  int height;
+  const std::uint32_t* pixels; ///< y * width + x; null: blocks
+  std::int64_t listed;         ///< of these
+
+  INR_HOST_DEVICE std::int64_t blocksAcross() const
+  {
+    return (this->width + BlockWidth - 1) / BlockWidth;
+  }
+
+  /// Numbers in use; of blocks that reach beyond the picture not all have a pixel.
+  INR_HOST_DEVICE std::int64_t rays() const
+  {
+    const std::int64_t down = (this->height + BlockHeight - 1) / BlockHeight;
+    return this->pixels != nullptr ? this->listed : this->blocksAcross() * down * BlockSize;
+  }
+
+  /// Of ray number `ray`; -1 where there is none.
+  INR_HOST_DEVICE std::int64_t pixel(std::int64_t ray) const
+  {
+    if (this->pixels != nullptr) {
+      return this->pixels[ray];
+    }
+    const std::int64_t block = ray / BlockSize;
+    const auto within = static_cast<int>(ray % BlockSize);
+    const std::int64_t x = block % this->blocksAcross() * BlockWidth + within % BlockWidth;
+    const std::int64_t y = block / this->blocksAcross() * BlockHeight + within / BlockWidth;
+    return x < this->width && y < this->height ? y * this->width + x : -1;
+  }
+};
+
+/// Rays of a window of a picture, as many as have memory to wait in, and what becomes of them:
+/// lists of their numbers in the window, in no order.
+struct RayLists
+{
+  RayOrder order;
+  std::int64_t first; ///< number of the window's first ray
+
+  const std::uint32_t* now; ///< those whose turn it is; null: all of the window
+  const std::uint64_t* nowCount;
+  std::uint32_t* later; ///< those that are in for another turn
+  std::uint64_t* laterCount;
+  std::uint32_t* waiting; ///< those that need bricks
+  std::uint64_t* waitingCount;
+
+  /// A ray goes on in another launch: when it has its brick, or when it is its turn.
+  INR_HOST_DEVICE void list(std::uint32_t ray, bool needsBrick) const
+  {
+    if (needsBrick) {
+      this->waiting[AtomicAdd(*this->waitingCount, std::uint64_t{1})] = ray;
+    } else {
+      this->later[AtomicAdd(*this->laterCount, std::uint64_t{1})] = ray;
+    }
+  }
+
+  /// Calls function(ray, pixel) for the calling thread's share.
+  template <class Block, class Function>
+  INR_HOST_DEVICE void forEach(Block& block, int threads, const Function& function) const
+  {
+    const auto count = static_cast<std::int64_t>(*this->nowCount);
+    block.threads([&](int thread) {
+      const std::int64_t step = std::int64_t{block.count()} * threads;
+      for (std::int64_t k = std::int64_t{block.index()} * threads + thread; k < count; k += step) {
+        const std::uint32_t ray =
+            this->now != nullptr ? this->now[k] : static_cast<std::uint32_t>(k);
+        const std::int64_t pixel = this->order.pixel(this->first + ray);
+        if (pixel >= 0) {
+          function(ray, pixel);
+        }
+      }
+    });
+  }
+};
+
+} // namespace cuda
+} // namespace inr

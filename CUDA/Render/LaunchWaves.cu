@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Render/Kernels/MarchWave.h"
+#include "CUDA/Render/Kernels/PathWave.h"
+#include "CUDA/Device/LaunchDefinition.cuh"
+
+namespace inr {
+namespace cuda {
+
+INR_INSTANTIATE(AdvanceWave<MarchStages>);
+INR_INSTANTIATE(ListNeighbors<MarchStages>);
+INR_INSTANTIATE(AdvanceWave<PathStages>);
+
+} // namespace cuda
+} // namespace inr

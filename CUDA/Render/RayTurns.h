@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "CUDA/Render/Kernels/RayOrder.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+namespace inr {
+namespace cuda {
+
+/// Lets the rays of a window of a picture come as far as they do with the bricks that are there.
+template <class Machine> class RayTurns
+{
+public:
+  /// `most`: rays in a window.
+  RayTurns(Machine& machine, std::int64_t most)
+      : Where(machine), Later{machine.template allocate<std::uint32_t>(most),
+                              machine.template allocate<std::uint32_t>(most)},
+        Waiters{machine.template allocate<std::uint32_t>(most),
+                machine.template allocate<std::uint32_t>(most)},
+        Counts(machine.template allocate<std::uint64_t>(CountOfCounts))
+  {}
+
+  /// All rays of a window are to begin.
+  void beginWindow(const RayOrder& order, std::int64_t first, std::int64_t rays)
+  {
+    this->Order = order;
+    this->First = first;
+    this->Waiting = rays;
+    this->Most = rays;
+    this->Begins = true;
+  }
+  /// So many of those that wait may go on at once, at least one.
+  void limit(std::int64_t rays) { this->Most = std::max<std::int64_t>(rays, 1); }
+  std::int64_t limit() const { return std::min(this->Most, this->Waiting); }
+  /// Rays that wait for bricks, since run.
+  std::int64_t waiting() const { return this->Waiting; }
+
+  /// Runs a kernel with members lists, most and begin as of MarchRays, turn by turn: few samples
+  /// first, so that rays which end soon leave no idle threads behind, and then more and more. Waits
+  /// once, to be told how many rays wait: if none, all is done.
+  template <class Kernel> void run(Kernel kernel)
+  {
+    const std::int64_t now = this->limit();
+    const int next = 1 - this->Current;
+    this->setCount(Now, now);
+    this->setCount(WaitingOf + next, 0);
+    kernel.lists = RayLists{this->Order,
+                            this->First,
+                            this->Begins ? nullptr : this->Waiters[this->Current].data(),
+                            this->count(Now),
+                            nullptr,
+                            nullptr,
+                            this->Waiters[next].data(),
+                            this->count(WaitingOf + next)};
+    kernel.begin = this->Begins;
+    int out = 0;
+    for (const int most : Turns) {
+      this->setCount(LaterOf + out, 0);
+      kernel.lists.later = this->Later[out].data();
+      kernel.lists.laterCount = this->count(LaterOf + out);
+      kernel.most = most;
+      this->Where.run(kernel, now);
+      kernel.lists.now = kernel.lists.later;
+      kernel.lists.nowCount = kernel.lists.laterCount;
+      kernel.begin = false;
+      out = 1 - out;
+    }
+    std::uint64_t waiting = 0;
+    this->Where.toHost(&waiting, this->count(WaitingOf + next), 1);
+    this->append(now, next, static_cast<std::int64_t>(waiting));
+    this->Current = next;
+    this->Begins = false;
+  }
+
+private:
+  static constexpr int Turns[] = {32, 64, 128, 256, 1024, std::numeric_limits<int>::max()};
+  enum Count { Now, LaterOf, WaitingOf = LaterOf + 2, CountOfCounts = WaitingOf + 2 };
+
+  using List = typename Machine::template Array<std::uint32_t>;
+
+  std::uint64_t* count(int which) const { return this->Counts.data() + which; }
+  void setCount(int which, std::int64_t to)
+  {
+    const auto value = static_cast<std::uint64_t>(to);
+    this->Where.toMachine(this->count(which), &value, 1);
+  }
+  /// Those behind the first `now` go on waiting, behind those that wait again: else none would ever
+  /// find what it has waited for, where there is little room.
+  void append(std::int64_t now, int next, std::int64_t waiting)
+  {
+    const std::int64_t rest = this->Waiting - now;
+    if (rest > 0) {
+      this->Where.copy(this->Waiters[next].data() + waiting,
+                       this->Waiters[this->Current].data() + now, rest);
+    }
+    this->Waiting = waiting + rest;
+  }
+
+  Machine& Where;
+  std::array<List, 2> Later;
+  std::array<List, 2> Waiters;
+  typename Machine::template Array<std::uint64_t> Counts;
+  RayOrder Order{};
+  std::int64_t First = 0;
+  std::int64_t Waiting = 0;
+  std::int64_t Most = 0;
+  int Current = 0; ///< list of those that wait
+  bool Begins = false;
+};
+
+} // namespace cuda
+} // namespace inr

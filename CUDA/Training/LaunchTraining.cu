@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Training/Kernels/TrainDraw.h"
+#include "CUDA/Training/Kernels/TrainNetwork.h"
+#include "CUDA/Training/Kernels/TrainUpdate.h"
+#include "CUDA/Device/LaunchDefinition.cuh"
+
+namespace inr {
+namespace cuda {
+
+INR_INSTANTIATE(TrainDraw);
+INR_INSTANTIATE(TrainEncode);
+INR_INSTANTIATE(TrainNetwork);
+INR_INSTANTIATE(TrainWeights);
+INR_INSTANTIATE(TrainScatter);
+INR_INSTANTIATE(TrainUpdateWeights);
+INR_INSTANTIATE(TrainUpdateGrid);
+
+} // namespace cuda
+} // namespace inr
