@@ -74,8 +74,9 @@ public:
   bool IsWriting = false; ///< the steps stay those that there were at the beginning
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
-  std::unique_ptr<TrainingBackend> Beside; ///< of this Write; null = not looked for
-  inr::ModelPointer Previous;              ///< what was written last, if it is of a time step
+  /// Of this Write; null = not looked for. Who trains has it, too: Backend may be set meanwhile.
+  std::shared_ptr<TrainingBackend> Beside;
+  inr::ModelPointer Previous; ///< what was written last, if it is of a time step
 };
 
 vtkINRWriter::vtkINRWriter() : Internal(std::make_unique<Internals>())
@@ -378,16 +379,16 @@ vtkINRWriter::FindTrainingAccelerator(std::string& reason)
   return found.accelerator;
 }
 
-TrainingBackend& vtkINRWriter::FindBackend()
+std::shared_ptr<TrainingBackend> vtkINRWriter::FindBackend()
 {
-  std::unique_ptr<TrainingBackend>& beside = this->Internal->Beside;
+  std::shared_ptr<TrainingBackend>& beside = this->Internal->Beside;
   if (!beside) {
     std::string reason;
     auto accelerator = this->Backend == CPU ? nullptr : this->FindTrainingAccelerator(reason);
-    beside = std::make_unique<TrainingBackend>(this, std::move(accelerator), reason,
+    beside = std::make_shared<TrainingBackend>(this, std::move(accelerator), reason,
                                                this->Backend == CUDA);
   }
-  return *beside;
+  return beside;
 }
 
 void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
@@ -402,11 +403,11 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   TrainingCheckpoint checkpoint(this, this->Internal->Target, this->CheckpointInterval,
                                 this->Resume);
   options.checkpoint = checkpoint.options();
-  TrainingBackend& backend = this->FindBackend();
-  options.acceleration = backend.options();
+  const std::shared_ptr<TrainingBackend> backend = this->FindBackend();
+  options.acceleration = backend->options();
   const auto tell = [&] {
     checkpoint.tell();
-    backend.tell(group.rank() == 0);
+    backend->tell(group.rank() == 0);
   };
 
   const ReadingPlan& reading = this->Internal->Reading;

@@ -300,7 +300,7 @@ private:
                 const std::function<bool(const inr::TrainingProgress&)>& observe);
   std::shared_ptr<const inr::Model> FindStart(const inr::VolumeInfo& volume) const;
   void Train(const ParallelInput& input, const StopSignals& signals, const ControllerGroup& group);
-  TrainingBackend& FindBackend();
+  std::shared_ptr<TrainingBackend> FindBackend();
   void BeginFile();
   void KeepResult(const inr::Model& model, vtkIdType fileSize);
 

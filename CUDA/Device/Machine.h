@@ -49,7 +49,8 @@ public:
   /// Copies, from memory that may change when this has returned.
   template <class T> void toMachine(T* to, const T* from, std::int64_t count) const
   {
-    CopyToDevice(to, from, count, this->Work); // out of pageable memory: it is staged by now
+    CopyToDevice(to, from, count, this->Work);
+    this->Work.wait(); // pageable memory may still be read otherwise
   }
   /// Copies when all is done that was begun before.
   template <class T> void toHost(T* to, const T* from, std::int64_t count) const

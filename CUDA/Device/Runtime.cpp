@@ -45,8 +45,8 @@ CurrentDevice::CurrentDevice(int ordinal)
 
 CurrentDevice::~CurrentDevice()
 {
-  if (this->Changed) {
-    cudaSetDevice(this->Before);
+  if (this->Changed && cudaSetDevice(this->Before) != cudaSuccess) {
+    cudaGetLastError(); // whoever asks next is not to be told of it
   }
 }
 
@@ -85,8 +85,8 @@ Memory::~Memory()
   const bool known = cudaGetDevice(&before) == cudaSuccess;
   cudaSetDevice(this->Device);
   this->Where == Place::Device ? cudaFree(this->Address) : cudaFreeHost(this->Address);
-  if (known) {
-    cudaSetDevice(before);
+  if (known && cudaSetDevice(before) != cudaSuccess) {
+    cudaGetLastError();
   }
 }
 

@@ -46,8 +46,8 @@ public:
   {
     const std::int64_t now = this->limit();
     const int next = 1 - this->Current;
-    this->setCount(Now, now);
-    this->setCount(WaitingOf + next, 0);
+    this->setNow(now);
+    this->clear(WaitingOf + next);
     kernel.lists = RayLists{this->Order,
                             this->First,
                             this->Begins ? nullptr : this->Waiters[this->Current].data(),
@@ -59,7 +59,7 @@ public:
     kernel.begin = this->Begins;
     int out = 0;
     for (const int most : Turns) {
-      this->setCount(LaterOf + out, 0);
+      this->clear(LaterOf + out);
       kernel.lists.later = this->Later[out].data();
       kernel.lists.laterCount = this->count(LaterOf + out);
       kernel.most = most;
@@ -83,10 +83,12 @@ private:
   using List = typename Machine::template Array<std::uint32_t>;
 
   std::uint64_t* count(int which) const { return this->Counts.data() + which; }
-  void setCount(int which, std::int64_t to)
+  void clear(int which) { this->Where.fill(this->count(which), 0, 1); }
+  /// Before anything of a turn is begun: a copy is waited for.
+  void setNow(std::int64_t rays)
   {
-    const auto value = static_cast<std::uint64_t>(to);
-    this->Where.toMachine(this->count(which), &value, 1);
+    const auto value = static_cast<std::uint64_t>(rays);
+    this->Where.toMachine(this->count(Now), &value, 1);
   }
   /// Those behind the first `now` go on waiting, behind those that wait again: else none would ever
   /// find what it has waited for, where there is little room.

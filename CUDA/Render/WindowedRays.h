@@ -65,7 +65,8 @@ private:
     this->reserve(std::min(rays, this->Most));
     kernel.progress = this->Room->data();
     for (std::int64_t first = 0; first < rays; first += this->Most) {
-      this->Turns->beginWindow(order, first, std::min(this->Most, rays - first));
+      this->Waiting = std::min(this->Most, rays - first);
+      this->Turns->beginWindow(order, first, this->Waiting);
       kernel.cache = this->Bricks.view();
       run(kernel);
     }
@@ -81,8 +82,13 @@ private:
     if (loaded.loaded == 0 && atOnce == 1) {
       this->Bricks.clear();
     }
-    const bool crowded = loaded.full && 4 * loaded.loaded < this->Bricks.capacity();
-    this->Turns->limit(crowded ? atOnce / 2 : 2 * atOnce);
+    // More again only when a ray has ended: else a number that is too large and its half would take
+    // turns for ever.
+    const bool ended = this->Turns->waiting() < this->Waiting;
+    const bool few = 4 * loaded.loaded < this->Bricks.capacity();
+    const bool crowded = loaded.full && (few || !ended);
+    this->Turns->limit(crowded ? atOnce / 2 : (ended ? 2 * atOnce : atOnce));
+    this->Waiting = this->Turns->waiting();
   }
 
   void reserve(std::int64_t rays)
@@ -98,6 +104,7 @@ private:
   Machine& Where;
   Cache& Bricks;
   std::int64_t Most;
+  std::int64_t Waiting = 0; ///< rays of the window, when bricks were last loaded
   std::optional<Rays> Room;
   std::optional<RayTurns<Machine>> Turns;
 };

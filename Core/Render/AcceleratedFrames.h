@@ -4,6 +4,7 @@
 #include "Core/Cache/AcceleratedField.h"
 #include "Core/Render/AcceleratedRenderer.h"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -23,7 +24,7 @@ public:
 
   /// Whether it draws such a frame: what is composited or projected, or traced, without translucent
   /// layers.
-  bool draws(const Frame& frame) const;
+  bool draws(const Frame& frame);
   /// See AcceleratedRenderer.
   void setColors(const Majorants& majorants, const ColorLookup& colors);
 
@@ -37,8 +38,9 @@ public:
   /// Marches a frame into a picture of its size.
   using March = std::function<void(const Frame&, const PassOutput&)>;
   /// Kernels that nobody has seen at work on a device like this one are not to be trusted unseen:
-  /// before the first picture a small one, like that of `frame` as far as levels of at least
-  /// `scale` show it, is drawn by both. Gives the accelerator up where it draws another one.
+  /// before the first picture of a kind a small one, like that of `frame` as far as levels of at
+  /// least `scale` show it, is drawn by both; of paths, by rays through the same. Gives the
+  /// accelerator up where it draws another one.
   void prove(const Frame& frame, double scale, const March& accelerated, const March& cpu);
 
   std::int64_t bytes() const { return this->Device ? this->Device->bytes() : 0; }
@@ -50,7 +52,7 @@ private:
 
   std::shared_ptr<AcceleratedField> Field;
   std::shared_ptr<AcceleratedRenderer> Device;
-  bool Proven = false;
+  std::uint32_t Proven = 0; ///< kinds of pictures, a bit for each
 };
 
 } // namespace inr

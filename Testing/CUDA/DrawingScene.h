@@ -3,8 +3,10 @@
 // What is drawn in tests of pictures by kernels, and how.
 #pragma once
 
+#include "CUDA/CudaAccelerator.h"
 #include "Core/Image/Metrics.h"
 #include "Testing/CUDA/EmulatedAccelerator.h"
+#include "Testing/CUDA/Places.h"
 #include "Testing/Core/Render/VoxelScene.h"
 #include "Testing/Core/Training/Fields.h"
 
@@ -12,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -137,8 +140,6 @@ inline void Crop(inr::Frame& frame)
   frame.cropping = inr::Cropping{0.3 * dims, 0.62 * dims, 0x5555555};
 }
 
-inline std::string NameOfCase(const testing::TestParamInfo<Case>& info) { return info.param.name; }
-
 /// Of two pictures of the same shape, by channel.
 inline double LargestDifference(const inr::Image& a, const inr::Image& b)
 {
@@ -148,3 +149,31 @@ inline double LargestDifference(const inr::Image& a, const inr::Image& b)
   }
   return largest;
 }
+
+/// What draws in a place.
+inline std::shared_ptr<const inr::Accelerator> DeviceIn(Place place)
+{
+  return place == Place::Gpu ? inr::cuda::MakeAccelerator(inr::cuda::ChooseDevice()) : Device();
+}
+
+inline void SkipUnlessThere(Place place)
+{
+  const inr::cuda::Devices devices = inr::cuda::FindDevices();
+  if (place == Place::Gpu && devices.usable.empty()) {
+    GTEST_SKIP() << devices.reason;
+  }
+}
+
+/// Tests of cases in every place; skipped, with the reason, where there is no GPU.
+class CaseInAPlace : public testing::TestWithParam<std::tuple<Place, Case>>
+{
+public:
+  static std::string nameOf(const testing::TestParamInfo<std::tuple<Place, Case>>& info)
+  {
+    return std::string(std::get<0>(info.param) == Place::Host ? "Host" : "Gpu") +
+           std::get<1>(info.param).name;
+  }
+
+protected:
+  void SetUp() override { SkipUnlessThere(std::get<0>(GetParam())); }
+};

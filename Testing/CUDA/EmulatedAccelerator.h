@@ -23,8 +23,8 @@ class EmulatedAccelerator : public inr::Accelerator
 {
 public:
   explicit EmulatedAccelerator(inr::cuda::Precision precision, Duty duty = Duty::Infers,
-                               HostLaunch launch = {})
-      : Kind(precision), Does(duty), Launch(launch)
+                               HostLaunch launch = {}, std::int64_t cacheBytes = 0)
+      : Kind(precision), Does(duty), Launch(launch), Bytes(cacheBytes)
   {}
 
   std::string name() const override { return "CUDA, emulated"; }
@@ -66,7 +66,7 @@ protected:
     using Cache = inr::cuda::DeviceCache<Machine, EmulatedInference>;
     auto store = std::make_shared<inr::cuda::DeviceStore<Machine, Cache>>(
         where, EmulatedInference(this->on(model)), inr::Hierarchy(dims, options.brickSize),
-        options.precision, options.bytes);
+        options.precision, this->Bytes > 0 ? this->Bytes : options.bytes);
     return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options);
   }
   template <class Machine, class Where>
@@ -87,4 +87,5 @@ private:
   inr::cuda::Precision Kind;
   Duty Does;
   HostLaunch Launch;
+  std::int64_t Bytes; ///< of its cache; 0 = as a renderer's options say
 };

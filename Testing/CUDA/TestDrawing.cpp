@@ -1,34 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pictures that the kernels draw through a cache on the device, against those of Core's renderer.
-#include "CUDA/CudaAccelerator.h"
 #include "Testing/CUDA/DrawingScene.h"
-#include "Testing/CUDA/Places.h"
 
 #include <algorithm>
 #include <tuple>
 
 namespace {
 
-/// What draws in a place.
-std::shared_ptr<const inr::Accelerator> DeviceIn(Place place)
-{
-  return place == Place::Gpu ? inr::cuda::MakeAccelerator(inr::cuda::ChooseDevice()) : Device();
-}
-
-void SkipUnlessThere(Place place)
-{
-  const inr::cuda::Devices devices = inr::cuda::FindDevices();
-  if (place == Place::Gpu && devices.usable.empty()) {
-    GTEST_SKIP() << devices.reason;
-  }
-}
-
-class DrawingOf : public testing::TestWithParam<std::tuple<Place, Case>>
-{
-protected:
-  void SetUp() override { SkipUnlessThere(std::get<0>(GetParam())); }
-};
+class DrawingOf : public CaseInAPlace
+{};
 
 TEST_P(DrawingOf, GivesThePicturesOfTheCpu)
 {
@@ -83,11 +64,7 @@ const Case Marched[] = {
 INSTANTIATE_TEST_SUITE_P(Kernels, DrawingOf,
                          testing::Combine(testing::Values(Place::Host, Place::Gpu),
                                           testing::ValuesIn(Marched)),
-                         [](const testing::TestParamInfo<std::tuple<Place, Case>>& info) {
-                           return std::string(std::get<0>(info.param) == Place::Host ? "Host"
-                                                                                     : "Gpu") +
-                                  std::get<1>(info.param).name;
-                         });
+                         CaseInAPlace::nameOf);
 
 class Drawing : public testing::TestWithParam<Place>
 {
@@ -139,22 +116,36 @@ TEST_P(Drawing, TracesThePathsOfTheCpu)
   }
 }
 
-/// Small bricks, more than a hundred of them, and a cache for so many; 0: for all.
-inr::RendererOptions RoomFor(Place place, std::int64_t bricks)
+constexpr int SmallBrick = 5; ///< of which the model has more than a hundred
+
+/// Bytes of a device's cache that holds so many, beside what infers.
+std::int64_t BytesFor(std::int64_t bricks, std::int64_t inference)
 {
-  inr::RendererOptions options = OptionsWith(DeviceIn(place));
-  options.cache.brickSize = 5;
-  const inr::Hierarchy levels(TrainedModel()->volume.dims, options.cache.brickSize);
-  std::int64_t bytes = 14000; // the CPU wants so many for eight
-  while (bricks > 0) {
+  const inr::Hierarchy levels(TrainedModel()->volume.dims, SmallBrick);
+  std::int64_t bytes = 1000;
+  while (true) {
     try {
-      if (inr::cuda::LayOutCache(levels, options.cache.precision, bytes, 0).capacity >= bricks) {
-        options.cache.bytes = bytes;
-        break;
+      const auto precision = inr::CachePrecision::Bits16;
+      if (inr::cuda::LayOutCache(levels, precision, bytes, inference).capacity >= bricks) {
+        return bytes;
       }
     } catch (const inr::Error&) { // less than it must have
     }
-    bytes += 1000;
+    bytes += 100;
+  }
+}
+
+/// With a cache for so many on the device; 0: for all.
+inr::RendererOptions RoomFor(Place place, std::int64_t bricks, HostLaunch launch = {})
+{
+  inr::RendererOptions options = OptionsWith(DeviceIn(place));
+  options.cache.brickSize = SmallBrick;
+  if (bricks > 0 && place == Place::Gpu) { // where inferring takes something, and the CPU's is no
+    const std::int64_t oneBlock = 128 * 2 * 64 * 4; // smaller: threads, sides, neurons, bytes
+    options.cache.bytes = BytesFor(std::max<std::int64_t>(bricks, 32), oneBlock);
+  } else if (bricks > 0) {
+    options.accelerator = std::make_shared<EmulatedAccelerator>(
+        inr::cuda::Precision::Float32, Duty::InfersAndDraws, launch, BytesFor(bricks, 0));
   }
   return options;
 }
@@ -170,18 +161,33 @@ inr::Frame FullResolution(inr::RenderMode mode)
   return frame;
 }
 
-/// Room for few bricks is enough for every picture; it only takes longer.
+/// Draws, but not for ever.
+inr::Image DrawnInTheEnd(const inr::Frame& frame, const inr::RendererOptions& options)
+{
+  int asked = 0;
+  const auto keepGoing = [&] { return ++asked < 20000; };
+  inr::Renderer renderer = RendererOf(options);
+  inr::Image image;
+  EXPECT_TRUE(renderer.render(frame, image, nullptr, keepGoing).complete);
+  EXPECT_FALSE(renderer.acceleratorFailure());
+  return image;
+}
+
+/// Room for few bricks is enough for every picture; it only takes longer. In which order rays come
+/// to wait decides which of them goes on, so that both orders are tried.
 TEST_P(Drawing, NeedsNoMoreThanTheSmallestCache)
 {
+  HostLaunch backward;
+  backward.backward = true;
   for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
     inr::Frame frame = FullResolution(mode);
     frame.shading = inr::Material();
     LightUp(frame);
-    const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
-    for (const std::int64_t bricks : {9, 60}) {
-      const Drawn drawn = Draw(frame, RoomFor(GetParam(), bricks));
-      EXPECT_TRUE(drawn.statistics.complete);
-      EXPECT_EQ(drawn.rgba.pixels, truth.rgba.pixels) << bricks;
+    const inr::Image truth = DrawnInTheEnd(frame, RoomFor(GetParam(), 0));
+    for (const std::int64_t bricks : {8, 16}) {
+      EXPECT_EQ(DrawnInTheEnd(frame, RoomFor(GetParam(), bricks)).pixels, truth.pixels) << bricks;
+      EXPECT_EQ(DrawnInTheEnd(frame, RoomFor(GetParam(), bricks, backward)).pixels, truth.pixels)
+          << bricks;
     }
   }
 }
