@@ -154,8 +154,11 @@ vtkImageData* UpdateInput(vtkAlgorithm& consumer, const std::function<void(vtkIn
     ReleaseUpstream(consumer);
   }
   const UpstreamErrors errors(&consumer);
-  ask(consumer.GetInputInformation());
   auto* producer = Pipeline::SafeDownCast(consumer.GetInputExecutive());
+  if (producer) {
+    producer->UpdateInformation(); // which makes what is asked for the whole, where it is new
+  }
+  ask(consumer.GetInputInformation());
   const int port = consumer.GetInputConnection(0, 0)->GetIndex();
   const bool updated = producer && producer->Update(port) != 0;
   errors.check();
@@ -164,6 +167,15 @@ vtkImageData* UpdateInput(vtkAlgorithm& consumer, const std::function<void(vtkIn
                      "the source failed; what it reported, if anything, says why");
   }
   return vtkImageData::SafeDownCast(consumer.GetInputDataObject(0, 0));
+}
+
+void ForgetKept(vtkAlgorithm& consumer)
+{
+  for (vtkAlgorithm* algorithm : UpstreamOf(&consumer)) {
+    if (algorithm->GetTotalNumberOfInputConnections() > 0) { // a reader keeps what it knows
+      algorithm->Modified();
+    }
+  }
 }
 
 PipelineReader::PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
@@ -177,6 +189,10 @@ vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) 
   const Extent extent = ExtentOf(box, this->Whole.extent);
   const auto ask = [&](vtkInformation* input) { Request(input, extent); };
   vtkImageData* image = UpdateInput(this->Consumer, ask, this->Afresh);
+  if (image && !Contains(image->GetExtent(), extent.data())) {
+    ForgetKept(this->Consumer);
+    image = UpdateInput(this->Consumer, ask, this->Afresh);
+  }
   if (!image || !Contains(image->GetExtent(), extent.data())) {
     throw inr::Error(inr::ErrorCode::CannotRead, "the source did not give the voxels of extent " +
                                                      ToText(extent) +

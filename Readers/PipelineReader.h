@@ -40,6 +40,10 @@ struct WholeImage
 vtkImageData* UpdateInput(vtkAlgorithm& consumer, const std::function<void(vtkInformation*)>& ask,
                           bool afresh);
 
+/// Has the filters upstream ask for their input again: there are some (ForceTime,
+/// TemporalInterpolator) that keep what they got for a time, of whatever extent that was.
+void ForgetKept(vtkAlgorithm& consumer);
+
 /// Reads boxes of an algorithm's first input by asking the pipeline for them, from within the
 /// algorithm's own request for data.
 class PipelineReader : public inr::VolumeReader

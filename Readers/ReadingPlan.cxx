@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReadingPlan.h"
 
+#include "Core/Error.h"
+
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
@@ -93,7 +95,20 @@ vtkDataObject* ReadingPlan::afterProbe(vtkDataObject* data, bool failed,
   // Also where all came: a filter may have made it of the one voxel that it asked for.
   const auto all = [&](vtkInformation* input) { this->ask(input, group); };
   const bool afresh = allWhole || group.size() > 1;
-  group.together([&] { data = UpdateInput(*this->Consumer, all, afresh); });
+  const auto isThere = [&] { // of a group, FindPiece looks
+    auto* const came = vtkImageData::SafeDownCast(data);
+    return group.size() > 1 || !came || Contains(came->GetExtent(), extent);
+  };
+  group.together([&] {
+    data = UpdateInput(*this->Consumer, all, afresh);
+    if (!isThere()) {
+      ForgetKept(*this->Consumer);
+      data = UpdateInput(*this->Consumer, all, afresh);
+    }
+    if (!isThere()) {
+      throw inr::Error(inr::ErrorCode::CannotRead, "the source did not give all of its voxels");
+    }
+  });
   return data;
 }
 

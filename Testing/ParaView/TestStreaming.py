@@ -35,18 +35,18 @@ def write_raw(path, kind):
             file.write(layer.astype(kind).tobytes())
 
 
-def save(source, name):
+def save(source, name, limit=LIMIT):
     """Trains from the source, which nothing has updated."""
     path = output_file(name)
     if os.path.exists(path):
         os.remove(path)
     before = peak()
     with Messages() as messages:
-        writer = servermanager.writers.INRWriter(Input=source, FileName=path, MemoryLimit=LIMIT,
+        writer = servermanager.writers.INRWriter(Input=source, FileName=path, MemoryLimit=limit,
                                                  MaximumSteps=150, TimeLimit=0, ModelConfig=MODEL)
         writer.UpdatePipeline()
     check(messages.errors() == 0, "saving reported", messages.text)
-    check(peak() - before < LIMIT, name, "took", peak() - before, "MiB")
+    check(peak() - before < limit, name, "took", peak() - before, "MiB")
     reader = simple.OpenDataFile(path)
     reader.UpdatePipeline()
     psnr = reader.FieldData["INRPSNR"].GetRange(0)[0]
@@ -67,6 +67,11 @@ reader = save(source, "streamed-raw.inr")
 low, high = reader.GetDataInformation().GetPointDataInformation().GetArrayInformation(0) \
     .GetComponentRange(0)
 check(abs(low - 10) < 0.2 and abs(high - 31) < 1.2, "range", low, high)
+
+# A filter that keeps what it got for a time, of whatever extent that was: in pieces, and where a
+# voxel is asked for before the whole.
+save(simple.ForceTime(Input=source), "streamed-forced.inr")
+save(simple.ForceTime(Input=source), "forced.inr", limit=640)
 
 header = output_file("streamed.mhd")
 with open(header, "w") as file:
