@@ -50,7 +50,7 @@ public:
   }
 
 private:
-  static constexpr std::int64_t MostRays = 1 << 18; ///< some 50 MB of their progress
+  static constexpr std::int64_t MostRays = 1 << 18; ///< 38 MB of their progress
 
   RenderScene sceneOf(const MarchJob& job, const DeviceColors<Machine>& colors)
   {

@@ -63,7 +63,7 @@ public:
   void forget() { this->Overfull = false; }
 
 private:
-  static constexpr std::int64_t MostPaths = 1 << 17; ///< some 100 MB of their progress
+  static constexpr std::int64_t MostPaths = 1 << 17; ///< 72 MB of their progress
 
   TracePaths kernel() const
   {
