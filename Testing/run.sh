@@ -79,7 +79,7 @@ run_again() {
 build release && run_tests build "$@"
 
 # The same readers and mapper against plain VTK, unpacked beside the build, no ParaView; of Core and
-# CUDA, all has been built and tested before.
+# CUDA, all has been built and tested before. The benchmarks are built here, so that they go on building.
 if [ -d build-vtk/vtk/usr ] || Testing/fetch-vtk.sh build-vtk/vtk; then
   build vtk && run_tests build-vtk -L 'vtk|image' "$@"
 else

@@ -4,6 +4,7 @@
 #include "Core/Parallel.h"
 #include "Core/Random.h"
 #include "Core/Render/CellWalker.h"
+#include "Core/Render/Majorants.h"
 
 #include <benchmark/benchmark.h>
 
