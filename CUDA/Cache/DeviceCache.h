@@ -82,6 +82,9 @@ public:
     std::int64_t loaded;     ///< bricks
     std::int64_t repaired;   ///< voxels of them that Core had to compute
     bool full;               ///< there were more than fitted beside what the present frame uses
+
+    /// The cache has no room for any that is still wanted.
+    bool isHopeless() const { return this->full && this->loaded == 0; }
   };
   /// Infers and maps at most `most` of the bricks that were requested since the last call, and
   /// forgets the others: those of the greatest contribution first, or the coarsest.

@@ -96,7 +96,7 @@ private:
                               const std::function<bool()>& keepGoing)
   {
     const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
-    bool full = this->Bricks.hasInferred() && IsFull(this->Bricks.finishLoad());
+    bool full = this->Bricks.hasInferred() && this->Bricks.finishLoad().isHopeless();
     while (true) {
       RequireGoingOn(keepGoing);
       const Timer timer;
@@ -115,7 +115,7 @@ private:
       if (statistics.complete || full || limit.endsWithin(statistics.marchSeconds)) {
         return statistics;
       }
-      full = IsFull(this->Bricks.finishLoad()); // else nothing would be new
+      full = this->Bricks.finishLoad().isHopeless(); // else nothing would be new
     }
   }
 
@@ -131,12 +131,7 @@ private:
       }
       return false;
     }
-    return IsFull(this->Bricks.load(most, this->Options.ranking));
-  }
-
-  template <class Loaded> static bool IsFull(const Loaded& loaded)
-  {
-    return loaded.full && loaded.loaded == 0;
+    return this->Bricks.load(most, this->Options.ranking).isHopeless();
   }
 
   Machine& Where;

@@ -92,8 +92,7 @@ private:
     this->Paths.runOnce(kernel, order);
     const std::int64_t most =
         limit.isLimited() ? this->Options.maximumRequests : this->Bricks.capacity();
-    const auto loaded = this->Bricks.load(most, this->Options.ranking);
-    const bool full = loaded.full && loaded.loaded == 0;
+    const bool full = this->Bricks.load(most, this->Options.ranking).isHopeless();
     this->Overfull = this->Overfull || full;
     TracedTiles traced;
     traced.final = full && this->Options.onlyWhatFits;
