@@ -11,6 +11,7 @@
 #include "CUDA/Inference/Overflow.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -37,7 +38,7 @@ public:
   {
     machine.toMachine(this->Tables.levels.data(), &hierarchy.view().level(0), hierarchy.levels());
     machine.fill(this->Tables.uses.data(), 0, this->Layout.capacity);
-    this->clearRequests();
+    this->forgetRequests();
     this->map();
     this->loadCoarsest();
   }
@@ -91,8 +92,9 @@ public:
   ///
   /// Core's other order is that in which bricks were first wanted, which threads of a GPU do not
   /// have. Waits once for each CacheLayout::atOnce bricks: only then the host knows whether there
-  /// are more to begin with, and that no voxel is left for Core to compute.
-  Loaded load(std::int64_t most, bool byContribution)
+  /// are more to begin with, and that no voxel is left for Core to compute. Then `goesOn`, which
+  /// may be empty, says whether there shall be more.
+  Loaded load(std::int64_t most, bool byContribution, const std::function<bool()>& goesOn = {})
   {
     this->finishLoad();
     Loaded all{};
@@ -101,12 +103,18 @@ public:
       this->list(wanted, byContribution);
       this->infer(this->Where);
       const Loaded some = this->storeListed(wanted);
-      more = some.loaded == wanted && all.loaded + wanted < most;
+      more = some.loaded == wanted && all.loaded + wanted < most && (!goesOn || goesOn());
       all = {some.requested, some.overflowed, all.loaded + some.loaded,
              all.repaired + some.repaired, some.full};
     }
-    this->clearRequests();
+    this->forgetRequests();
     return all;
+  }
+
+  /// Those since the last call of load or beginLoad.
+  void forgetRequests()
+  {
+    this->Where.run(ClearRequests{this->view().requests}, this->Layout.requests);
   }
 
   /// The same, of at most CacheLayout::atOnce bricks, in two steps: `beside`, another machine with
@@ -118,7 +126,7 @@ public:
     this->finishLoad();
     this->Listed = std::min(most, this->Layout.atOnce);
     this->list(this->Listed, byContribution);
-    this->clearRequests();
+    this->forgetRequests();
     beside.after(this->Where);
     this->infer(beside);
     this->Beside = &beside;
@@ -259,11 +267,6 @@ private:
   {
     this->Where.fill(this->Tables.pages.data(), 0xff, this->Layout.pages); // NoBrick, and -1
     this->Where.run(MapSlots{this->view()}, this->Layout.capacity);
-  }
-
-  void clearRequests()
-  {
-    this->Where.run(ClearRequests{this->view().requests}, this->Layout.requests);
   }
 
   /// Voxels that are no numbers, by Core: hardly ever.

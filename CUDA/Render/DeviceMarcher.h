@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "CUDA/Render/DevicePicture.h"
-#include "CUDA/Render/DeviceScene.h"
-#include "CUDA/Render/Kernels/MarchKernels.h"
-#include "CUDA/Render/WindowedRays.h"
+#include "CUDA/Render/MarchedPicture.h"
 #include "Core/Render/AcceleratedRenderer.h"
-#include "Core/Render/CachedRenderer.h"
 #include "Core/Render/KeptFrame.h"
-#include "Core/Render/WorkLimit.h"
+#include "Core/Render/StepTable.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
 
 namespace inr {
 namespace cuda {
@@ -17,101 +19,132 @@ namespace cuda {
 template <class Machine, class Cache> class DeviceMarcher
 {
 public:
-  /// `beside`: infers bricks while frames go on.
-  DeviceMarcher(Machine& machine, Machine& beside, Cache& cache, const CacheOptions& options)
-      : Where(machine), Beside(beside), Bricks(cache), Options(options), Picture(machine),
-        Scene(machine.template allocate<RenderScene>(1)), Rays(machine, cache, MostRays)
+  /// `beside`: infers bricks while frames go on. `most`: rays that wait at once.
+  DeviceMarcher(Machine& machine, Machine& beside, Cache& cache, const CacheOptions& options,
+                std::int64_t most)
+      : Where(machine), Beside(beside), Bricks(cache), Options(options), Most(most)
   {}
 
   FrameStatistics march(const MarchJob& job, const DeviceColors<Machine>& colors,
                         const WorkLimit& limit, const PassOutput& output,
                         const std::function<bool()>& keepGoing)
   {
-    const RenderScene scene = this->sceneOf(job, colors);
-    this->Where.toMachine(this->Scene.data(), &scene, 1);
-    this->Picture.resize(std::int64_t{job.frame.width} * job.frame.height);
+    if (this->Unfinished && this->Unfinished->frame.isOf(job.frame)) {
+      return this->refine(limit, output, keepGoing);
+    }
+    if (limit.isLimited()) { // others are looked at in between: see AcceleratedFrames::prove
+      this->dropUnfinished();
+    }
+    const StepLookup steps = this->stepsFor(job);
+    if (!this->Present) {
+      this->Present = std::make_unique<Picture>(this->Where, this->Bricks, this->Most);
+    }
+    Picture& picture = *this->Present;
+    picture.setScene(job, colors, steps);
     const bool inTime = limit.isLimited() || this->Options.onlyWhatFits;
-    // What wants more than the cache holds never comes to its end by what is loaded in between.
-    const bool again = this->Overfull && this->Overfull->isOf(job.frame);
-    FrameStatistics statistics = inTime && !(again && !this->Options.onlyWhatFits)
-                                     ? this->marchInTime(job.frame, limit, keepGoing)
-                                     : this->marchComplete(job.frame, keepGoing);
-    this->Picture.copyTo(output.rgba.pixels.data(),
-                         output.depth != nullptr ? output.depth->pixels.data() : nullptr,
-                         output.samples != nullptr ? output.samples->pixels.data() : nullptr);
+    const FrameStatistics statistics = inTime ? this->marchInTime(picture, limit, keepGoing)
+                                              : this->marchComplete(picture, keepGoing);
+    picture.copyTo(output);
+    if (this->Overfull) {
+      this->keepUnfinished(job.frame);
+    }
     return statistics;
   }
 
   /// For when colours change.
   void forget()
   {
-    this->Overfull.reset();
+    this->dropUnfinished();
     this->Steps.reset();
   }
 
 private:
-  static constexpr std::int64_t MostRays = 1 << 18; ///< 38 MB of their progress
+  using Picture = MarchedPicture<Machine, Cache>;
 
-  RenderScene sceneOf(const MarchJob& job, const DeviceColors<Machine>& colors)
+  /// A picture that wants more than the cache holds, between the calls that it takes.
+  struct Refinement
+  {
+    Refinement(const Frame& of, std::unique_ptr<Picture> seen) : frame(of), picture(std::move(seen))
+    {
+      this->picture->begin();
+    }
+
+    KeptFrame frame;
+    std::unique_ptr<Picture> picture; ///< rays that have not ended show what was there before
+    FrameStatistics soFar;            ///< of those that have, and of the others' ways
+  };
+
+  StepLookup stepsFor(const MarchJob& job)
   {
     const double step = job.settings.step * job.settings.unitsPerT;
     const int lengths = SampleLengths(this->Bricks.hierarchy().levels());
     if (!this->Steps || !this->Steps->fits(step, lengths)) { // they are megabytes
+      this->dropUnfinished();                                // it reads them
       this->Steps.emplace(job.colors, step, lengths);
       this->OfSteps.clear();
       this->Entries =
           this->OfSteps.put(this->Where, this->Steps->lookup().entries, 4 * this->Steps->count());
     }
-    this->OfFrame.clear();
-    RenderScene scene = SceneOn(this->Where, job, colors, this->OfFrame);
-    scene.steps = this->Steps->lookup();
-    scene.steps.entries = this->Entries;
-    return scene;
+    StepLookup steps = this->Steps->lookup();
+    steps.entries = this->Entries;
+    return steps;
   }
 
-  MarchRays kernel(OnMiss onMiss) const
+  void keepUnfinished(const Frame& frame)
   {
-    MarchRays kernel{};
-    kernel.scene = this->Scene.data();
-    kernel.onMiss = onMiss;
-    kernel.picture = this->Picture.view();
-    kernel.counts = this->Picture.counts();
-    return kernel;
+    this->Overfull = false;
+    this->dropUnfinished();
+    this->Unfinished.emplace(frame, std::move(this->Present));
+  }
+  /// Its memory is for the next picture.
+  void dropUnfinished()
+  {
+    if (this->Unfinished && !this->Present) {
+      this->Present = std::move(this->Unfinished->picture);
+    }
+    this->Unfinished.reset();
   }
 
-  FrameStatistics marchComplete(const Frame& frame, const std::function<bool()>& keepGoing)
+  FrameStatistics marchComplete(Picture& picture, const std::function<bool()>& keepGoing)
   {
-    const Timer timer;
-    this->Picture.clearCounts();
-    this->Rays.runToEnd(this->kernel(OnMiss::Stop), {frame.width, frame.height, nullptr, 0},
-                        keepGoing);
-    FrameStatistics statistics = this->Picture.statistics();
+    picture.begin();
+    FrameStatistics statistics =
+        picture.goOn(WorkLimit(0, false), this->Options.maximumRequests, keepGoing);
     statistics.complete = true;
-    statistics.marchSeconds = timer.seconds();
+    return statistics;
+  }
+
+  /// Goes on with the same rays. What is finished is only shown.
+  FrameStatistics refine(const WorkLimit& limit, const PassOutput& output,
+                         const std::function<bool()>& keepGoing)
+  {
+    Picture& picture = *this->Unfinished->picture;
+    FrameStatistics& all = this->Unfinished->soFar;
+    const FrameStatistics part = picture.goOn(limit, this->Options.maximumRequests, keepGoing);
+    picture.copyTo(output);
+    all.add(part);
+    FrameStatistics statistics = all;
+    statistics.complete = picture.done();
+    statistics.marchSeconds = part.marchSeconds;
+    statistics.work = part.work;
     return statistics;
   }
 
   /// As far as the bricks are there; then some more come in, and once more while there is time.
-  FrameStatistics marchInTime(const Frame& frame, const WorkLimit& limit,
+  FrameStatistics marchInTime(Picture& picture, const WorkLimit& limit,
                               const std::function<bool()>& keepGoing)
   {
     const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
     bool full = this->Bricks.hasInferred() && this->Bricks.finishLoad().isHopeless();
     while (true) {
       RequireGoingOn(keepGoing);
-      const Timer timer;
-      this->Picture.clearCounts();
-      this->Bricks.beginFrame();
-      this->Rays.runOnce(this->kernel(onMiss), {frame.width, frame.height, nullptr, 0});
-      FrameStatistics statistics = this->Picture.statistics();
-      statistics.marchSeconds = timer.seconds();
+      FrameStatistics statistics = picture.marchOnce(onMiss);
       if (statistics.missed > 0) {
         full = this->loadMore(limit) || full;
       }
       statistics.complete = statistics.missed == 0 || (full && this->Options.onlyWhatFits);
-      if (full && !statistics.complete) {
-        this->Overfull.emplace(frame);
-      }
+      // What wants more than the cache holds never comes to its end by what is loaded in between.
+      this->Overfull = full && !statistics.complete;
       if (statistics.complete || full || limit.endsWithin(statistics.marchSeconds)) {
         return statistics;
       }
@@ -138,14 +171,13 @@ private:
   Machine& Beside;
   Cache& Bricks;
   CacheOptions Options;
-  DevicePicture<Machine> Picture;
-  typename Machine::template Array<RenderScene> Scene;
-  WindowedRays<Machine, Cache, RayProgress> Rays;
-  Belongings<Machine> OfFrame;
+  std::int64_t Most;
   std::optional<StepTable> Steps; ///< of the present colours
   Belongings<Machine> OfSteps;
-  const float* Entries = nullptr;    ///< of them
-  std::optional<KeptFrame> Overfull; ///< the latest frame that wanted more than the cache holds
+  const float* Entries = nullptr;   ///< of them
+  std::unique_ptr<Picture> Present; ///< the latest; null: to be made
+  bool Overfull = false;            ///< it was found to want more than the cache holds
+  std::optional<Refinement> Unfinished;
 };
 
 } // namespace cuda

@@ -10,6 +10,9 @@
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/WorkLimit.h"
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace inr {
@@ -19,83 +22,132 @@ namespace cuda {
 template <class Machine, class Cache> class DevicePaths
 {
 public:
-  DevicePaths(Machine& machine, Cache& cache, const CacheOptions& options)
+  /// `most`: paths that wait at once.
+  DevicePaths(Machine& machine, Cache& cache, const CacheOptions& options, std::int64_t most)
       : Where(machine), Bricks(cache), Options(options), Picture(machine),
-        Scene(machine.template allocate<PathScene>(1)), Paths(machine, cache, MostPaths)
+        Scene(machine.template allocate<PathScene>(1)), Paths(machine, cache, most)
   {}
 
   TracedTiles trace(const PathRound& round, const DeviceColors<Machine>& colors,
                     const WorkLimit& limit, const std::function<bool()>& keepGoing)
   {
-    const PathScene& given = round.tracer.scene();
-    Belongings<Machine>& arrays = this->OfRound;
-    arrays.clear();
-    const PathScene scene = SceneOn(this->Where, given, colors, arrays);
-    this->Where.toMachine(this->Scene.data(), &scene, 1);
-    const int width = given.rays.width;
-    const int height = given.rays.height;
-    const Tiling tiling(width, height);
-    this->Picture.resize(std::int64_t{width} * height);
-    this->Picture.clearCounts();
-    const std::vector<std::uint32_t> pixels = PixelsOf(round);
-    const RayOrder order{
-        width, height,
-        arrays.put(this->Where, pixels.data(), static_cast<std::int64_t>(pixels.size())),
-        static_cast<std::int64_t>(pixels.size())};
-    std::vector<std::uint32_t> misses(static_cast<std::size_t>(tiling.count()), 0);
-    TracePaths kernel = this->kernel();
-    kernel.tileMisses = arrays.put(this->Where, misses.data(), tiling.count());
-    this->Overfull = this->Overfull && !round.first;
-    const bool waits = !this->Options.onlyWhatFits && (!limit.isLimited() || this->Overfull);
     const Timer timer;
-    TracedTiles traced =
-        waits ? this->traceToEnd(kernel, order, keepGoing) : this->traceOnce(kernel, order, limit);
-    traced.seconds = timer.seconds();
-    this->Where.toHost(misses.data(), kernel.tileMisses, tiling.count());
-    traced.tiles = TilesToHost(round, this->Picture);
-    for (std::size_t k = 0; k < round.tiles.size(); ++k) {
-      traced.tiles[k].missed = misses[static_cast<std::size_t>(round.tiles[k])];
+    if (!this->Waiting || round.first || !this->Waiting->isOf(round)) {
+      this->begin(round, colors);
     }
+    this->Overfull = this->Overfull && !round.first;
+    const bool waits =
+        !this->Options.onlyWhatFits && (!limit.isLimited() || this->Overfull || this->Waiting);
+    this->Picture.clearCounts();
+    TracedTiles traced =
+        waits ? this->traceFurther(round, limit, keepGoing) : this->traceOnce(round, limit);
+    traced.seconds = timer.seconds();
     return traced;
   }
 
   /// For when colours change.
-  void forget() { this->Overfull = false; }
+  void forget()
+  {
+    this->Overfull = false;
+    this->Waiting.reset();
+  }
 
 private:
-  static constexpr std::int64_t MostPaths = 1 << 17; ///< 72 MB of their progress
+  /// A round whose paths have not all come to their end, between the calls that it takes.
+  struct Unfinished
+  {
+    explicit Unfinished(const PathRound& round)
+        : tiles(round.tiles), sample(round.tracer.frame().frameIndex)
+    {}
+    bool isOf(const PathRound& round) const
+    {
+      return round.tracer.frame().frameIndex == this->sample && round.tiles == this->tiles;
+    }
 
-  TracePaths kernel() const
+    std::vector<std::int64_t> tiles;
+    std::uint64_t sample;  ///< of the picture
+    FrameStatistics soFar; ///< but for the work
+  };
+
+  /// Copies what the round needs.
+  void begin(const PathRound& round, const DeviceColors<Machine>& colors)
+  {
+    this->Waiting.reset();
+    const PathScene& given = round.tracer.scene();
+    this->OfRound.clear();
+    const PathScene scene = SceneOn(this->Where, given, colors, this->OfRound);
+    this->Where.toMachine(this->Scene.data(), &scene, 1);
+    this->Picture.resize(std::int64_t{given.rays.width} * given.rays.height);
+    const std::vector<std::uint32_t> pixels = PixelsOf(round);
+    const auto listed = static_cast<std::int64_t>(pixels.size());
+    this->Order = {given.rays.width, given.rays.height,
+                   this->OfRound.put(this->Where, pixels.data(), listed), listed};
+    const std::int64_t tiles = Tiling(given.rays.width, given.rays.height).count();
+    const std::vector<std::uint32_t> none(static_cast<std::size_t>(tiles), 0);
+    this->TileMisses = this->OfRound.put(this->Where, none.data(), tiles);
+  }
+
+  TracePaths kernel(OnMiss onMiss) const
   {
     TracePaths kernel{};
     kernel.scene = this->Scene.data();
+    kernel.onMiss = onMiss;
     kernel.picture = this->Picture.view();
+    kernel.tileMisses = this->TileMisses;
     kernel.tileEdge = Tiling::Edge;
     kernel.counts = this->Picture.counts();
     return kernel;
   }
 
-  TracedTiles traceToEnd(TracePaths kernel, const RayOrder& order,
-                         const std::function<bool()>& keepGoing)
+  /// To the end, or as far as there is time: the same tiles are asked for again then.
+  TracedTiles traceFurther(const PathRound& round, const WorkLimit& limit,
+                           const std::function<bool()>& keepGoing)
   {
-    kernel.onMiss = OnMiss::Stop;
-    this->Paths.runToEnd(kernel, order, keepGoing);
-    return {};
+    if (!this->Waiting) {
+      this->Paths.begin(this->Order);
+      this->Waiting.emplace(round);
+    }
+    // Counted, a round is one through all tiles.
+    this->Paths.goOn(this->kernel(OnMiss::Stop), limit.isTimed() ? limit : WorkLimit(0, false),
+                     this->Options.maximumRequests, keepGoing,
+                     [&] { return this->Picture.statistics().samples > 0; });
+    TracedTiles traced;
+    traced.tiles = TilesToHost(round, this->Picture);
+    const WorkDone work = traced.tiles.front().work;
+    this->Waiting->soFar.add(traced.tiles.front());
+    traced.tiles.front() = this->Waiting->soFar;
+    traced.tiles.front().work = work;
+    if (this->Paths.done()) {
+      this->Waiting.reset();
+    } else {
+      for (FrameStatistics& tile : traced.tiles) {
+        tile.missed = 1;
+      }
+    }
+    return traced;
   }
 
   /// With what is there, and then some more comes in.
-  TracedTiles traceOnce(TracePaths kernel, const RayOrder& order, const WorkLimit& limit)
+  TracedTiles traceOnce(const PathRound& round, const WorkLimit& limit)
   {
-    kernel.onMiss =
-        this->Options.preloading && limit.isLimited() ? OnMiss::Approach : OnMiss::UseCoarser;
     this->Bricks.beginFrame();
-    this->Paths.runOnce(kernel, order);
+    this->Paths.runOnce(this->kernel(this->Options.preloading && limit.isLimited()
+                                         ? OnMiss::Approach
+                                         : OnMiss::UseCoarser),
+                        this->Order);
     const std::int64_t most =
         limit.isLimited() ? this->Options.maximumRequests : this->Bricks.capacity();
     const bool full = this->Bricks.load(most, this->Options.ranking).isHopeless();
     this->Overfull = this->Overfull || full;
     TracedTiles traced;
     traced.final = full && this->Options.onlyWhatFits;
+    traced.tiles = TilesToHost(round, this->Picture);
+    const std::int64_t count = Tiling(this->Order.width, this->Order.height).count();
+    std::vector<std::uint32_t> misses(static_cast<std::size_t>(count));
+    this->Where.toHost(misses.data(), this->TileMisses, count);
+    for (std::size_t k = 0; k < round.tiles.size(); ++k) {
+      traced.tiles[k].missed = misses[static_cast<std::size_t>(round.tiles[k])];
+    }
     return traced;
   }
 
@@ -106,6 +158,9 @@ private:
   typename Machine::template Array<PathScene> Scene;
   WindowedRays<Machine, Cache, PathProgress> Paths;
   Belongings<Machine> OfRound;
+  RayOrder Order{};                    ///< of the round
+  std::uint32_t* TileMisses = nullptr; ///< of all tiles of the picture
+  std::optional<Unfinished> Waiting;
   bool Overfull = false; ///< the present picture wants more than the cache holds
 };
 

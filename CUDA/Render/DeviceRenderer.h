@@ -5,11 +5,19 @@
 #include "CUDA/Render/DevicePaths.h"
 #include "CUDA/Render/DeviceStore.h"
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 
 namespace inr {
 namespace cuda {
+
+/// How many rays of a picture wait at once: for each the machine has memory.
+struct WindowSizes
+{
+  std::int64_t rays = 1 << 18;  ///< 38 MB of their progress
+  std::int64_t paths = 1 << 17; ///< 72 MB
+};
 
 /// Draws frames through a cache by kernels on a machine; see AcceleratedRenderer.
 template <class Machine, class Cache> class DeviceRenderer : public AcceleratedRenderer
@@ -17,10 +25,11 @@ template <class Machine, class Cache> class DeviceRenderer : public AcceleratedR
 public:
   using Store = DeviceStore<Machine, Cache>;
 
-  DeviceRenderer(std::shared_ptr<Store> store, const CacheOptions& options)
-      : Shared(std::move(store)),
-        Marcher(this->Shared->machine, this->Shared->beside, this->Shared->cache, options),
-        Paths(this->Shared->machine, this->Shared->cache, options)
+  DeviceRenderer(std::shared_ptr<Store> store, const CacheOptions& options,
+                 const WindowSizes& sizes = {})
+      : Shared(std::move(store)), Marcher(this->Shared->machine, this->Shared->beside,
+                                          this->Shared->cache, options, sizes.rays),
+        Paths(this->Shared->machine, this->Shared->cache, options, sizes.paths)
   {}
 
   void setColors(const Majorants& majorants, const ColorLookup& colors) override

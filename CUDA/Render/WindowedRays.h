@@ -3,6 +3,7 @@
 
 #include "CUDA/Render/RayTurns.h"
 #include "Core/Error.h"
+#include "Core/Render/WorkLimit.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -31,53 +32,82 @@ public:
   {}
 
   /// Runs a kernel like MarchRays, but for its members of lists and turns, over all rays, once:
-  /// with OnMiss::Stop those that miss a brick do not come to their end.
-  template <class Kernel> void runOnce(Kernel kernel, const RayOrder& order)
+  /// none of them may wait.
+  template <class Kernel> void runOnce(const Kernel& kernel, const RayOrder& order)
   {
-    this->forEachWindow(kernel, order, [&](const Kernel& ready) { this->Turns->run(ready); });
+    this->begin(order);
+    while (!this->done()) {
+      this->advance(kernel);
+    }
   }
 
-  /// The same until all rays have come to their end, with every brick that they stop for.
-  template <class Kernel>
-  void runToEnd(Kernel kernel, const RayOrder& order, const std::function<bool()>& keepGoing)
+  /// All rays of a picture are to begin.
+  void begin(const RayOrder& order)
   {
-    this->forEachWindow(kernel, order, [&](Kernel ready) {
-      while (true) {
-        RequireGoingOn(keepGoing);
-        this->Bricks.beginFrame();
-        ready.cache = this->Bricks.view();
-        this->Turns->run(ready);
-        if (this->Turns->waiting() == 0) {
-          break;
-        }
-        this->load();
+    this->reserve(std::min(order.rays(), this->Most));
+    this->Order = order;
+    this->First = 0;
+    this->beginWindow();
+  }
+  bool done() const { return this->First >= this->Order.rays(); } ///< all have come to their end
+
+  /// Goes on by such a kernel with OnMiss::Stop, with every brick that rays stop for, until all
+  /// have come to their end or the time is over: then some have come further, which `cameFurther`
+  /// tells, as what was loaded may be gone at the next call. In between that is to be called with
+  /// the same kernel, and other rays are not. `maximumRequests`: see WorkLimit.
+  template <class Kernel, class CameFurther>
+  void goOn(const Kernel& kernel, const WorkLimit& limit, int maximumRequests,
+            const std::function<bool()>& keepGoing, const CameFurther& cameFurther)
+  {
+    const bool counts = limit.isLimited() && !limit.isTimed();
+    const std::int64_t most = counts ? maximumRequests : this->Bricks.capacity();
+    const auto inTime = [&] { return !limit.endsWithin(0); };
+    while (!this->done()) {
+      RequireGoingOn(keepGoing);
+      this->Bricks.beginFrame();
+      const bool wait = this->advance(kernel);
+      if (!inTime() && cameFurther()) {
+        this->Bricks.forgetRequests();
+        return;
       }
-    });
+      if (wait) {
+        this->load(most, [&] { return counts || inTime(); });
+      }
+    }
   }
 
 private:
   using Rays = typename Machine::template Array<Progress>;
 
-  template <class Kernel, class Run>
-  void forEachWindow(Kernel& kernel, const RayOrder& order, const Run& run)
+  void beginWindow()
   {
-    const std::int64_t rays = order.rays();
-    this->reserve(std::min(rays, this->Most));
-    kernel.progress = this->Room->data();
-    for (std::int64_t first = 0; first < rays; first += this->Most) {
-      this->Waiting = std::min(this->Most, rays - first);
-      this->Turns->beginWindow(order, first, this->Waiting);
-      kernel.cache = this->Bricks.view();
-      run(kernel);
-    }
+    this->Waiting = std::min(this->Most, this->Order.rays() - this->First);
+    this->Turns->beginWindow(this->Order, this->First, this->Waiting);
   }
 
-  /// What the waiting rays want. If bricks that the others have just used leave no room, fewer go
-  /// on at once, and in the end a single ray, whose next sample has what it needs when nothing else
-  /// is there.
-  void load()
+  /// The present window's rays, as far as they come; whether any of them wait. If none do, it is
+  /// the next window's turn.
+  template <class Kernel> bool advance(Kernel kernel)
   {
-    const auto loaded = this->Bricks.load(this->Bricks.capacity(), true);
+    kernel.progress = this->Room->data();
+    kernel.cache = this->Bricks.view();
+    this->Turns->run(kernel);
+    if (this->Turns->waiting() > 0) {
+      return true;
+    }
+    this->First += this->Most;
+    if (!this->done()) {
+      this->beginWindow();
+    }
+    return false;
+  }
+
+  /// What the waiting rays want, at most so many bricks, as long as there is time for more. If
+  /// bricks that the others have just used leave no room, fewer go on at once, and in the end a
+  /// single ray, whose next sample has what it needs when nothing else is there.
+  void load(std::int64_t most, const std::function<bool()>& goesOn)
+  {
+    const auto loaded = this->Bricks.load(most, true, goesOn);
     const std::int64_t atOnce = this->Turns->limit();
     if (loaded.loaded == 0 && atOnce == 1) {
       this->Bricks.clear();
@@ -104,6 +134,8 @@ private:
   Machine& Where;
   Cache& Bricks;
   std::int64_t Most;
+  RayOrder Order{};
+  std::int64_t First = 0;   ///< ray of the window
   std::int64_t Waiting = 0; ///< rays of the window, when bricks were last loaded
   std::optional<Rays> Room;
   std::optional<RayTurns<Machine>> Turns;

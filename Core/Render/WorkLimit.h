@@ -16,7 +16,7 @@ namespace inr {
 ///   the cache holds,
 /// - whether the field is measured further for an error tolerance,
 /// - how many rounds of paths are traced and, where the network is asked what they meet, through
-///   how many tiles.
+///   how many tiles or, by an accelerator whose cache is too small, how far they get.
 /// Counted, it is one pass, CacheOptions::maximumRequests bricks at most (so many for each pass
 /// that brings rays no further), and one round through all tiles that are not finished.
 ///

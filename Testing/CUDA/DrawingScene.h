@@ -164,7 +164,20 @@ inline void SkipUnlessThere(Place place)
   }
 }
 
-/// Tests of cases in every place; skipped, with the reason, where there is no GPU.
+/// Tests in every place; skipped, with the reason, where there is no GPU.
+class InAPlace : public testing::TestWithParam<Place>
+{
+public:
+  static std::string nameOf(const testing::TestParamInfo<Place>& info)
+  {
+    return info.param == Place::Host ? "Host" : "Gpu";
+  }
+
+protected:
+  void SetUp() override { SkipUnlessThere(GetParam()); }
+};
+
+/// The same, of cases.
 class CaseInAPlace : public testing::TestWithParam<std::tuple<Place, Case>>
 {
 public:

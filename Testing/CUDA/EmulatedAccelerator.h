@@ -61,13 +61,14 @@ protected:
   template <class Machine, class Where>
   std::shared_ptr<inr::AcceleratedRenderer>
   makeRendererOn(const Where& where, const inr::ModelPointer& model, const glm::i64vec3& dims,
-                 const inr::CacheOptions& options) const
+                 const inr::CacheOptions& options, const inr::cuda::WindowSizes& sizes = {}) const
   {
     using Cache = inr::cuda::DeviceCache<Machine, EmulatedInference>;
     auto store = std::make_shared<inr::cuda::DeviceStore<Machine, Cache>>(
         where, EmulatedInference(this->on(model)), inr::Hierarchy(dims, options.brickSize),
         options.precision, this->Bytes > 0 ? this->Bytes : options.bytes);
-    return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options);
+    return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options,
+                                                                       sizes);
   }
   template <class Machine, class Where>
   std::shared_ptr<inr::AcceleratedRenderer>

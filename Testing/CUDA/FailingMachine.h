@@ -12,6 +12,7 @@ struct FailingOrders
 {
   int failsAt = std::numeric_limits<int>::max(); ///< that order and all that follow; 0 = the first
   int orders = 0;                                ///< so far
+  int kernels = 0;                               ///< of these, that were run
   bool lies = false; ///< what is copied to the host is not what there is
 };
 
@@ -45,6 +46,7 @@ public:
   void run(const Kernel& kernel, std::int64_t items, std::int64_t sharedBytes = 0) const
   {
     this->order();
+    ++this->Orders->kernels;
     this->HostMachine::run(kernel, items, sharedBytes);
   }
 

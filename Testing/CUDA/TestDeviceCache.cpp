@@ -72,6 +72,26 @@ TEST(DeviceCache, SaysThatWishesOverflowed)
   EXPECT_EQ(cache.load(4, true).requested, 0);
 }
 
+TEST(DeviceCache, LoadsAsLongAsItMay)
+{
+  const Hierarchy levels({50, 40, 30}, 6);
+  HostMachine machine;
+  RuledCache cache(machine, {}, levels, CachePrecision::Float32, 64 << 10);
+  const std::vector<BrickKey> keys = DifferentBricks(levels, 40);
+  Ask(machine, cache.view(), WishesFor(keys));
+  int asked = 0;
+  const std::int64_t loaded = cache.load(40, true, [&] { return ++asked < 3; }).loaded;
+  EXPECT_EQ(asked, 3);
+  Ask(machine, cache.view(), WishesFor(keys));
+  const std::int64_t once = cache.load(40, true, [] { return false; }).loaded;
+  EXPECT_GT(once, 0); // one launch's
+  EXPECT_EQ(loaded, 3 * once);
+  EXPECT_EQ(cache.load(40, true).requested, 0); // the others are forgotten
+  Ask(machine, cache.view(), WishesFor(keys));
+  cache.forgetRequests();
+  EXPECT_EQ(cache.load(40, true).requested, 0);
+}
+
 /// Memory follows the bricks that there are, not those of the volume.
 TEST(DeviceCache, HoldsBricksOfTheLargestVolume)
 {

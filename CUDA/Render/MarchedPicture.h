@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "CUDA/Render/DevicePicture.h"
+#include "CUDA/Render/DeviceScene.h"
+#include "CUDA/Render/Kernels/MarchKernels.h"
+#include "CUDA/Render/WindowedRays.h"
+#include "Core/Render/CachedRenderer.h"
+#include "Core/Render/Timer.h"
+#include "Core/Render/WorkLimit.h"
+
+#include <cstdint>
+#include <functional>
+
+namespace inr {
+namespace cuda {
+
+/// A ray-marched picture on a machine: its scene, its rays and its pixels.
+template <class Machine, class Cache> class MarchedPicture
+{
+public:
+  /// `most`: rays that wait at once.
+  MarchedPicture(Machine& machine, Cache& cache, std::int64_t most)
+      : Where(machine), Bricks(cache), Pixels(machine),
+        Scene(machine.template allocate<RenderScene>(1)), Rays(machine, cache, most)
+  {}
+
+  /// A frame's scene. `steps`: its entries are on the machine, and outlive the picture.
+  void setScene(const MarchJob& job, const DeviceColors<Machine>& colors, const StepLookup& steps)
+  {
+    this->Arrays.clear();
+    RenderScene scene = SceneOn(this->Where, job, colors, this->Arrays);
+    scene.steps = steps;
+    this->Where.toMachine(this->Scene.data(), &scene, 1);
+    this->Order = {job.frame.width, job.frame.height, nullptr, 0};
+    this->Pixels.resize(std::int64_t{job.frame.width} * job.frame.height);
+  }
+
+  /// All rays once, with the bricks that are there.
+  FrameStatistics marchOnce(OnMiss onMiss)
+  {
+    return this->counted(
+        [&](const MarchRays& kernel) {
+          this->Bricks.beginFrame();
+          this->Rays.runOnce(kernel, this->Order);
+        },
+        onMiss);
+  }
+
+  /// From here on every ray goes on until it has come to its end with the bricks that it asks for.
+  void begin() { this->Rays.begin(this->Order); }
+  /// As far as `limit`, since begin.
+  FrameStatistics goOn(const WorkLimit& limit, int maximumRequests,
+                       const std::function<bool()>& keepGoing)
+  {
+    return this->counted(
+        [&](const MarchRays& kernel) {
+          this->Rays.goOn(kernel, limit, maximumRequests, keepGoing,
+                          [&] { return this->Pixels.statistics().samples > 0; });
+        },
+        OnMiss::Stop);
+  }
+  bool done() const { return this->Rays.done(); }
+
+  void copyTo(const PassOutput& output) const
+  {
+    this->Pixels.copyTo(output.rgba.pixels.data(),
+                        output.depth != nullptr ? output.depth->pixels.data() : nullptr,
+                        output.samples != nullptr ? output.samples->pixels.data() : nullptr);
+  }
+
+private:
+  /// Runs march(kernel); what was counted meanwhile.
+  template <class March> FrameStatistics counted(const March& march, OnMiss onMiss)
+  {
+    const Timer timer;
+    MarchRays kernel{};
+    kernel.scene = this->Scene.data();
+    kernel.onMiss = onMiss;
+    kernel.picture = this->Pixels.view();
+    kernel.counts = this->Pixels.counts();
+    this->Pixels.clearCounts();
+    march(kernel);
+    FrameStatistics statistics = this->Pixels.statistics();
+    statistics.marchSeconds = timer.seconds();
+    return statistics;
+  }
+
+  Machine& Where;
+  Cache& Bricks;
+  DevicePicture<Machine> Pixels;
+  typename Machine::template Array<RenderScene> Scene;
+  Belongings<Machine> Arrays; ///< of the scene
+  WindowedRays<Machine, Cache, RayProgress> Rays;
+  RayOrder Order{};
+};
+
+} // namespace cuda
+} // namespace inr

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Pictures of more bricks than their cache on the device holds.
+#pragma once
+
+#include "Testing/CUDA/DrawingScene.h"
+
+#include <algorithm>
+#include <memory>
+
+constexpr int SmallBrick = 5; ///< of which the model has more than a hundred
+
+/// Bytes of a device's cache that holds so many, beside what infers.
+inline std::int64_t BytesFor(std::int64_t bricks, std::int64_t inference)
+{
+  const inr::Hierarchy levels(TrainedModel()->volume.dims, SmallBrick);
+  std::int64_t bytes = 1000;
+  while (true) {
+    try {
+      const auto precision = inr::CachePrecision::Bits16;
+      if (inr::cuda::LayOutCache(levels, precision, bytes, inference).capacity >= bricks) {
+        return bytes;
+      }
+    } catch (const inr::Error&) { // less than it must have
+    }
+    bytes += 100;
+  }
+}
+
+/// With a cache for so many on the device; 0: for all.
+inline inr::RendererOptions RoomFor(Place place, std::int64_t bricks, HostLaunch launch = {})
+{
+  inr::RendererOptions options = OptionsWith(DeviceIn(place));
+  options.cache.brickSize = SmallBrick;
+  if (bricks > 0 && place == Place::Gpu) { // where inferring takes something, and the CPU's is no
+    const std::int64_t oneBlock = 128 * 2 * 64 * 4; // smaller: threads, sides, neurons, bytes
+    options.cache.bytes = BytesFor(std::max<std::int64_t>(bricks, 32), oneBlock);
+  } else if (bricks > 0) {
+    options.accelerator = std::make_shared<EmulatedAccelerator>(
+        inr::cuda::Precision::Float32, Duty::InfersAndDraws, launch, BytesFor(bricks, 0));
+  }
+  return options;
+}
+
+inline inr::Frame FullResolution(inr::RenderMode mode)
+{
+  inr::Frame frame = PlainFrame();
+  frame.mode = mode;
+  frame.samplesPerPixel = 1;
+  frame.levelOfDetailScale = 0;
+  frame.width = 16;
+  frame.height = 12;
+  return frame;
+}
+
+/// As often as it takes.
+inline inr::Image Finish(inr::Renderer& renderer, const inr::Frame& frame, int& calls)
+{
+  inr::Image image;
+  calls = 1;
+  while (!renderer.render(frame, image).complete && calls < 1000) {
+    ++calls;
+  }
+  return image;
+}

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Pictures that want more bricks than their cache on the device holds, in a limited time: they come
+// piece by piece, over several calls.
+#include "Testing/CUDA/FailingMachine.h"
+#include "Testing/CUDA/SmallCache.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace {
+
+constexpr double Hurry = 1e-9;  ///< s: a call brings some ray further, and no more
+constexpr int MostCalls = 2000; ///< that any of these pictures takes
+constexpr inr::RenderMode Modes[] = {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing};
+
+inr::Frame Hurried(inr::Frame frame)
+{
+  frame.timeLimit = Hurry;
+  return frame;
+}
+
+inr::Frame LitFrame(inr::RenderMode mode)
+{
+  inr::Frame frame = FullResolution(mode);
+  frame.shading = inr::Material();
+  LightUp(frame);
+  return frame;
+}
+
+/// Of the same size, from elsewhere.
+inr::Frame OtherFrame(inr::RenderMode mode)
+{
+  inr::Frame frame = FullResolution(mode);
+  frame.clipToWorld[0][0] *= 1.1;
+  return frame;
+}
+
+/// Pixels that show neither what they showed `before` nor what they are to show in the end.
+int PixelsInBetween(const inr::Image& now, const inr::Image& before, const inr::Image& end)
+{
+  int others = 0;
+  for (std::size_t k = 0; k < now.pixels.size(); k += 4) {
+    const auto is = [&](const inr::Image& other) {
+      return std::equal(now.pixels.begin() + static_cast<std::ptrdiff_t>(k),
+                        now.pixels.begin() + static_cast<std::ptrdiff_t>(k + 4),
+                        other.pixels.begin() + static_cast<std::ptrdiff_t>(k));
+    };
+    others += is(before) || is(end) ? 0 : 1;
+  }
+  return others;
+}
+
+/// Draws until a picture waits for more than the cache holds; what there is of it.
+inr::FrameStatistics Begin(inr::Renderer& renderer, const inr::Frame& frame, inr::Image& image)
+{
+  inr::FrameStatistics statistics;
+  int calls = 0;
+  do {
+    statistics = renderer.render(frame, image);
+  } while (statistics.missed > 0 && ++calls < MostCalls);
+  EXPECT_FALSE(statistics.complete);
+  return statistics;
+}
+
+/// Draws what a few calls bring.
+void DrawSome(inr::Renderer& renderer, const inr::Frame& frame)
+{
+  inr::Image image;
+  for (int call = 0; call < 20; ++call) {
+    EXPECT_FALSE(renderer.render(frame, image).complete) << call;
+  }
+}
+
+/// Draws until a picture is complete.
+inr::FrameStatistics End(inr::Renderer& renderer, const inr::Frame& frame, inr::Image& image)
+{
+  inr::FrameStatistics statistics;
+  int calls = 0;
+  do {
+    statistics = renderer.render(frame, image);
+  } while (!statistics.complete && ++calls < MostCalls);
+  EXPECT_TRUE(statistics.complete);
+  return statistics;
+}
+
+class OverfullDrawing : public InAPlace
+{};
+
+INSTANTIATE_TEST_SUITE_P(Kernels, OverfullDrawing, testing::Values(Place::Host, Place::Gpu),
+                         InAPlace::nameOf);
+
+/// Every sample is taken once, and what is finished is final.
+TEST_P(OverfullDrawing, GoesOnWithTheSameRays)
+{
+  for (const inr::Frame& frame :
+       {FullResolution(inr::RenderMode::RayMarching), LitFrame(inr::RenderMode::RayMarching)}) {
+    const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
+    inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+    inr::Image image;
+    inr::FrameStatistics now = Begin(renderer, Hurried(frame), image);
+    std::int64_t gradients = now.work.gradients;
+    int calls = 1;
+    for (; !now.complete && calls < MostCalls; ++calls) {
+      const inr::Image before = image;
+      const std::int64_t samples = now.samples;
+      now = renderer.render(Hurried(frame), image);
+      gradients += now.work.gradients;
+      EXPECT_GE(now.samples, samples);
+      EXPECT_LE(now.rays, truth.statistics.rays);
+      EXPECT_EQ(PixelsInBetween(image, before, truth.rgba), 0);
+    }
+    EXPECT_GT(calls, 5);
+    EXPECT_TRUE(now.complete);
+    EXPECT_EQ(image.pixels, truth.rgba.pixels);
+    EXPECT_EQ(now.samples, truth.statistics.samples);
+    EXPECT_EQ(now.rays, truth.statistics.rays);
+    EXPECT_EQ(gradients, truth.statistics.work.gradients);
+  }
+}
+
+TEST_P(OverfullDrawing, EndsAtOnceWithoutALimit)
+{
+  for (const inr::RenderMode mode : Modes) {
+    const inr::Frame frame = FullResolution(mode);
+    const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
+    inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+    DrawSome(renderer, Hurried(frame));
+    inr::Image image;
+    EXPECT_TRUE(renderer.render(frame, image).complete);
+    EXPECT_EQ(image.pixels, truth.rgba.pixels);
+  }
+}
+
+TEST_P(OverfullDrawing, BeginsAnewForOtherPicturesAndColours)
+{
+  for (const inr::RenderMode mode : Modes) {
+    inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+    inr::Image image;
+    DrawSome(renderer, Hurried(FullResolution(mode)));
+    End(renderer, Hurried(OtherFrame(mode)), image);
+    EXPECT_EQ(image.pixels, Draw(OtherFrame(mode), RoomFor(GetParam(), 0)).rgba.pixels);
+
+    DrawSome(renderer, Hurried(FullResolution(mode)));
+    inr::TransferFunction colours = ColoursOf(TrainedModel()->volume);
+    for (glm::vec4& color : colours.table) {
+      std::swap(color.x, color.z);
+    }
+    renderer.setTransferFunction(colours);
+    End(renderer, Hurried(FullResolution(mode)), image);
+    inr::Renderer whole = RendererOf(RoomFor(GetParam(), 0));
+    whole.setTransferFunction(colours);
+    inr::Image truth;
+    whole.render(FullResolution(mode), truth);
+    EXPECT_EQ(image.pixels, truth.pixels);
+  }
+}
+
+/// Those that are drawn without a limit are not what somebody looks at: the small ones that prove
+/// a kind of pictures, for one.
+TEST_P(OverfullDrawing, GoesOnBehindAPictureInBetween)
+{
+  const inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
+  inr::Frame small = OtherFrame(inr::RenderMode::RayMarching);
+  small.width = small.height = 8;
+  const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
+  const Drawn smallTruth = Draw(small, RoomFor(GetParam(), 0));
+  inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+  inr::Image image;
+  std::int64_t samples = Begin(renderer, Hurried(frame), image).samples;
+  inr::FrameStatistics now;
+  for (int calls = 0; !now.complete || calls == 0; ++calls) {
+    ASSERT_LT(calls, MostCalls);
+    renderer.render(small, image);
+    EXPECT_EQ(image.pixels, smallTruth.rgba.pixels);
+    now = renderer.render(Hurried(frame), image);
+    EXPECT_GE(now.samples, samples);
+    samples = now.samples;
+  }
+  EXPECT_EQ(image.pixels, truth.rgba.pixels);
+  EXPECT_EQ(now.samples, truth.statistics.samples);
+}
+
+/// Whose samples are as far apart as those of no other: what is made of colours for them goes.
+TEST_P(OverfullDrawing, BeginsAnewBehindOneOfOtherDistances)
+{
+  const inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
+  inr::Frame small = OtherFrame(inr::RenderMode::RayMarching);
+  small.width = small.height = 8;
+  small.sampleDistance = 0.5;
+  inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+  inr::Image image;
+  Begin(renderer, Hurried(frame), image);
+  DrawSome(renderer, Hurried(frame));
+  renderer.render(small, image);
+  End(renderer, Hurried(frame), image);
+  EXPECT_EQ(image.pixels, Draw(frame, RoomFor(GetParam(), 0)).rgba.pixels);
+}
+
+TEST_P(OverfullDrawing, GoesOnWhenItWasStopped)
+{
+  for (const inr::RenderMode mode : Modes) {
+    const inr::Frame frame = FullResolution(mode);
+    inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+    DrawSome(renderer, Hurried(frame));
+    inr::Image image;
+    for (int call = 0; call < 3; ++call) {
+      renderer.render(Hurried(frame), image);
+      int asked = 0;
+      const auto stopAfterOne = [&] { return asked++ < 1; };
+      EXPECT_THROW(renderer.render(frame, image, nullptr, stopAfterOne), inr::Error) << call;
+    }
+    End(renderer, Hurried(frame), image);
+    EXPECT_EQ(image.pixels, Draw(frame, RoomFor(GetParam(), 0)).rgba.pixels);
+  }
+}
+
+/// Paths that nobody waited for any longer, when nothing was known of the cache's size.
+TEST_P(OverfullDrawing, GoesOnInTimeWithWhatWasStopped)
+{
+  inr::Frame frame = FullResolution(inr::RenderMode::PathTracing);
+  frame.samplesPerPixel = 3;
+  const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
+  for (int most = 1; most < 100; most += 13) {
+    inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+    inr::Image image;
+    int asked = 0;
+    const auto stopAfterSome = [&] { return asked++ < most; };
+    EXPECT_THROW(renderer.render(frame, image, nullptr, stopAfterSome), inr::Error) << most;
+    End(renderer, Hurried(frame), image);
+    EXPECT_EQ(image.pixels, truth.rgba.pixels) << most;
+  }
+}
+
+using WatchedCache = inr::cuda::DeviceCache<FailingMachine, EmulatedInference>;
+using WatchedStore = inr::cuda::DeviceStore<FailingMachine, WatchedCache>;
+
+/// Draws through a cache of few bricks, which all of its renderers share, with a few rays at once,
+/// on a machine that counts.
+class WatchedAccelerator : public EmulatedAccelerator
+{
+public:
+  explicit WatchedAccelerator(std::shared_ptr<FailingOrders> orders)
+      : EmulatedAccelerator(inr::cuda::Precision::Float32, Duty::InfersAndDraws),
+        Orders(std::move(orders))
+  {}
+
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeRenderer(const inr::ModelPointer& model, const glm::i64vec3& dims,
+               const inr::CacheOptions& options) const override
+  {
+    if (!this->Store) {
+      const EmulatedInference inference(
+          std::make_shared<EmulatedModel>(model, inr::cuda::Precision::Float32, HostLaunch()));
+      this->Store = std::make_shared<WatchedStore>(this->Orders, inference,
+                                                   inr::Hierarchy(dims, options.brickSize),
+                                                   options.precision, BytesFor(20, 0));
+    }
+    return std::make_shared<inr::cuda::DeviceRenderer<FailingMachine, WatchedCache>>(
+        this->Store, options, inr::cuda::WindowSizes{50, 40});
+  }
+
+  WatchedCache& cache() const { return this->Store->cache; }
+
+private:
+  std::shared_ptr<FailingOrders> Orders;
+  mutable std::shared_ptr<WatchedStore> Store;
+};
+
+inr::RendererOptions Watched(std::shared_ptr<const WatchedAccelerator> accelerator)
+{
+  inr::RendererOptions options = OptionsWith(std::move(accelerator));
+  options.cache.brickSize = SmallBrick;
+  return options;
+}
+
+inr::RendererOptions Watched(std::shared_ptr<FailingOrders> orders)
+{
+  return Watched(std::make_shared<const WatchedAccelerator>(std::move(orders)));
+}
+
+TEST(WatchedDrawing, KeepsToItsTimeInWindowsToo)
+{
+  for (const inr::RenderMode mode : Modes) {
+    const inr::Frame frame = LitFrame(mode);
+    const auto whole = std::make_shared<FailingOrders>();
+    const Drawn truth = Draw(frame, Watched(whole));
+    EXPECT_EQ(truth.rgba.pixels, Draw(frame, RoomFor(Place::Host, 0)).rgba.pixels);
+    const auto orders = std::make_shared<FailingOrders>();
+    const auto accelerator = std::make_shared<const WatchedAccelerator>(orders);
+    inr::Renderer renderer = RendererOf(Watched(accelerator));
+    DrawSome(renderer, Hurried(frame));
+    inr::Image image;
+    int most = 0;
+    int calls = 0;
+    for (bool complete = false; !complete && calls < MostCalls; ++calls) {
+      const int before = orders->kernels;
+      complete = renderer.render(Hurried(frame), image).complete;
+      most = std::max(most, orders->kernels - before);
+      EXPECT_EQ(accelerator->cache().load(1, true).requested, 0) << "and wishes are left";
+    }
+    EXPECT_EQ(image.pixels, truth.rgba.pixels);
+    std::cout << calls << " calls of " << most << " kernels at most, of " << whole->kernels << "\n";
+    EXPECT_LT(20 * most, whole->kernels);
+  }
+}
+
+/// A counted call brings so many bricks for each pass that brings rays no further.
+TEST(WatchedDrawing, TakesMoreCallsWhereEachMayBringLess)
+{
+  int calls[2] = {0, 0};
+  for (const int k : {0, 1}) {
+    inr::RendererOptions options = Watched(std::make_shared<FailingOrders>());
+    options.deterministic = true;
+    options.cache.maximumRequests = k == 0 ? 1 : 15;
+    inr::Renderer renderer = RendererOf(options);
+    Finish(renderer, Hurried(FullResolution(inr::RenderMode::RayMarching)), calls[k]);
+  }
+  std::cout << calls[0] << " and " << calls[1] << " calls\n";
+  EXPECT_GT(calls[0], 3 * calls[1]);
+}
+
+TEST(WatchedDrawing, IsNotDrawnAgainWhenItIsFinished)
+{
+  const inr::Frame frame = LitFrame(inr::RenderMode::RayMarching);
+  const auto orders = std::make_shared<FailingOrders>();
+  inr::Renderer renderer = RendererOf(Watched(orders));
+  inr::Image image;
+  inr::Image depth;
+  inr::Image samples;
+  const inr::FrameStatistics ended = End(renderer, Hurried(frame), image);
+  const inr::Image truth = image;
+  for (const double limit : {Hurry, 10.0, 0.0}) {
+    const int before = orders->kernels;
+    inr::Frame again = frame;
+    again.timeLimit = limit;
+    const inr::FrameStatistics now = renderer.render(again, image, &depth, {}, &samples);
+    EXPECT_EQ(orders->kernels, before);
+    EXPECT_TRUE(now.complete);
+    EXPECT_EQ(now.samples, ended.samples);
+    EXPECT_EQ(now.work.gradients, 0);
+    EXPECT_EQ(image.pixels, truth.pixels);
+  }
+  const Drawn whole = Draw(frame, Watched(orders));
+  EXPECT_EQ(depth.pixels, whole.depth.pixels);
+  EXPECT_EQ(samples.pixels, whole.samples.pixels);
+}
+
+/// Each takes away what the other has just brought.
+TEST(WatchedDrawing, ComesToItsEndBesideAnotherInTheSameCache)
+{
+  for (const inr::RenderMode mode : Modes) {
+    const auto orders = std::make_shared<FailingOrders>();
+    const inr::RendererOptions options = Watched(orders);
+    inr::Renderer renderers[2] = {RendererOf(options), RendererOf(options)};
+    const inr::Frame frames[2] = {LitFrame(mode), OtherFrame(mode)};
+    inr::Image images[2];
+    bool complete[2] = {false, false};
+    for (int calls = 0; !(complete[0] && complete[1]); ++calls) {
+      ASSERT_LT(calls, MostCalls);
+      for (int k = 0; k < 2; ++k) {
+        complete[k] = renderers[k].render(Hurried(frames[k]), images[k]).complete;
+      }
+    }
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_EQ(images[k].pixels, Draw(frames[k], RoomFor(Place::Host, 0)).rgba.pixels) << k;
+    }
+  }
+}
+
+} // namespace
