@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-//   bench_cuda            samples per second of points and bricks on this machine's GPU, as JSON
+//   bench_cuda            samples per second of points and bricks on this machine's GPU, one JSON
+//                         object per line: the device, what it does at most, results
 //   bench_cuda --device   its name, and nothing else
 //
 // Ends with status 77 where there is no GPU, and says why. cuda.py writes the result file.
@@ -208,19 +209,26 @@ json BenchBricks(const std::shared_ptr<const DeviceModel>& model, int level)
   return {result, whole};
 }
 
-json BenchAll(const Device& device)
+void Print(const json& line) { std::cout << line << std::endl; }
+
+/// Prints what there is as it comes: something may fail behind it.
+void BenchAll(const Device& device)
 {
   const CurrentDevice current(device.ordinal);
+  Print({{"device", DescribeDevice(device)}});
+  Print({{"ceilings", Ceilings(device)}});
   const inr::ModelPointer model = RandomModel(DefaultDescription());
-  json results = json::array();
+  const auto printAll = [](const json& results) {
+    for (const json& result : results) {
+      Print(result);
+    }
+  };
   for (const Precision precision : {Precision::Half, Precision::Float32}) {
     const auto uploaded = UploadModel(model, device, precision);
-    for (const json& some :
-         {BenchPoints(uploaded), BenchBricks(uploaded, 0), BenchBricks(uploaded, 1)}) {
-      results.insert(results.end(), some.begin(), some.end());
-    }
+    printAll(BenchPoints(uploaded));
+    printAll(BenchBricks(uploaded, 0));
+    printAll(BenchBricks(uploaded, 1));
   }
-  return {{"device", DescribeDevice(device)}, {"ceilings", Ceilings(device)}, {"results", results}};
 }
 
 } // namespace
@@ -236,7 +244,7 @@ int main(int argc, char** argv)
     if (argc > 1 && std::strcmp(argv[1], "--device") == 0) {
       std::cout << devices.usable[0].name << "\n";
     } else {
-      std::cout << BenchAll(devices.usable[0]).dump(1) << "\n";
+      BenchAll(devices.usable[0]);
     }
     return 0;
   } catch (const inr::Error& error) {

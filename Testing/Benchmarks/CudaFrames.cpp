@@ -111,7 +111,7 @@ inr::Image Compare(const inr::ModelPointer& model, const Look& look, const Engin
                    bool traced)
 {
   const std::string kind = traced ? "PT" : "RM";
-  const std::string where = ", " + look.name + ", " + engine.name;
+  const std::string where = " " + look.name + ", " + engine.name; // as bench_cache has it
   const inr::Frame frame = FrameFor(model, traced);
   inr::Renderer cached = RendererFor(model, look, engine, true);
   inr::Image first;
@@ -156,7 +156,7 @@ void BenchLarge(const inr::ModelPointer& model, const Engine& gpu)
 {
   const inr::ModelPointer large = Scaled(model, glm::i64vec3(4096));
   for (const Look& look : Looks(large->volume)) {
-    const std::string where = ", 4096^3, " + look.name;
+    const std::string where = " 4096^3 " + look.name + ", " + gpu.name;
     inr::Renderer renderer = RendererFor(large, look, gpu, true);
     inr::Image picture;
     std::vector<double> times;
@@ -175,7 +175,8 @@ void BenchLarge(const inr::ModelPointer& model, const Engine& gpu)
     inr::Frame still = View(large->volume);
     still.width = still.height = Edge;
     const Timed timed = Frames(renderer, still, 30);
-    Report("frames per second 4096" + where, 1 / timed.seconds, "frames/s", "higher", Target(100));
+    Report("frames per second 4096 " + look.name + ", " + gpu.name, 1 / timed.seconds, "frames/s",
+           "higher", Target(100));
   }
 }
 
@@ -185,7 +186,7 @@ void Bench(const inr::ModelPointer& model, const Engine& gpu)
     for (const bool traced : {false, true}) {
       const inr::Image pictures[2] = {Compare(model, look, gpu, traced),
                                       Compare(model, look, {"CPU", nullptr}, traced)};
-      Report(std::string("picture ") + (traced ? "PT" : "RM") + ", " + look.name +
+      Report(std::string("picture ") + (traced ? "PT " : "RM ") + look.name +
                  ", the GPU's beside the CPU's",
              Likeness(pictures[0], pictures[1]), "dB", "higher", Target(50));
     }
