@@ -115,12 +115,9 @@ std::shared_ptr<const Accelerator> MakeAccelerator(const Device& device, Precisi
 FoundAccelerator FindAccelerator(int localRank)
 {
   const Devices devices = FindDevices();
-  if (devices.usable.empty()) {
-    return {nullptr, devices.reason};
-  }
-  return {SharedAccelerator(
-              devices.usable[static_cast<std::size_t>(localRank) % devices.usable.size()]),
-          ""};
+  const Device* const device = devices.of(localRank);
+  return device != nullptr ? FoundAccelerator{SharedAccelerator(*device), ""}
+                           : FoundAccelerator{nullptr, devices.reason};
 }
 
 } // namespace cuda

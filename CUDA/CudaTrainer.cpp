@@ -34,11 +34,9 @@ std::shared_ptr<const TrainingAccelerator> MakeTrainer(const Device& device)
 FoundTrainer FindTrainer(int localRank)
 {
   const Devices devices = FindDevices();
-  if (devices.usable.empty()) {
-    return {nullptr, devices.reason};
-  }
-  return {MakeTrainer(devices.usable[static_cast<std::size_t>(localRank) % devices.usable.size()]),
-          ""};
+  const Device* const device = devices.of(localRank);
+  return device != nullptr ? FoundTrainer{MakeTrainer(*device), ""}
+                           : FoundTrainer{nullptr, devices.reason};
 }
 
 } // namespace cuda

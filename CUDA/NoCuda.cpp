@@ -18,8 +18,6 @@ constexpr const char* Reason = "this build has no CUDA part: it was configured w
 
 Devices FindDevices() { return {{}, Reason}; }
 
-Device ChooseDevice(int) { Refuse(); }
-
 std::shared_ptr<const DeviceModel> UploadModel(ModelPointer, const Device&, Precision) { Refuse(); }
 
 std::shared_ptr<const Evaluator> MakeEvaluator(std::shared_ptr<const DeviceModel>) { Refuse(); }

@@ -124,14 +124,5 @@ Devices FindDevices()
   return devices;
 }
 
-Device ChooseDevice(int localRank)
-{
-  const Devices devices = FindDevices();
-  if (devices.usable.empty()) {
-    throw Error(ErrorCode::Device, devices.reason);
-  }
-  return devices.usable[static_cast<std::size_t>(localRank) % devices.usable.size()];
-}
-
 } // namespace cuda
 } // namespace inr

@@ -29,6 +29,10 @@ struct Devices
 {
   std::vector<Device> usable;
   std::string reason; ///< empty where all can be used
+
+  /// That of the `localRank`-th process on this machine, which take turns; null where there is
+  /// none.
+  const Device* of(int localRank) const;
 };
 Devices FindDevices();
 
@@ -37,8 +41,7 @@ Devices FindDevices();
 /// and code for a virtual one, which the driver translates, on all that are no older.
 bool HasCode(const std::string& targets, int capability);
 
-/// The device of the `localRank`-th process on this machine. Throws Error(Device) with the reason
-/// where there is none.
+/// Devices::of what there is. Throws Error(Device) with the reason where there is none.
 Device ChooseDevice(int localRank = 0);
 
 } // namespace cuda

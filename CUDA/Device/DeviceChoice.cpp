@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/Device/Device.h"
+#include "Core/Error.h"
 
 #include <sstream>
 
@@ -18,6 +19,23 @@ bool HasCode(const std::string& targets, int capability)
     }
   }
   return false;
+}
+
+const Device* Devices::of(int localRank) const
+{
+  return this->usable.empty()
+             ? nullptr
+             : &this->usable[static_cast<std::size_t>(localRank) % this->usable.size()];
+}
+
+Device ChooseDevice(int localRank)
+{
+  const Devices devices = FindDevices();
+  const Device* const device = devices.of(localRank);
+  if (device == nullptr) {
+    throw Error(ErrorCode::Device, devices.reason);
+  }
+  return *device;
 }
 
 } // namespace cuda
