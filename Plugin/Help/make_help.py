@@ -25,6 +25,7 @@ TOPICS = (
     "Filters and exact pictures",
     "With a server",
     "In Python",
+    "With an NVIDIA GPU",
     "What it does not do yet",
     "Troubleshooting",
 )
