@@ -156,35 +156,13 @@ inline std::shared_ptr<const inr::Accelerator> DeviceIn(Place place)
   return place == Place::Gpu ? inr::cuda::MakeAccelerator(inr::cuda::ChooseDevice()) : Device();
 }
 
-inline void SkipUnlessThere(Place place)
-{
-  const inr::cuda::Devices devices = inr::cuda::FindDevices();
-  if (place == Place::Gpu && devices.usable.empty()) {
-    GTEST_SKIP() << devices.reason;
-  }
-}
-
-/// Tests in every place; skipped, with the reason, where there is no GPU.
-class InAPlace : public testing::TestWithParam<Place>
-{
-public:
-  static std::string nameOf(const testing::TestParamInfo<Place>& info)
-  {
-    return info.param == Place::Host ? "Host" : "Gpu";
-  }
-
-protected:
-  void SetUp() override { SkipUnlessThere(GetParam()); }
-};
-
-/// The same, of cases.
+/// Tests of cases in every place.
 class CaseInAPlace : public testing::TestWithParam<std::tuple<Place, Case>>
 {
 public:
   static std::string nameOf(const testing::TestParamInfo<std::tuple<Place, Case>>& info)
   {
-    return std::string(std::get<0>(info.param) == Place::Host ? "Host" : "Gpu") +
-           std::get<1>(info.param).name;
+    return std::string(TextOf(std::get<0>(info.param))) + std::get<1>(info.param).name;
   }
 
 protected:

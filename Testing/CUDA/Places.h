@@ -16,6 +16,30 @@
 
 enum class Place { Host, Gpu };
 
+inline const char* TextOf(Place place) { return place == Place::Host ? "Host" : "Gpu"; }
+
+/// The last thing that SetUp does: skips, with the reason, where there is no such place.
+inline void SkipUnlessThere(Place place)
+{
+  const inr::cuda::Devices devices = inr::cuda::FindDevices();
+  if (place == Place::Gpu && devices.usable.empty()) {
+    GTEST_SKIP() << devices.reason;
+  }
+}
+
+/// Tests that run in every place.
+class InAPlace : public testing::TestWithParam<Place>
+{
+public:
+  static std::string nameOf(const testing::TestParamInfo<Place>& info)
+  {
+    return TextOf(info.param);
+  }
+
+protected:
+  void SetUp() override { SkipUnlessThere(GetParam()); }
+};
+
 struct Setting
 {
   Place place;
@@ -26,8 +50,7 @@ struct Setting
 
 inline std::ostream& operator<<(std::ostream& stream, const Setting& setting)
 {
-  return stream << (setting.place == Place::Host ? "Host" : "Gpu")
-                << (setting.half() ? "Half" : "Float32");
+  return stream << TextOf(setting.place) << (setting.half() ? "Half" : "Float32");
 }
 
 inline std::string NameOf(const testing::TestParamInfo<Setting>& info)
@@ -44,17 +67,11 @@ inline std::vector<Setting> AllSettings()
           {Place::Gpu, Precision::Float32}};
 }
 
-/// Tests that run in every place; skipped, with the reason, where there is no GPU.
+/// The same in every precision.
 class InEveryPlace : public testing::TestWithParam<Setting>
 {
 protected:
-  void SetUp() override
-  {
-    const inr::cuda::Devices devices = inr::cuda::FindDevices();
-    if (GetParam().place == Place::Gpu && devices.usable.empty()) {
-      GTEST_SKIP() << devices.reason;
-    }
-  }
+  void SetUp() override { SkipUnlessThere(GetParam().place); }
 
   /// Where some samples are Core's to compute.
   static HostLaunch Overflowing()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pictures that the kernels draw through a cache on the device, against those of Core's renderer.
+#include "Testing/CUDA/MarchedCases.h"
 #include "Testing/CUDA/SmallCache.h"
 
 #include <algorithm>
@@ -27,43 +28,23 @@ TEST_P(DrawingOf, GivesThePicturesOfTheCpu)
   EXPECT_EQ(drawn.statistics.rays, truth.statistics.rays);
 }
 
-const Case Marched[] = {
-    {"Plain", [](inr::Frame&) {}},
-    {"FullResolution", [](inr::Frame& frame) { frame.levelOfDetailScale = 0; }},
-    {"MixedLevels", [](inr::Frame& frame) { frame.levelOfDetailScale = 2.5; }},
-    {"EverySample", [](inr::Frame& frame) { frame.adaptiveSampling = false; }},
-    {"Fine", [](inr::Frame& frame) { frame.sampleDistance = 0.11; }},
-    {"Lit",
-     [](inr::Frame& frame) {
-       frame.shading = inr::Material();
-       LightUp(frame);
-     }},
-    {"LitMixedLevels",
-     [](inr::Frame& frame) {
-       frame.shading = inr::Material();
-       frame.levelOfDetailScale = 2.5;
-       LightUp(frame);
-     }},
-    {"Largest", Projected(inr::BlendMode::MaximumIntensity)},
-    {"Smallest", Projected(inr::BlendMode::MinimumIntensity)},
-    {"Average", Projected(inr::BlendMode::AverageIntensity)},
-    {"Sum", Projected(inr::BlendMode::Additive)},
-    {"Cropped", Crop},
-    {"Clipped",
-     [](inr::Frame& frame) {
-       frame.clippingPlanes = {PlaneAcross({1, 0.3, -0.2})};
-     }},
-    {"Piece",
-     [](inr::Frame& frame) {
-       frame.piece = {PlaneAcross({0.1, 1, 0.4})};
-     }},
-    {"BehindSomething", [](inr::Frame& frame) { frame.opaqueDepth = SomeDepth().data(); }},
-    {"OneColumn", [](inr::Frame& frame) { frame.width = 1; }},
-};
+/// And what only a cache makes different.
+std::vector<Case> Cases()
+{
+  std::vector<Case> cases = MarchedCases();
+  cases.push_back({"FullResolution", [](inr::Frame& frame) { frame.levelOfDetailScale = 0; }});
+  cases.push_back({"MixedLevels", [](inr::Frame& frame) { frame.levelOfDetailScale = 2.5; }});
+  cases.push_back({"LitMixedLevels", [](inr::Frame& frame) {
+                     frame.levelOfDetailScale = 2.5;
+                     frame.shading = inr::Material();
+                     LightUp(frame);
+                   }});
+  return cases;
+}
 
 INSTANTIATE_TEST_SUITE_P(Kernels, DrawingOf,
                          testing::Combine(testing::Values(Place::Host, Place::Gpu),
-                                          testing::ValuesIn(Marched)),
+                                          testing::ValuesIn(Cases())),
                          CaseInAPlace::nameOf);
 
 class Drawing : public InAPlace

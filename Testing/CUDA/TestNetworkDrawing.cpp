@@ -3,6 +3,7 @@
 // Pictures straight from the network by the kernels, against those of Core's renderer.
 #include "Testing/CUDA/DrawingScene.h"
 #include "Testing/CUDA/FailingMachine.h"
+#include "Testing/CUDA/MarchedCases.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,44 +109,9 @@ TEST_P(NetworkDrawingOf, GivesThePicturesOfTheCpu)
   ExpectAsMany(drawn.statistics.work.gradients, truth.statistics.work.gradients);
 }
 
-const Case Marched[] = {
-    {"Plain", [](inr::Frame&) {}},
-    {"EverySample", [](inr::Frame& frame) { frame.adaptiveSampling = false; }},
-    {"Fine", [](inr::Frame& frame) { frame.sampleDistance = 0.11; }},
-    {"Lit",
-     [](inr::Frame& frame) {
-       frame.shading = inr::Material();
-       LightUp(frame);
-     }},
-    {"Largest", Projected(inr::BlendMode::MaximumIntensity)},
-    {"Smallest", Projected(inr::BlendMode::MinimumIntensity)},
-    {"Average", Projected(inr::BlendMode::AverageIntensity)},
-    {"Sum", Projected(inr::BlendMode::Additive)},
-    {"Cropped", Crop},
-    {"Clipped",
-     [](inr::Frame& frame) {
-       frame.clippingPlanes = {PlaneAcross({1, 0.3, -0.2})};
-     }},
-    {"LitPiece",
-     [](inr::Frame& frame) {
-       frame.piece = {PlaneAcross({0.1, 1, 0.4})};
-       frame.shading = inr::Material();
-       LightUp(frame);
-     }},
-    {"BehindSomething", [](inr::Frame& frame) { frame.opaqueDepth = SomeDepth().data(); }},
-    {"Opaque", [](inr::Frame& frame) { frame.unitDistance = 0.02; }},
-    {"LitOpaque",
-     [](inr::Frame& frame) {
-       frame.unitDistance = 0.02;
-       frame.shading = inr::Material();
-       LightUp(frame);
-     }},
-    {"OneColumn", [](inr::Frame& frame) { frame.width = 1; }},
-};
-
 INSTANTIATE_TEST_SUITE_P(Kernels, NetworkDrawingOf,
                          testing::Combine(testing::Values(Place::Host, Place::Gpu),
-                                          testing::ValuesIn(Marched)),
+                                          testing::ValuesIn(MarchedCases())),
                          CaseInAPlace::nameOf);
 
 /// Paths meet the same random numbers; a few may part ways for rounding.

@@ -6,18 +6,9 @@
 
 namespace {
 
-/// On the host, and on this machine's GPU where there is one.
-class Training : public testing::TestWithParam<Place>
+class Training : public InAPlace
 {
 protected:
-  void SetUp() override
-  {
-    const inr::cuda::Devices devices = inr::cuda::FindDevices();
-    if (GetParam() == Place::Gpu && devices.usable.empty()) {
-      GTEST_SKIP() << devices.reason;
-    }
-  }
-
   static std::shared_ptr<const inr::TrainingAccelerator> accelerator()
   {
     if (GetParam() == Place::Gpu) {
@@ -58,11 +49,6 @@ protected:
     EXPECT_LE(others, static_cast<long>(core.updates.size() / 1000)) << what;
   }
 };
-
-std::string NameOfPlace(const testing::TestParamInfo<Place>& info)
-{
-  return info.param == Place::Host ? "Host" : "Gpu";
-}
 
 TEST_P(Training, AgreesForEveryActivation)
 {
@@ -262,7 +248,8 @@ TEST_P(Training, DrawsOnTheDeviceWhatTheHostDraws)
   EXPECT_TRUE(there.ofDevice() == here.ofDevice());
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, Training, testing::Values(Place::Host, Place::Gpu), NameOfPlace);
+INSTANTIATE_TEST_SUITE_P(Kernels, Training, testing::Values(Place::Host, Place::Gpu),
+                         InAPlace::nameOf);
 
 /// Draws with the kernel, on the host, and with Core's source.
 template <class T>
