@@ -2,30 +2,30 @@
 #pragma once
 
 #include "CUDA/Device/Machine.h"
-#include "CUDA/Inference/DeviceModel.h"
+#include "CUDA/Inference/PlannedModel.h"
 #include "CUDA/Render/NetworkRenderer.h"
 
 #include <memory>
+#include <utility>
 
 namespace inr {
 namespace cuda {
 
 /// A model in a GPU's memory, for a DeviceWave: infers points from one place there to another.
-class DevicePoints
+class DevicePoints : public PlannedModel
 {
 public:
-  explicit DevicePoints(std::shared_ptr<const DeviceModel> model);
-
-  const ModelPointer& source() const { return this->Uploaded->source(); }
+  explicit DevicePoints(std::shared_ptr<const DeviceModel> model)
+      : PlannedModel(std::move(model), false, NoLimit)
+  {}
 
   /// See DeviceWave.
   void infer(GpuMachine& machine, const float* positions, const std::uint64_t* count,
-             float* values) const;
-
-private:
-  std::shared_ptr<const DeviceModel> Uploaded;
-  LaunchPlan Plan;
-  Array<float> Scratch;
+             float* values) const
+  {
+    this->Uploaded->inferPoints(this->Plan, positions, count, values, this->Scratch.data(),
+                                machine.stream());
+  }
 };
 
 extern template class NetworkRenderer<GpuMachine, DevicePoints>;
