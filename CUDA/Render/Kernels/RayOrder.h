@@ -2,6 +2,7 @@
 #pragma once
 
 #include "CUDA/Device/Kernels/Atomics.h"
+#include "CUDA/Render/Kernels/Listed.h"
 #include "Core/HostDevice.h"
 
 #include <cstdint>
@@ -76,16 +77,10 @@ struct RayLists
   template <class Block, class Function>
   INR_HOST_DEVICE void forEach(Block& block, int threads, const Function& function) const
   {
-    const auto count = static_cast<std::int64_t>(*this->nowCount);
-    block.threads([&](int thread) {
-      const std::int64_t step = std::int64_t{block.count()} * threads;
-      for (std::int64_t k = std::int64_t{block.index()} * threads + thread; k < count; k += step) {
-        const std::uint32_t ray =
-            this->now != nullptr ? this->now[k] : static_cast<std::uint32_t>(k);
-        const std::int64_t pixel = this->order.pixel(this->first + ray);
-        if (pixel >= 0) {
-          function(ray, pixel);
-        }
+    ForEachListed(block, threads, this->now, this->nowCount, [&](std::uint32_t ray) {
+      const std::int64_t pixel = this->order.pixel(this->first + ray);
+      if (pixel >= 0) {
+        function(ray, pixel);
       }
     });
   }

@@ -8,6 +8,7 @@
 
 #include "CUDA/Device/Kernels/Block.h"
 #include "CUDA/Render/Kernels/FrameCounts.h"
+#include "CUDA/Render/Kernels/Listed.h"
 #include "CUDA/Render/Kernels/RayOrder.h"
 
 #include <cmath>
@@ -63,13 +64,7 @@ struct WaveLists
   template <class Block, class Function>
   INR_HOST_DEVICE void forEach(Block& block, int threads, const Function& function) const
   {
-    const auto count = static_cast<std::int64_t>(*this->nowCount);
-    block.threads([&](int thread) {
-      const std::int64_t step = std::int64_t{block.count()} * threads;
-      for (std::int64_t k = std::int64_t{block.index()} * threads + thread; k < count; k += step) {
-        function(this->now != nullptr ? this->now[k] : static_cast<std::uint32_t>(k));
-      }
-    });
+    ForEachListed(block, threads, this->now, this->nowCount, function);
   }
 };
 
