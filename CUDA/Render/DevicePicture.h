@@ -53,8 +53,8 @@ public:
     statistics.work.gradients = static_cast<std::int64_t>(counts.gradients);
     statistics.work.scatterings = static_cast<std::int64_t>(counts.scatterings);
     statistics.work.lightSteps = static_cast<std::int64_t>(counts.lightSteps);
-    for (int level = 0; level < FrameCounts::MostLevels; ++level) {
-      if (counts.levels[level] > 0) {
+    for (int level = 0; level < 32; ++level) {
+      if ((counts.levels >> level & 1u) != 0) {
         statistics.levels.add({level, level});
       }
     }

@@ -26,6 +26,8 @@ TEST_P(DrawingOf, GivesThePicturesOfTheCpu)
   EXPECT_TRUE(drawn.statistics.complete);
   EXPECT_EQ(drawn.statistics.missed, 0);
   EXPECT_EQ(drawn.statistics.rays, truth.statistics.rays);
+  EXPECT_EQ(drawn.statistics.levels.finest, truth.statistics.levels.finest);
+  EXPECT_EQ(drawn.statistics.levels.coarsest, truth.statistics.levels.coarsest);
 }
 
 /// And what only a cache makes different.

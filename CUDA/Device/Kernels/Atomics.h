@@ -46,6 +46,17 @@ INR_HOST_DEVICE inline std::uint32_t AtomicMax(std::uint32_t& largest, std::uint
 #endif
 }
 
+INR_HOST_DEVICE inline std::uint32_t AtomicOr(std::uint32_t& bits, std::uint32_t more)
+{
+#ifdef __CUDA_ARCH__
+  return atomicOr(&bits, more);
+#else
+  const std::uint32_t before = bits;
+  bits |= more;
+  return before;
+#endif
+}
+
 /// AtomicAdd to the same sum by all threads that are here: of a warp's, one adds for those that are
 /// here at once. They get places one after another.
 INR_HOST_DEVICE inline std::uint64_t AtomicAddTogether(std::uint64_t& sum, std::uint32_t summand)

@@ -19,8 +19,7 @@ struct FrameCounts
   std::uint64_t gradients;
   std::uint64_t scatterings;
   std::uint64_t lightSteps;
-  static constexpr int MostLevels = 32;
-  std::uint64_t levels[MostLevels]; ///< samples, or more, of rays that met each
+  std::uint32_t levels; ///< a bit for each that samples came from
 
   INR_HOST_DEVICE void add(const RayCounts& ray)
   {
@@ -31,28 +30,18 @@ struct FrameCounts
     Add(this->gradients, ray.gradients);
     Add(this->scatterings, ray.scatterings);
     Add(this->lightSteps, ray.lightSteps);
-    for (int level = 0; level < MostLevels; ++level) {
-      Add(this->levels[level], ray.levels >> level & 1u);
+    if ((ray.levels & ~this->levels) != 0) { // hardly ever: all meet the same few
+      AtomicOr(this->levels, ray.levels);
     }
   }
 
 private:
-  /// One of a warp's threads adds for all that are here.
+  /// Most of them are zero for all threads of a warp.
   INR_HOST_DEVICE static void Add(std::uint64_t& sum, std::uint32_t summand)
   {
-#ifdef __CUDA_ARCH__
-    const unsigned active = __activemask();
-    std::uint64_t total = 0;
-    for (unsigned rest = active; rest != 0; rest &= rest - 1) {
-      total += __shfl_sync(active, summand, __ffs(static_cast<int>(rest)) - 1);
+    if (summand > 0) {
+      AtomicAddTogether(sum, summand);
     }
-    const unsigned lane = threadIdx.x % 32;
-    if (total > 0 && static_cast<unsigned>(__ffs(static_cast<int>(active))) == lane + 1) {
-      AtomicAdd(sum, total);
-    }
-#else
-    sum += summand;
-#endif
   }
 };
 
