@@ -7,6 +7,7 @@
 #include "Core/Error.h"
 #include "Core/Training/GradientDescent.h"
 #include "Core/Training/TrainingAccelerator.h"
+#include "Testing/Core/RandomModel.h"
 
 #include <gtest/gtest.h>
 
@@ -19,6 +20,17 @@
 #include <thread>
 #include <utility>
 #include <vector>
+
+/// Of a model that takes no time.
+inline inr::Description TinyDescription()
+{
+  inr::Description description = SmallDescription();
+  description.grid.levels = 2;
+  description.grid.features = 2;
+  description.network.neurons = 8;
+  description.network.hiddenLayers = 1;
+  return description;
+}
 
 /// What the test and the trainings of a device know of each other.
 struct FakeTrainingDevice
