@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ReadingPlan.h"
+#include "StepSequence.h"
+#include "TrainingBackend.h"
+#include "vtkINRWriter.h"
+
+#include <vtkMultiProcessController.h>
+#include <vtkSmartPointer.h>
+
+#include <memory>
+#include <string>
+
+/// What a writer consists of, but for its properties.
+class vtkINRWriter::Internals
+{
+public:
+  StepSequence Steps;  ///< those of WriteTimeSteps
+  std::string Problem; ///< why there are none
+  std::string Target;  ///< the file that is being written
+  ReadingPlan Reading; ///< of the input
+  bool MayProbe = false;
+  bool IsReached = false; ///< by what it asked for, whatever came
+  bool IsWriting = false; ///< the steps stay those that there were at the beginning
+  vtkSmartPointer<vtkMultiProcessController> Controller =
+      vtkMultiProcessController::GetGlobalController();
+  /// Of this Write; null = not looked for. Who trains has it, too: Backend may be set meanwhile.
+  std::shared_ptr<TrainingBackend> Beside;
+  inr::ModelPointer Previous; ///< what was written last, if it is of a time step
+};
