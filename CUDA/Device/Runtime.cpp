@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 
 #include <algorithm>
+#include <exception>
 #include <string>
 
 namespace inr {
@@ -22,6 +23,34 @@ std::string DeviceText()
   return cudaGetDevice(&device) == cudaSuccess ? "CUDA device " + std::to_string(device) : "CUDA";
 }
 
+/// A function of the driver, which this library is not linked with: it loads without one, too.
+template <class Function> Function* OfDriver(const char* name)
+{
+  void* address = nullptr;
+#if CUDART_VERSION >= 12050
+  INR_CUDA(cudaGetDriverEntryPointByVersion(name, &address, 12000, cudaEnableDefault));
+#else
+  INR_CUDA(cudaGetDriverEntryPoint(name, &address, cudaEnableDefault));
+#endif
+  if (address == nullptr) {
+    throw Error(ErrorCode::Device, std::string("the NVIDIA driver has no ") + name);
+  }
+  return reinterpret_cast<Function*>(address);
+}
+
+/// A thread's context, which the runtime makes one when it wants one and there is none.
+struct ContextCalls
+{
+  CUresult (*get)(CUcontext*) = OfDriver<CUresult(CUcontext*)>("cuCtxGetCurrent");
+  CUresult (*set)(CUcontext) = OfDriver<CUresult(CUcontext)>("cuCtxSetCurrent");
+};
+
+const ContextCalls& Contexts()
+{
+  static const ContextCalls calls;
+  return calls;
+}
+
 } // namespace
 
 void Check(cudaError_t status, const char* call)
@@ -36,17 +65,21 @@ void Check(cudaError_t status, const char* call)
 
 CurrentDevice::CurrentDevice(int ordinal)
 {
-  INR_CUDA(cudaGetDevice(&this->Before));
-  this->Changed = this->Before != ordinal;
-  if (this->Changed) {
+  int before = -1;
+  INR_CUDA(cudaGetDevice(&before));
+  if (before != ordinal) {
+    if (Contexts().get(&this->Before) != CUDA_SUCCESS) {
+      this->Before = nullptr;
+    }
     INR_CUDA(cudaSetDevice(ordinal));
+    this->Changed = true;
   }
 }
 
 CurrentDevice::~CurrentDevice()
 {
-  if (this->Changed && cudaSetDevice(this->Before) != cudaSuccess) {
-    cudaGetLastError(); // whoever asks next is not to be told of it
+  if (this->Changed) {
+    Contexts().set(this->Before);
   }
 }
 
@@ -59,11 +92,27 @@ Stream::Stream(int device) : Device(device)
 Stream::~Stream()
 {
   // What is still on its way would otherwise use memory that its owner is about to free.
-  cudaStreamSynchronize(this->Handle);
-  cudaStreamDestroy(this->Handle);
+  try {
+    const CurrentDevice current(this->Device);
+    cudaStreamSynchronize(this->Handle);
+    cudaStreamDestroy(this->Handle);
+  } catch (const std::exception&) { // it is lost, and its streams with it
+  }
 }
 
-void Stream::wait() const { INR_CUDA(cudaStreamSynchronize(this->Handle)); }
+void Stream::wait() const
+{
+  const CurrentDevice current(this->Device);
+  INR_CUDA(cudaStreamSynchronize(this->Handle));
+}
+
+void Stream::settle() const noexcept
+{
+  try {
+    this->wait();
+  } catch (const std::exception&) { // nothing is on its way any more
+  }
+}
 
 Memory::Memory(int device, Place place, std::int64_t bytes) : Device(device), Where(place)
 {
@@ -81,12 +130,10 @@ Memory::~Memory()
   if (this->Address == nullptr) {
     return;
   }
-  int before = -1;
-  const bool known = cudaGetDevice(&before) == cudaSuccess;
-  cudaSetDevice(this->Device);
-  this->Where == Place::Device ? cudaFree(this->Address) : cudaFreeHost(this->Address);
-  if (known && cudaSetDevice(before) != cudaSuccess) {
-    cudaGetLastError();
+  try {
+    const CurrentDevice current(this->Device);
+    this->Where == Place::Device ? cudaFree(this->Address) : cudaFreeHost(this->Address);
+  } catch (const std::exception&) { // it is lost, and its memory with it
   }
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cuda.h>
 #include <cuda_runtime_api.h>
 #include <utility>
 
@@ -17,7 +18,9 @@ void Check(cudaError_t status, const char* call);
 #define INR_CUDA(call) ::inr::cuda::Check((call), #call)
 
 /// Makes a device the calling thread's, for as long as this lives: the application may have chosen
-/// another one.
+/// another one. What comes back is the driver's context, which may be none: to choose a device
+/// makes a context on it since CUDA 12, and a thread that has chosen none is said to have device 0.
+/// For the same reason whatever wants a context at all is called within one of these.
 class CurrentDevice
 {
 public:
@@ -27,7 +30,7 @@ public:
   CurrentDevice& operator=(const CurrentDevice&) = delete;
 
 private:
-  int Before = -1;
+  CUcontext Before = nullptr;
   bool Changed = false;
 };
 
@@ -41,7 +44,9 @@ public:
   Stream& operator=(const Stream&) = delete;
 
   cudaStream_t get() const { return this->Handle; }
-  void wait() const; ///< until all is done
+  int device() const { return this->Device; }
+  void wait() const;            ///< until all is done
+  void settle() const noexcept; ///< the same, whatever fails
 
 private:
   int Device;
@@ -88,11 +93,13 @@ private:
 /// Copies behind what is in the stream.
 template <class T> void CopyToDevice(T* to, const T* from, std::int64_t count, const Stream& stream)
 {
+  const CurrentDevice current(stream.device());
   INR_CUDA(cudaMemcpyAsync(to, from, static_cast<std::size_t>(count) * sizeof(T),
                            cudaMemcpyHostToDevice, stream.get()));
 }
 template <class T> void CopyToHost(T* to, const T* from, std::int64_t count, const Stream& stream)
 {
+  const CurrentDevice current(stream.device());
   INR_CUDA(cudaMemcpyAsync(to, from, static_cast<std::size_t>(count) * sizeof(T),
                            cudaMemcpyDeviceToHost, stream.get()));
 }

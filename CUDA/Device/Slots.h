@@ -60,7 +60,7 @@ void InPieces(const SlotPair<In>& slots, std::int64_t count, std::int64_t piece,
     ~Landing()
     {
       for (const Slot<In>& slot : this->Pair) {
-        cudaStreamSynchronize(slot.stream.get());
+        slot.stream.settle();
       }
     }
     const SlotPair<In>& Pair;
