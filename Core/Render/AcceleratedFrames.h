@@ -35,13 +35,12 @@ public:
   std::optional<TracedTiles> tracePaths(const PathRound& round, const WorkLimit& limit,
                                         const std::function<bool()>& keepGoing);
 
-  /// Marches a frame into a picture of its size.
-  using March = std::function<void(const Frame&, const PassOutput&)>;
+  /// Draws a frame into a picture of its size.
+  using Draw = std::function<void(const Frame&, const PassOutput&)>;
   /// Kernels that nobody has seen at work on a device like this one are not to be trusted unseen:
   /// before the first picture of a kind a small one, like that of `frame` as far as levels of at
-  /// least `scale` show it, is drawn by both; of paths, by rays through the same. Gives the
-  /// accelerator up where it draws another one.
-  void prove(const Frame& frame, double scale, const March& accelerated, const March& cpu);
+  /// least `scale` show it, is drawn by both. Gives the accelerator up where it draws another one.
+  void prove(const Frame& frame, double scale, const Draw& accelerated, const Draw& cpu);
 
   std::int64_t bytes() const { return this->Device ? this->Device->bytes() : 0; }
   std::int64_t bricks() const { return this->Device ? this->Device->bricks() : 0; }

@@ -10,6 +10,18 @@
 
 namespace inr {
 
+namespace {
+
+/// Tiles of a round as if nothing had been missed in them.
+TracedTiles EmptyTiles(const PathRound& round)
+{
+  TracedTiles traced;
+  traced.tiles.resize(round.tiles.size());
+  return traced;
+}
+
+} // namespace
+
 MarchWay Renderer::Implementation::wayOf(const Frame& frame) const
 {
   MarchWay way{RayGeometry(frame, this->Volume.dims), {}, ShadingOf(frame)};
@@ -90,17 +102,76 @@ bool Renderer::Implementation::isDrawnElsewhere(const Frame& frame,
   if (!this->Drawn) {
     return false;
   }
-  const WorkLimit limit(0, this->Options.deterministic);
   const auto elsewhere = [&](const Frame& small, const PassOutput& output) {
-    this->marchElsewhere(small, this->wayOf(small), limit, output, keepGoing);
+    this->proveElsewhere(small, output, keepGoing);
   };
   const auto here = [&](const Frame& small, const PassOutput& output) {
-    MarchWay way = this->wayOf(small);
-    this->marchHere(small, way, *this->Field, limit, output, keepGoing);
+    this->proveHere(small, output, keepGoing);
   };
   // Where pictures make do with what fits, that is nowhere the same, but for the coarsest level.
-  this->Drawn->prove(frame, this->Options.cache.onlyWhatFits ? 1e9 : 1.0, elsewhere, here);
+  // And paths to lights go far at the level where they begin, through any number of bricks.
+  const bool coarsest = this->Options.cache.onlyWhatFits || frame.mode == RenderMode::PathTracing;
+  this->Drawn->prove(frame, coarsest ? 1e9 : 1.0, elsewhere, here);
   return this->Drawn->draws(frame);
+}
+
+void Renderer::Implementation::proveElsewhere(const Frame& small, const PassOutput& output,
+                                              const std::function<bool()>& keepGoing)
+{
+  const WorkLimit none(0, this->Options.deterministic);
+  if (small.mode == RenderMode::RayMarching) {
+    this->marchElsewhere(small, this->wayOf(small), none, output, keepGoing);
+    return;
+  }
+  this->traceAlone(small, none, output, [&](const PathRound& round) {
+    std::optional<TracedTiles> traced = this->Drawn->tracePaths(round, none, keepGoing);
+    return traced ? std::move(*traced) : EmptyTiles(round); // it has failed: nobody looks at them
+  });
+}
+
+void Renderer::Implementation::proveHere(const Frame& small, const PassOutput& output,
+                                         const std::function<bool()>& keepGoing)
+{
+  const WorkLimit none(0, this->Options.deterministic);
+  if (small.mode == RenderMode::RayMarching) {
+    MarchWay way = this->wayOf(small);
+    this->marchHere(small, way, *this->Field, none, output, keepGoing);
+    return;
+  }
+  const TraceTiles trace = [&](const PathRound& round) {
+    return this->traceHere(round, *this->Field, none, keepGoing);
+  };
+  if (this->Cached) {
+    const BrickStore::Call call = this->Cached->call();
+    this->traceAlone(small, none, output, trace);
+  } else {
+    this->traceAlone(small, none, output, trace);
+  }
+}
+
+PathMedium Renderer::Implementation::medium() const
+{
+  const int levels = this->Cached ? this->Cached->store().cache().hierarchy().levels() : 1;
+  return {this->Volume.dims, this->Cells, this->Colors->lookup(), levels};
+}
+
+void Renderer::Implementation::traceAlone(const Frame& frame, const WorkLimit& limit,
+                                          const PassOutput& output, const TraceTiles& trace)
+{
+  PathPicture picture;
+  const TraceTiles asOneMore = [&](const PathRound& round) {
+    constexpr bool first = false; // what is known of the picture in the making stays
+    return trace({round.tracer, round.tiles, round.output, round.whole, first});
+  };
+  picture.advance(frame, this->medium(), asOneMore, limit, output);
+}
+
+TracedTiles Renderer::Implementation::traceHere(const PathRound& round, const Evaluator& field,
+                                                const WorkLimit& limit,
+                                                const std::function<bool()>& keepGoing)
+{
+  return this->Cached ? this->Cached->tracePaths(round, limit, keepGoing)
+                      : TraceWithNetwork(round, field, this->Volume.dims, this->Threads, keepGoing);
 }
 
 TracedTiles Renderer::Implementation::traceRound(const PathRound& round, const WorkLimit& limit,
@@ -111,9 +182,7 @@ TracedTiles Renderer::Implementation::traceRound(const PathRound& round, const W
       return std::move(*traced);
     }
   }
-  return this->Cached
-             ? this->Cached->tracePaths(round, limit, keepGoing)
-             : TraceWithNetwork(round, *this->Samples, this->Volume.dims, this->Threads, keepGoing);
+  return this->traceHere(round, *this->Samples, limit, keepGoing);
 }
 
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
@@ -122,18 +191,16 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
   if (!this->Paths) {
     this->Paths.emplace();
   }
-  PathMedium medium{this->Volume.dims, this->Cells, this->Colors->lookup()};
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
   this->isDrawnElsewhere(frame, keepGoing); // is found out beforehand
   const TraceTiles trace = [&](const PathRound& round) {
     return this->traceRound(round, limit, keepGoing);
   };
   if (!this->Cached) {
-    return this->Paths->advance(frame, medium, trace, limit, output);
+    return this->Paths->advance(frame, this->medium(), trace, limit, output);
   }
   const BrickStore::Call call = this->Cached->call();
-  medium.levels = this->Cached->store().cache().hierarchy().levels();
-  FrameStatistics statistics = this->Paths->advance(frame, medium, trace, limit, output);
+  FrameStatistics statistics = this->Paths->advance(frame, this->medium(), trace, limit, output);
   statistics.work.bricks = call.done();
   return statistics;
 }

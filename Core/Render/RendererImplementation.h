@@ -36,6 +36,11 @@ struct Renderer::Implementation
 
   /// Whether the accelerator draws such a frame itself; it is then known to draw rightly.
   bool isDrawnElsewhere(const Frame& frame, const std::function<bool()>& keepGoing);
+  /// Such a small picture as proves it, drawn there if that does not fail, and by the CPU.
+  void proveElsewhere(const Frame& small, const PassOutput& output,
+                      const std::function<bool()>& keepGoing);
+  void proveHere(const Frame& small, const PassOutput& output,
+                 const std::function<bool()>& keepGoing);
   /// Has it made what frames will ask for, so that it is known beforehand whether it can.
   void tryAccelerator();
 
@@ -66,8 +71,15 @@ struct Renderer::Implementation
                             const std::function<bool()>& keepGoing);
   FrameStatistics marchCached(const Frame& frame, MarchWay& way, const WorkLimit& limit,
                               const PassOutput& output, const std::function<bool()>& keepGoing);
+  PathMedium medium() const;
   TracedTiles traceRound(const PathRound& round, const WorkLimit& limit,
                          const std::function<bool()>& keepGoing);
+  /// By the CPU; see marchHere.
+  TracedTiles traceHere(const PathRound& round, const Evaluator& field, const WorkLimit& limit,
+                        const std::function<bool()>& keepGoing);
+  /// A picture beside the one in the making.
+  void traceAlone(const Frame& frame, const WorkLimit& limit, const PassOutput& output,
+                  const TraceTiles& trace);
   FrameStatistics tracePaths(const Frame& frame, const PassOutput& output,
                              const std::function<bool()>& keepGoing);
 

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A device that draws some kind of picture wrong is found out when the first one of that kind is
+// drawn, whatever it has drawn before.
+#include "Testing/CUDA/DrawingScene.h"
+
+namespace {
+
+/// A kind of picture that kernels make in a way of their own.
+struct PictureKind
+{
+  std::string name;
+  std::function<void(inr::Frame&)> change;
+  std::function<bool(const inr::MarchJob&)> isIt; ///< empty: paths
+};
+
+void CropToABox(inr::Frame& frame)
+{
+  Crop(frame);
+  frame.cropping->flags = 1u << 13;
+}
+
+PictureKind Blended(const std::string& name, inr::BlendMode mode)
+{
+  return {name, Projected(mode),
+          [mode](const inr::MarchJob& job) { return job.frame.blending.mode == mode; }};
+}
+
+const std::vector<PictureKind>& Kinds()
+{
+  static const std::vector<PictureKind> kinds = {
+      {"Plain", [](inr::Frame&) {},
+       [](const inr::MarchJob& job) {
+         return job.frame.blending.mode == inr::BlendMode::Composite && !job.shading &&
+                !job.settings.crops;
+       }},
+      {"Lit",
+       [](inr::Frame& frame) {
+         frame.shading = inr::Material();
+         LightUp(frame);
+       },
+       [](const inr::MarchJob& job) { return job.shading != nullptr; }},
+      {"Cropped", Crop, [](const inr::MarchJob& job) { return job.settings.crops; }},
+      Blended("Largest", inr::BlendMode::MaximumIntensity),
+      Blended("Smallest", inr::BlendMode::MinimumIntensity),
+      Blended("Average", inr::BlendMode::AverageIntensity),
+      Blended("Sum", inr::BlendMode::Additive),
+      {"Paths",
+       [](inr::Frame& frame) {
+         frame.mode = inr::RenderMode::PathTracing;
+         frame.paths.ambientLight = glm::vec3(1.0f);
+       },
+       {}},
+  };
+  return kinds;
+}
+
+/// Draws as another one does, and then changes the pictures of a kind.
+class LyingRenderer : public inr::AcceleratedRenderer
+{
+public:
+  LyingRenderer(std::shared_ptr<inr::AcceleratedRenderer> honest, const PictureKind& wrong)
+      : Honest(std::move(honest)), Wrong(wrong)
+  {}
+
+  void setColors(const inr::Majorants& majorants, const inr::ColorLookup& colors) override
+  {
+    this->Honest->setColors(majorants, colors);
+  }
+  inr::FrameStatistics march(const inr::MarchJob& job, const inr::WorkLimit& limit,
+                             const inr::PassOutput& output,
+                             const std::function<bool()>& keepGoing) override
+  {
+    const inr::FrameStatistics statistics = this->Honest->march(job, limit, output, keepGoing);
+    if (this->Wrong.isIt && this->Wrong.isIt(job)) {
+      spoil(output.rgba);
+    }
+    return statistics;
+  }
+  inr::TracedTiles tracePaths(const inr::PathRound& round, const inr::WorkLimit& limit,
+                              const std::function<bool()>& keepGoing) override
+  {
+    inr::TracedTiles traced = this->Honest->tracePaths(round, limit, keepGoing);
+    if (!this->Wrong.isIt) {
+      spoil(round.output.rgba);
+    }
+    return traced;
+  }
+  std::int64_t bytes() const override { return this->Honest->bytes(); }
+  std::int64_t bricks() const override { return this->Honest->bricks(); }
+
+private:
+  /// Darker; what is behind shines through as it should.
+  static void spoil(inr::Image& rgba)
+  {
+    for (std::size_t k = 0; k < rgba.pixels.size(); ++k) {
+      rgba.pixels[k] *= k % 4 < 3 ? 0.7f : 1.0f;
+    }
+  }
+
+  std::shared_ptr<inr::AcceleratedRenderer> Honest;
+  PictureKind Wrong;
+};
+
+class LyingAccelerator : public EmulatedAccelerator
+{
+public:
+  explicit LyingAccelerator(const PictureKind& wrong)
+      : EmulatedAccelerator(inr::cuda::Precision::Float32, Duty::InfersAndDraws), Wrong(wrong)
+  {}
+
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeRenderer(const inr::ModelPointer& model, const glm::i64vec3& dims,
+               const inr::CacheOptions& options) const override
+  {
+    return std::make_shared<LyingRenderer>(
+        this->EmulatedAccelerator::makeRenderer(model, dims, options), this->Wrong);
+  }
+  std::shared_ptr<inr::AcceleratedRenderer>
+  makeNetworkRenderer(const inr::ModelPointer& model) const override
+  {
+    return std::make_shared<LyingRenderer>(this->EmulatedAccelerator::makeNetworkRenderer(model),
+                                           this->Wrong);
+  }
+
+private:
+  PictureKind Wrong;
+};
+
+inr::Frame FrameOf(const PictureKind& kind)
+{
+  inr::Frame frame = PlainFrame();
+  frame.width = 20;
+  frame.height = 15;
+  frame.samplesPerPixel = 1;
+  kind.change(frame);
+  return frame;
+}
+
+inr::RendererOptions OptionsOf(bool cached, std::shared_ptr<const inr::Accelerator> accelerator)
+{
+  inr::RendererOptions options = OptionsWith(std::move(accelerator));
+  options.cached = cached;
+  return options;
+}
+
+inr::Renderer Liar(const PictureKind& wrong, bool cached)
+{
+  return RendererOf(OptionsOf(cached, std::make_shared<LyingAccelerator>(wrong)));
+}
+
+void ExpectDrawn(inr::Renderer& renderer, const inr::Frame& frame)
+{
+  inr::Image image;
+  EXPECT_TRUE(renderer.render(frame, image).accelerated);
+  EXPECT_FALSE(renderer.acceleratorFailure()) << renderer.acceleratorFailure()->reason;
+}
+
+/// And that the picture is the CPU's, in this call already.
+void ExpectFoundOut(inr::Renderer& renderer, const inr::Frame& frame, bool cached)
+{
+  const Drawn truth = Draw(frame, OptionsOf(cached, nullptr));
+  inr::Image image;
+  EXPECT_FALSE(renderer.render(frame, image).accelerated);
+  EXPECT_GE(inr::ImagePsnr(image, truth.rgba), 60);
+  ASSERT_TRUE(renderer.acceleratorFailure());
+  EXPECT_TRUE(renderer.acceleratorFailure()->atWork);
+  EXPECT_NE(renderer.acceleratorFailure()->reason.find("from the CPU's"), std::string::npos)
+      << renderer.acceleratorFailure()->reason;
+}
+
+class ProofOf : public testing::TestWithParam<std::tuple<bool, PictureKind>>
+{};
+
+TEST_P(ProofOf, IsAskedForThatKind)
+{
+  const auto& [cached, wrong] = GetParam();
+  inr::Renderer renderer = Liar(wrong, cached);
+  for (const PictureKind& kind : Kinds()) {
+    if (kind.name != wrong.name) {
+      SCOPED_TRACE(kind.name);
+      ExpectDrawn(renderer, FrameOf(kind));
+    }
+  }
+  ExpectFoundOut(renderer, FrameOf(wrong), cached);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, ProofOf,
+                         testing::Combine(testing::Bool(), testing::ValuesIn(Kinds())),
+                         [](const testing::TestParamInfo<std::tuple<bool, PictureKind>>& info) {
+                           return (std::get<0>(info.param) ? "Cached" : "Network") +
+                                  std::get<1>(info.param).name;
+                         });
+
+const PictureKind& KindNamed(const std::string& name)
+{
+  return *std::find_if(Kinds().begin(), Kinds().end(),
+                       [&](const PictureKind& kind) { return kind.name == name; });
+}
+
+/// Where rays end at a box, nothing has to be looked at within it.
+TEST(Proof, ThatABoxIsRightSaysNothingOfOtherRegions)
+{
+  inr::Renderer renderer = Liar(KindNamed("Cropped"), true);
+  inr::Frame frame = FrameOf(KindNamed("Plain"));
+  CropToABox(frame);
+  ExpectDrawn(renderer, frame);
+  ExpectFoundOut(renderer, FrameOf(KindNamed("Cropped")), true);
+}
+
+/// The test's colours, but so much fainter.
+inr::TransferFunction Faint(float share)
+{
+  inr::TransferFunction colours = ColoursOf(TrainedModel()->volume);
+  for (glm::vec4& color : colours.table) {
+    color.w *= share;
+  }
+  return colours;
+}
+
+/// A picture in which there is nothing to be seen proves nothing.
+TEST(Proof, WaitsForSomethingToBeSeen)
+{
+  for (const char* name : {"Plain", "Paths"}) {
+    SCOPED_TRACE(name);
+    inr::Renderer renderer = Liar(KindNamed(name), true);
+    renderer.setTransferFunction(Faint(0));
+    ExpectDrawn(renderer, FrameOf(KindNamed(name)));
+    renderer.setTransferFunction(Faint(1));
+    ExpectFoundOut(renderer, FrameOf(KindNamed(name)), true);
+  }
+}
+
+/// What is wrong with next to nothing is wrong.
+TEST(Proof, ComparesFaintPicturesToo)
+{
+  for (const char* name : {"Plain", "Lit", "Average"}) {
+    SCOPED_TRACE(name);
+    inr::Renderer honest = RendererOf(OptionsWith(Device()));
+    honest.setTransferFunction(Faint(1e-3f));
+    ExpectDrawn(honest, FrameOf(KindNamed(name)));
+    inr::Renderer renderer = Liar(KindNamed(name), true);
+    renderer.setTransferFunction(Faint(1e-3f));
+    inr::Image image;
+    EXPECT_FALSE(renderer.render(FrameOf(KindNamed(name)), image).accelerated);
+    EXPECT_TRUE(renderer.acceleratorFailure());
+  }
+}
+
+/// Of a picture that goes on, call by call, with what the cache has no room for.
+TEST(Proof, IsAskedForOnce)
+{
+  inr::Renderer renderer = RendererOf(OptionsWith(Device()));
+  for (const PictureKind& kind : Kinds()) {
+    SCOPED_TRACE(kind.name);
+    inr::Frame frame = FrameOf(kind);
+    ExpectDrawn(renderer, frame);
+    frame.seed = 1;
+    int asked = 0;
+    inr::Image image;
+    renderer.render(frame, image, nullptr, [&] { return ++asked > 0; });
+    EXPECT_LT(asked, 20); // what the CPU draws asks for each of its tiles
+  }
+}
+
+} // namespace
