@@ -1,87 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Steps of gradient descent by an accelerator that computes what Core does, one by one: whatever
-// happens to it, the parameters are the CPU's, to the last bit.
+// Steps by a device: whose they are, which of them are safe, and what becomes of the others.
 #include "Core/Error.h"
-#include "Core/Training/AcceleratedDescent.h"
-#include "Core/Training/BatchSource.h"
-#include "Testing/Core/Training/FakeTrainer.h"
+#include "Testing/Core/Training/FewSteps.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
+#include <cmath>
+#include <functional>
 
 namespace {
-
-/// Mini-batches of a few samples, all different.
-class FewBatches : public inr::BatchSource
-{
-public:
-  std::int64_t count() const override { return 32; }
-  std::int64_t total() const override { return 32; }
-  void prepare(const inr::TrainingStep& step, const inr::StopCheck& check) override
-  {
-    this->Prepared = step.number;
-    check.goesOn();
-  }
-  void draw(std::uint64_t stream, std::uint64_t step, std::int64_t begin, std::int64_t end,
-            glm::vec3* positions, float* targets) const override
-  {
-    EXPECT_EQ(step, this->Prepared);
-    for (std::int64_t k = begin; k < end; ++k) {
-      const std::uint64_t number = step * 32 + static_cast<std::uint64_t>(k);
-      positions[k - begin] = inr::RandomPosition(stream, number, {9, 9, 9});
-      targets[k - begin] = positions[k - begin].x;
-    }
-  }
-
-private:
-  std::uint64_t Prepared = 0;
-};
-
-/// Steps of such, by a device and by the CPU beside it.
-struct FewSteps
-{
-  explicit FewSteps(FakeTrainingDevice& fake)
-      : Device(fake), Threads(1), Host(TinyDescription(), 1, set(), this->Threads),
-        Expected(TinyDescription(), 1, set(), this->Threads),
-        Descent(this->Host,
-                FakeTrainer(fake).start({TinyDescription(), 32, this->Host.stream(), std::nullopt}),
-                this->Threads, [this](const std::string& text) { this->Told.push_back(text); })
-  {
-    fake.planned = 2000;
-    this->Descent.plan(2000);
-    this->Expected.plan(2000);
-  }
-
-  static inr::InstructionSet set() { return inr::ChooseInstructionSet(""); }
-
-  void take(std::uint64_t steps)
-  {
-    while (this->Descent.steps() < steps) {
-      this->Descent.step(this->Batches);
-    }
-  }
-  void expect(std::uint64_t steps)
-  {
-    EXPECT_EQ(this->Descent.steps(), steps);
-    FewBatches batches;
-    while (this->Expected.steps() < steps) {
-      this->Expected.step(batches);
-    }
-    EXPECT_EQ(this->Descent.parameters(), this->Expected.parameters());
-  }
-
-  FakeTrainingDevice& Device;
-  inr::Arena Threads;
-  inr::GradientDescent Host;
-  inr::GradientDescent Expected;
-  FewBatches Batches;
-  std::vector<std::string> Told;
-  inr::AcceleratedDescent Descent;
-};
 
 /// And takes no more steps again than there are between two copies.
 TEST(AcceleratedDescent, KeepsACopyOfLateSteps)
@@ -192,5 +118,101 @@ TEST(AcceleratedDescent, DrawsAgainForAnotherPlan)
   few.take(4);
   few.expect(4);
 }
+
+/// Parameters, moments and counts of updates, as they are now.
+std::vector<std::vector<char>> Bytes(inr::Descent& descent)
+{
+  std::vector<std::vector<char>> bytes;
+  for (const inr::StateArray& array : descent.state()) {
+    const auto* from = static_cast<const char*>(array.data);
+    bytes.emplace_back(from, from + array.bytes);
+  }
+  return bytes;
+}
+
+/// A way in which a device's first step is not the CPU's.
+struct Fault
+{
+  const char* name;
+  std::function<void(FakeTrainingDevice&)> bring;
+};
+
+void TellWrong(FakeTrainingDevice& device, std::size_t begin, std::size_t end)
+{
+  device.wrongBegin = begin;
+  device.wrongEnd = end;
+}
+
+const Fault Faults[] = {
+    {"Loss", [](FakeTrainingDevice& device) { device.wrongLoss = 0.01f; }},
+    {"LossThatIsNoNumber", [](FakeTrainingDevice& device) { device.wrongLoss = NAN; }},
+    {"Weights",
+     [](FakeTrainingDevice& device) {
+       TellWrong(device, 0, inr::Layout(TinyDescription()).gridOffset / 2);
+     }},
+    {"Grid",
+     [](FakeTrainingDevice& device) {
+       const inr::Layout layout(TinyDescription());
+       TellWrong(device, layout.gridOffset, layout.parameterCount);
+     }},
+    {"LostWhenItBegins", [](FakeTrainingDevice& device) { device.failsAt = device.calls + 1; }},
+    {"LostAtWork", [](FakeTrainingDevice& device) { device.failsAt = device.calls + 2; }},
+    {"LostWhenItTells", [](FakeTrainingDevice& device) { device.failsAt = device.calls + 3; }},
+};
+
+class FirstStep : public testing::TestWithParam<Fault>
+{};
+
+/// It is the CPU's then, and one step: with that one's error, and the CPU goes on behind it.
+TEST_P(FirstStep, OfALyingDeviceIsTakenOnce)
+{
+  FakeTrainingDevice device;
+  FewSteps few(device);
+  GetParam().bring(device);
+  FewBatches batches;
+  for (std::uint64_t step = 1; step <= 4; ++step) {
+    const std::optional<double> loss = few.Descent.step(few.Batches);
+    ASSERT_TRUE(loss);
+    EXPECT_EQ(*loss, *few.Expected.step(batches));
+    few.expect(step);
+    EXPECT_EQ(Bytes(few.Descent), Bytes(few.Expected));
+    EXPECT_FALSE(few.Descent.isAccelerated());
+    EXPECT_FALSE(few.Descent.hasUsedDevice());
+  }
+  ASSERT_EQ(few.Told.size(), 1u);
+  EXPECT_NE(few.Told[0].find("goes on with the training after 1 steps"), std::string::npos)
+      << few.Told[0];
+  EXPECT_EQ(few.Told[0].find("again"), std::string::npos) << few.Told[0];
+}
+
+/// The same where a training goes on from a checkpoint.
+TEST_P(FirstStep, AfterOthersIsTakenOnce)
+{
+  FakeTrainingDevice device;
+  FewSteps few(device);
+  FewBatches batches;
+  while (few.Expected.steps() < 300) { // and the learning rate has begun to fall
+    few.Expected.step(batches);
+  }
+  const std::vector<std::vector<char>> before = Bytes(few.Expected);
+  const inr::StateArrays arrays = few.Descent.state();
+  for (std::size_t k = 0; k < arrays.size(); ++k) {
+    std::copy(before[k].begin(), before[k].end(), static_cast<char*>(arrays[k].data));
+  }
+  few.Descent.goOnAfter(300);
+  GetParam().bring(device);
+  for (std::uint64_t step = 301; step <= 303; ++step) {
+    EXPECT_EQ(*few.Descent.step(few.Batches), *few.Expected.step(batches));
+    few.expect(step);
+  }
+  EXPECT_FALSE(few.Descent.isAccelerated());
+  ASSERT_EQ(few.Told.size(), 1u);
+  EXPECT_NE(few.Told[0].find("after 301 steps"), std::string::npos) << few.Told[0];
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, FirstStep, testing::ValuesIn(Faults),
+                         [](const testing::TestParamInfo<Fault>& info) {
+                           return std::string(info.param.name);
+                         });
 
 } // namespace

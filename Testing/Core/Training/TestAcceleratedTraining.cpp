@@ -7,7 +7,7 @@
 #include "Core/Training/StreamBudget.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/RandomModel.h"
-#include "Testing/Core/Training/FakeTrainer.h"
+#include "Testing/Core/Training/FewSteps.h"
 #include "Testing/Core/Training/FieldReader.h"
 #include "Testing/Core/Training/Fields.h"
 #include "Testing/Core/Training/ThreadGroup.h"
@@ -151,6 +151,7 @@ TEST_F(Accelerated, OneThatGivesOtherValuesIsGivenUp)
     ASSERT_EQ(this->Events, std::vector<AccelerationEvent>(1, AccelerationEvent::Failed)) << end;
     EXPECT_NE(this->Texts[0].find("its first step is another one"), std::string::npos);
     EXPECT_EQ(this->Device.steps, 1);
+    EXPECT_EQ(model->training->steps, 5u);
     EXPECT_EQ(model->parameters, expected->parameters);
     EXPECT_EQ(model->training->backend, "CPU " + cpu());
   }
