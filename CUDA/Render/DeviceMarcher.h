@@ -137,8 +137,7 @@ private:
     const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
     bool full = this->Bricks.hasInferred() && this->Bricks.finishLoad().isHopeless();
     while (true) {
-      RequireGoingOn(keepGoing);
-      FrameStatistics statistics = picture.marchOnce(onMiss);
+      FrameStatistics statistics = picture.marchOnce(onMiss, keepGoing);
       if (statistics.missed > 0) {
         full = this->loadMore(limit) || full;
       }

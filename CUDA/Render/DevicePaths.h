@@ -39,8 +39,8 @@ public:
     const bool waits =
         !this->Options.onlyWhatFits && (!limit.isLimited() || this->Overfull || this->Waiting);
     this->Picture.clearCounts();
-    TracedTiles traced =
-        waits ? this->traceFurther(round, limit, keepGoing) : this->traceOnce(round, limit);
+    TracedTiles traced = waits ? this->traceFurther(round, limit, keepGoing)
+                               : this->traceOnce(round, limit, keepGoing);
     traced.seconds = timer.seconds();
     return traced;
   }
@@ -128,13 +128,14 @@ private:
   }
 
   /// With what is there, and then some more comes in.
-  TracedTiles traceOnce(const PathRound& round, const WorkLimit& limit)
+  TracedTiles traceOnce(const PathRound& round, const WorkLimit& limit,
+                        const std::function<bool()>& keepGoing)
   {
     this->Bricks.beginFrame();
     this->Paths.runOnce(this->kernel(this->Options.preloading && limit.isLimited()
                                          ? OnMiss::Approach
                                          : OnMiss::UseCoarser),
-                        this->Order);
+                        this->Order, keepGoing);
     const std::int64_t most =
         limit.isLimited() ? this->Options.maximumRequests : this->Bricks.capacity();
     const bool full = this->Bricks.load(most, this->Options.ranking).isHopeless();

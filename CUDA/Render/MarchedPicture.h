@@ -37,12 +37,12 @@ public:
   }
 
   /// All rays once, with the bricks that are there.
-  FrameStatistics marchOnce(OnMiss onMiss)
+  FrameStatistics marchOnce(OnMiss onMiss, const std::function<bool()>& keepGoing)
   {
     return this->counted(
         [&](const MarchRays& kernel) {
           this->Bricks.beginFrame();
-          this->Rays.runOnce(kernel, this->Order);
+          this->Rays.runOnce(kernel, this->Order, keepGoing);
         },
         onMiss);
   }

@@ -33,10 +33,12 @@ public:
 
   /// Runs a kernel like MarchRays, but for its members of lists and turns, over all rays, once:
   /// none of them may wait.
-  template <class Kernel> void runOnce(const Kernel& kernel, const RayOrder& order)
+  template <class Kernel>
+  void runOnce(const Kernel& kernel, const RayOrder& order, const std::function<bool()>& keepGoing)
   {
     this->begin(order);
     while (!this->done()) {
+      RequireGoingOn(keepGoing);
       this->advance(kernel);
     }
   }

@@ -4,6 +4,7 @@
 #include "OneVolume.h"
 #include "Testing/Core/FakeAccelerator.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkObjectFactory.h>
 #include <vtkVolumeProperty.h>
@@ -214,6 +215,34 @@ TEST(Backends, GiveUpADeviceThatIsLostBetweenPictures)
   EXPECT_EQ(one.messages.warnings, 1);
   EXPECT_EQ(one.messages.errors, 0);
   EXPECT_FALSE(one.isAccelerated());
+}
+
+/// A window asks its observers whether to go on: what these set is for the next frame.
+TEST(Backends, MayBeSetWithinAFrame)
+{
+  OneBackend cpu(nullptr);
+  const inr::Image truth = cpu.scene.capture();
+  const inr::Image turned = cpu.turn();
+  for (const int fails : {FakeDevice::Never, 5}) {
+    OneBackend one(std::make_shared<FakeDevice>());
+    one.own->device->failsAt = fails;
+    vtkNew<vtkCallbackCommand> command;
+    command->SetClientData(one.own);
+    command->SetCallback([](vtkObject*, unsigned long, void* mapper, void*) {
+      auto* const volume = static_cast<vtkINRVolumeMapper*>(mapper);
+      volume->SetBackend(vtkINRVolumeMapper::CPU);
+      volume->SetBackend(vtkINRVolumeMapper::CUDA);
+      volume->SetBackend(vtkINRVolumeMapper::CPU);
+    });
+    const unsigned long tag = one.scene.window->AddObserver(vtkCommand::AbortCheckEvent, command);
+    EXPECT_GE(inr::ImagePsnr(one.scene.capture(), truth), 50);
+    ASSERT_EQ(one.mapper->GetBackend(), vtkINRVolumeMapper::CPU) << "nobody was asked";
+    EXPECT_EQ(one.isAccelerated(), fails == FakeDevice::Never);
+    one.scene.window->RemoveObserver(tag);
+    EXPECT_GE(inr::ImagePsnr(one.turn(), turned), 50);
+    EXPECT_FALSE(one.isAccelerated());
+    EXPECT_EQ(one.messages.errors, 0) << one.messages.last;
+  }
 }
 
 TEST(Backends, SayNothingOfShortMemoryUnlessAsked)

@@ -145,6 +145,33 @@ TEST_F(WriterBackends, AreInTheProgressText)
   EXPECT_NE(text.find("Training INR on the GPU, from device memory"), std::string::npos) << text;
 }
 
+/// A training goes on as it has begun, and what there is to tell of it is told.
+TEST_F(WriterBackends, MayBeSetWhileTheyTrain)
+{
+  this->Algorithm->device = &this->Device;
+  vtkNew<vtkCallbackCommand> command;
+  command->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    auto* const writer = vtkINRWriter::SafeDownCast(caller);
+    const bool isCpu = writer->GetBackend() == vtkINRWriter::CPU;
+    writer->SetBackend(isCpu ? vtkINRWriter::AUTO : vtkINRWriter::CPU);
+  });
+  const unsigned long observer = this->Algorithm->AddObserver(vtkCommand::ProgressEvent, command);
+  EXPECT_TRUE(this->write().empty());
+  EXPECT_TRUE(this->isUsed()) << this->Algorithm->GetBackendInUse();
+  const double psnr = this->Algorithm->GetPSNR();
+
+  this->Algorithm->SetBackend(vtkINRWriter::AUTO);
+  this->Device.failsAt = this->Device.calls + 15;
+  EXPECT_TRUE(Holds(this->write(), "The GPU has failed and is not used any more"));
+  EXPECT_EQ(this->Algorithm->GetPSNR(), psnr);
+
+  this->Algorithm->RemoveObserver(observer);
+  this->Algorithm->SetBackend(vtkINRWriter::CPU); // that of the next one
+  EXPECT_TRUE(this->write().empty());
+  EXPECT_TRUE(this->isCpu()) << this->Algorithm->GetBackendInUse();
+  EXPECT_EQ(this->Algorithm->GetPSNR(), psnr);
+}
+
 TEST_F(WriterBackends, OfWhichThereIsNoneAreRefused)
 {
   const MessageCapture messages;
