@@ -152,8 +152,10 @@ TEST_F(WriterBackends, MayBeSetWhileTheyTrain)
   vtkNew<vtkCallbackCommand> command;
   command->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
     auto* const writer = vtkINRWriter::SafeDownCast(caller);
-    const bool isCpu = writer->GetBackend() == vtkINRWriter::CPU;
-    writer->SetBackend(isCpu ? vtkINRWriter::AUTO : vtkINRWriter::CPU);
+    if (writer->GetProgress() > 0) { // it has begun
+      const bool isCpu = writer->GetBackend() == vtkINRWriter::CPU;
+      writer->SetBackend(isCpu ? vtkINRWriter::AUTO : vtkINRWriter::CPU);
+    }
   });
   const unsigned long observer = this->Algorithm->AddObserver(vtkCommand::ProgressEvent, command);
   EXPECT_TRUE(this->write().empty());
