@@ -44,30 +44,37 @@ inr::Image Begin(inr::Renderer& renderer, const inr::Frame& coarse)
   return image;
 }
 
-/// Where only the coarsest brick is there, the picture is the one that asks for that.
+/// Where only the coarsest brick is there, the picture is the one that asks for that: of rays that
+/// have few samples, and many, of which they take some at a time.
 TEST(UnfinishedDrawing, ShowsWhatIsThere)
 {
   for (const bool lit : {false, true}) {
-    const auto with = [&](inr::Frame frame) {
-      if (lit) {
-        frame.shading = inr::Material();
-        LightUp(frame);
-      }
-      return frame;
-    };
-    inr::Renderer renderer = RendererOf(SmallBricks(true));
-    const inr::Image coarse = Begin(renderer, with(FrameAt(Coarsest)));
-    inr::Frame frame = with(FrameAt(0));
-    frame.timeLimit = NoTime;
-    inr::Image image;
-    const inr::FrameStatistics first = renderer.render(frame, image);
-    EXPECT_FALSE(first.complete);
-    EXPECT_EQ(first.missed, first.samples);
-    EXPECT_EQ(first.levels.finest, first.levels.coarsest);
-    // Fewer samples are left out as nothing can be seen there.
-    const inr::Image fine = Draw(with(FrameAt(0)), SmallBricks(true)).rgba;
-    EXPECT_GE(inr::ImagePsnr(image, coarse), 35);
-    EXPECT_LT(inr::ImagePsnr(image, fine), 30);
+    for (const double distance : {0.7, 0.05}) {
+      SCOPED_TRACE(distance);
+      const auto with = [&](inr::Frame frame) {
+        frame.sampleDistance = distance;
+        if (lit) {
+          frame.shading = inr::Material();
+          LightUp(frame);
+        }
+        return frame;
+      };
+      inr::Renderer renderer = RendererOf(SmallBricks(true));
+      const inr::Image coarse = Begin(renderer, with(FrameAt(Coarsest)));
+      inr::Frame frame = with(FrameAt(0));
+      frame.timeLimit = NoTime;
+      inr::Image image;
+      const inr::FrameStatistics first = renderer.render(frame, image);
+      EXPECT_FALSE(first.complete);
+      EXPECT_EQ(first.missed, first.samples);
+      EXPECT_EQ(first.levels.finest, first.levels.coarsest);
+      // The ranges are those of other levels, so that they say nothing of these values.
+      EXPECT_LT(first.clamped, first.samples / 100);
+      // Fewer samples are left out as nothing can be seen there.
+      const inr::Image fine = Draw(with(FrameAt(0)), SmallBricks(true)).rgba;
+      EXPECT_GE(inr::ImagePsnr(image, coarse), 35);
+      EXPECT_LT(inr::ImagePsnr(image, fine), 30);
+    }
   }
 }
 
@@ -95,6 +102,32 @@ TEST(UnfinishedDrawing, AsksForWhatItIsToAskFor)
   }
 }
 
+/// As often as it takes.
+inr::Image Finish(inr::Renderer& renderer, const inr::Frame& frame)
+{
+  inr::Image image;
+  int calls = 1;
+  while (!renderer.render(frame, image).complete && calls < 200) {
+    ++calls;
+  }
+  EXPECT_GT(calls, 2);
+  EXPECT_LT(calls, 200);
+  return image;
+}
+
+/// Of paths, those tiles are traced again that have missed something, and no other.
+TEST(UnfinishedDrawing, TracesAgainWhatHasMissedSomething)
+{
+  inr::Frame frame = FrameAt(0, inr::RenderMode::PathTracing);
+  frame.width = 100; // four tiles, the last of which is narrow
+  frame.height = 40; // two
+  frame.samplesPerPixel = 2;
+  const inr::Image truth = Draw(frame, SmallBricks(true)).rgba;
+  inr::Renderer renderer = RendererOf(SmallBricks(true));
+  frame.timeLimit = NoTime;
+  EXPECT_EQ(Finish(renderer, frame).pixels, truth.pixels);
+}
+
 /// A gradient that reaches into a brick which is not there is not what it is to be.
 TEST(UnfinishedDrawing, IsNotCompleteWithoutWhatGradientsNeed)
 {
@@ -108,12 +141,7 @@ TEST(UnfinishedDrawing, IsNotCompleteWithoutWhatGradientsNeed)
   Begin(renderer, frame);
   frame.levelOfDetailScale = 0;
   frame.timeLimit = NoTime;
-  inr::Image image;
-  int calls = 0;
-  while (!renderer.render(frame, image).complete && ++calls < 100) {
-  }
-  EXPECT_GT(calls, 1); // those of samples come first
-  EXPECT_EQ(image.pixels, truth.pixels);
+  EXPECT_EQ(Finish(renderer, frame).pixels, truth.pixels); // those of samples come first
 }
 
 /// Also where nothing waits for all of it.
