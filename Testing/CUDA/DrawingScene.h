@@ -27,6 +27,17 @@ inline const inr::ModelPointer& TrainedModel()
   return model;
 }
 
+/// Whose macro-cells, as another program's file may, say less than there is.
+inline inr::ModelPointer WithNarrowRanges()
+{
+  auto model = std::make_shared<inr::Model>(*TrainedModel());
+  for (inr::ValueRange& range : model->macroCells.ranges) {
+    range = {0.3f, 0.6f};
+  }
+  model->macroCells.provenance = inr::MacroCellProvenance::File;
+  return model;
+}
+
 inline inr::RendererOptions OptionsWith(std::shared_ptr<const inr::Accelerator> accelerator)
 {
   inr::RendererOptions options;

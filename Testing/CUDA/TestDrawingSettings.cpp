@@ -160,17 +160,6 @@ TEST_P(DrawingSettings, DepthsAreThoseOfTheCpu)
   }
 }
 
-/// Whose macro-cells, as another program's file may, say less than there is.
-inr::ModelPointer WithNarrowRanges()
-{
-  auto model = std::make_shared<inr::Model>(*TrainedModel());
-  for (inr::ValueRange& range : model->macroCells.ranges) {
-    range = {0.3f, 0.6f};
-  }
-  model->macroCells.provenance = inr::MacroCellProvenance::File;
-  return model;
-}
-
 TEST_P(DrawingSettings, ValuesOutsideTheirRangesAreMovedAsByTheCpu)
 {
   const inr::ModelPointer model = WithNarrowRanges();
