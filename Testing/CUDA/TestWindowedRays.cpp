@@ -189,6 +189,21 @@ TEST(WindowedRays, EndThoseOfAList)
   }
 }
 
+/// There is memory for as many as wait, however few there were before.
+TEST(WindowedRays, MayBeMoreThanBefore)
+{
+  HostMachine machine;
+  FewBricks bricks{4, {}, {}, {}};
+  Rays rays(machine, bricks, 1000);
+  std::vector<int> ended(static_cast<std::size_t>(Width * Height), 0);
+  const std::uint32_t pixel = 0;
+  RunToEnd(rays, Kernel(ended, true), {Width, Height, &pixel, 1}, {});
+  RunToEnd(rays, Kernel(ended, true), All, {});
+  EXPECT_EQ(ended[0], 2);
+  ended[0] = 1;
+  EXPECT_EQ(ended, std::vector<int>(ended.size(), 1));
+}
+
 /// More rays than the cache has room for are not all begun anew: what one has come past stays.
 TEST(WindowedRays, TakeNoLongerThanTheirBricks)
 {
