@@ -3,9 +3,6 @@
 // The GPU's kernels as an accelerator for renderers, run on the host.
 #pragma once
 
-#include "CUDA/Cache/DeviceCache.h"
-#include "CUDA/Render/DeviceRenderer.h"
-#include "CUDA/Render/NetworkRenderer.h"
 #include "Core/Cache/Accelerator.h"
 #include "Testing/CUDA/Emulated.h"
 #include "Testing/CUDA/EmulatedInference.h"
@@ -38,45 +35,17 @@ public:
   {
     return std::make_shared<EmulatedBricks>(this->on(model), hierarchy);
   }
+  /// Null where it only infers; else on a HostMachine.
   std::shared_ptr<inr::AcceleratedRenderer>
   makeRenderer(const inr::ModelPointer& model, const glm::i64vec3& dims,
-               const inr::CacheOptions& options) const override
-  {
-    if (this->Does == Duty::Infers) {
-      return nullptr;
-    }
-    return this->makeRendererOn<HostMachine>(this->Launch, model, dims, options);
-  }
+               const inr::CacheOptions& options) const override;
   std::shared_ptr<inr::AcceleratedRenderer>
-  makeNetworkRenderer(const inr::ModelPointer& model) const override
-  {
-    if (this->Does == Duty::Infers) {
-      return nullptr;
-    }
-    return this->makeNetworkRendererOn<HostMachine>(this->Launch, model);
-  }
+  makeNetworkRenderer(const inr::ModelPointer& model) const override;
 
 protected:
-  /// `where`: of what the machine is made.
-  template <class Machine, class Where>
-  std::shared_ptr<inr::AcceleratedRenderer>
-  makeRendererOn(const Where& where, const inr::ModelPointer& model, const glm::i64vec3& dims,
-                 const inr::CacheOptions& options, const inr::cuda::WindowSizes& sizes = {}) const
+  EmulatedInference inferenceOf(const inr::ModelPointer& model) const
   {
-    using Cache = inr::cuda::DeviceCache<Machine, EmulatedInference>;
-    auto store = std::make_shared<inr::cuda::DeviceStore<Machine, Cache>>(
-        where, EmulatedInference(this->on(model)), inr::Hierarchy(dims, options.brickSize),
-        options.precision, this->Bytes > 0 ? this->Bytes : options.bytes);
-    return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options,
-                                                                       sizes);
-  }
-  template <class Machine, class Where>
-  std::shared_ptr<inr::AcceleratedRenderer>
-  makeNetworkRendererOn(const Where& where, const inr::ModelPointer& model,
-                        const inr::cuda::WaveSizes& sizes = {}) const
-  {
-    return std::make_shared<inr::cuda::NetworkRenderer<Machine, EmulatedInference>>(
-        where, EmulatedInference(this->on(model)), sizes);
+    return EmulatedInference(this->on(model));
   }
 
 private:

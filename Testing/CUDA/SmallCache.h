@@ -3,6 +3,7 @@
 // Pictures of more bricks than their cache on the device holds.
 #pragma once
 
+#include "CUDA/Cache/CacheLayout.h"
 #include "Testing/CUDA/DrawingScene.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 //
 // What becomes of pictures that a device draws when it is lost, lies, or is told to stop.
 #include "Testing/CUDA/DrawingScene.h"
+#include "Testing/CUDA/EmulatedRenderers.h"
 #include "Testing/CUDA/FailingMachine.h"
 
 namespace {
@@ -19,7 +20,7 @@ public:
   makeRenderer(const inr::ModelPointer& model, const glm::i64vec3& dims,
                const inr::CacheOptions& options) const override
   {
-    return this->makeRendererOn<FailingMachine>(this->Orders, model, dims, options);
+    return MakeRendererOn<FailingMachine>(this->Orders, this->inferenceOf(model), dims, options);
   }
 
 private:

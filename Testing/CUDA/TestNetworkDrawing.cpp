@@ -2,6 +2,7 @@
 //
 // Pictures straight from the network by the kernels, against those of Core's renderer.
 #include "Testing/CUDA/DrawingScene.h"
+#include "Testing/CUDA/EmulatedRenderers.h"
 #include "Testing/CUDA/FailingMachine.h"
 #include "Testing/CUDA/MarchedCases.h"
 
@@ -23,9 +24,10 @@ public:
   std::shared_ptr<inr::AcceleratedRenderer>
   makeNetworkRenderer(const inr::ModelPointer& model) const override
   {
+    EmulatedInference inference = this->inferenceOf(model);
     return this->Orders
-               ? this->makeNetworkRendererOn<FailingMachine>(this->Orders, model, this->Sizes)
-               : this->makeNetworkRendererOn<HostMachine>(this->Launch, model, this->Sizes);
+               ? MakeNetworkRendererOn<FailingMachine>(this->Orders, inference, this->Sizes)
+               : MakeNetworkRendererOn<HostMachine>(this->Launch, inference, this->Sizes);
   }
 
 private:

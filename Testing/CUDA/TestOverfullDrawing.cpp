@@ -2,6 +2,7 @@
 //
 // Pictures that want more bricks than their cache on the device holds, in a limited time: they come
 // piece by piece, over several calls.
+#include "Testing/CUDA/EmulatedRenderers.h"
 #include "Testing/CUDA/FailingMachine.h"
 #include "Testing/CUDA/SmallCache.h"
 
@@ -250,9 +251,7 @@ public:
                const inr::CacheOptions& options) const override
   {
     if (!this->Store) {
-      const EmulatedInference inference(
-          std::make_shared<EmulatedModel>(model, inr::cuda::Precision::Float32, HostLaunch()));
-      this->Store = std::make_shared<WatchedStore>(this->Orders, inference,
+      this->Store = std::make_shared<WatchedStore>(this->Orders, this->inferenceOf(model),
                                                    inr::Hierarchy(dims, options.brickSize),
                                                    options.precision, BytesFor(20, 0));
     }
