@@ -8,6 +8,7 @@
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/CachedRenderer.h"
+#include "Core/Render/KeptFrame.h"
 #include "Core/Render/WorkLimit.h"
 
 #include <cstdint>
@@ -56,16 +57,14 @@ private:
   /// A round whose paths have not all come to their end, between the calls that it takes.
   struct Unfinished
   {
-    explicit Unfinished(const PathRound& round)
-        : tiles(round.tiles), sample(round.tracer.frame().frameIndex)
-    {}
+    explicit Unfinished(const PathRound& round) : frame(round.tracer.frame()), tiles(round.tiles) {}
     bool isOf(const PathRound& round) const
     {
-      return round.tracer.frame().frameIndex == this->sample && round.tiles == this->tiles;
+      return this->frame.isOf(round.tracer.frame()) && round.tiles == this->tiles;
     }
 
+    KeptFrame frame; ///< of the picture, with the number of its sample
     std::vector<std::int64_t> tiles;
-    std::uint64_t sample;  ///< of the picture
     FrameStatistics soFar; ///< but for the work
   };
 

@@ -38,7 +38,7 @@ public:
   {
     this->begin(order);
     while (!this->done()) {
-      RequireGoingOn(keepGoing);
+      this->requireGoingOn(keepGoing);
       this->advance(kernel);
     }
   }
@@ -79,6 +79,17 @@ public:
   }
 
 private:
+  /// Else what some rays wish for would come in with the next picture's.
+  void requireGoingOn(const std::function<bool()>& keepGoing)
+  {
+    try {
+      RequireGoingOn(keepGoing);
+    } catch (const Error&) {
+      this->Bricks.forgetRequests();
+      throw;
+    }
+  }
+
   using Rays = typename Machine::template Array<Progress>;
 
   void beginWindow()

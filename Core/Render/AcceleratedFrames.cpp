@@ -25,14 +25,13 @@ std::uint32_t KindOf(const Frame& frame)
   return 1u << (4 * mode + 2 * lit + cropped);
 }
 
-bool ShowsSomething(const Image& rgba)
+int PixelsShown(const Image& rgba)
 {
+  int shown = 0;
   for (std::size_t k = 3; k < rgba.pixels.size(); k += 4) {
-    if (rgba.pixels[k] > 0.0f) {
-      return true;
-    }
+    shown += rgba.pixels[k] > 0.0f ? 1 : 0;
   }
-  return false;
+  return shown;
 }
 
 /// As if the brightest colour of both pictures were white, and the largest alpha opaque: of faint
@@ -53,8 +52,11 @@ void Brighten(Image& a, Image& b)
   }
 }
 
+/// Pixels that say something of paths, of which rounding has one in thousands part ways.
+constexpr int FewestPixels = 32;
+
 /// Of the pixels that paths show in either picture, the part that is another colour: whatever
-/// parts ways for rounding meets nothing the same any more.
+/// parts ways for rounding meets nothing the same any more. 0 where they are too few to tell.
 double PartOfOthers(const Image& drawn, const Image& truth)
 {
   constexpr float tolerance = 1e-2f;
@@ -71,14 +73,14 @@ double PartOfOthers(const Image& drawn, const Image& truth)
       others += same ? 0 : 1;
     }
   }
-  return shown > 0 ? others / shown : 0;
+  return shown >= FewestPixels ? others / shown : 0;
 }
 
 /// What is wrong with a picture, beyond rounding; empty if nothing is.
 std::string WhatDiffers(RenderMode mode, Image drawn, Image truth)
 {
-  constexpr double least = 40;          // dB; rounding leaves twice as many
-  constexpr double mostOthers = 1. / 8; // rounding has one path in thousands part ways
+  constexpr double least = 40; // dB; rounding leaves twice as many
+  constexpr double mostOthers = 1. / 8;
   if (mode == RenderMode::PathTracing) {
     const double others = PartOfOthers(drawn, truth);
     return others <= mostOthers
@@ -172,7 +174,8 @@ void AcceleratedFrames::prove(const Frame& frame, double scale, const Draw& acce
     if (!difference.empty()) {
       throw Error(ErrorCode::Device, difference);
     }
-    if (ShowsSomething(truth)) { // else it proves nothing
+    const int fewest = small.mode == RenderMode::PathTracing ? FewestPixels : 1;
+    if (PixelsShown(truth) >= fewest) { // else it proves nothing
       this->Proven |= kind;
     }
   });

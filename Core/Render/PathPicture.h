@@ -59,9 +59,10 @@ public:
   /// Error(InvalidArgument) as PathTracer does, and for fewer than one sample per pixel.
   FrameStatistics advance(const Frame& frame, const PathMedium& medium, const TraceTiles& trace,
                           const WorkLimit& limit, const PassOutput& output);
+  /// Whether a call with that frame would go on with the same picture.
+  bool continues(const Frame& frame) const;
 
 private:
-  bool continues(const Frame& frame) const;
   void start(const Frame& frame);
   void traceRound(const PathMedium& medium, const TraceTiles& trace);
   void finishTiles(const TracedTiles& traced);

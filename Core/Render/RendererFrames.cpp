@@ -110,7 +110,13 @@ bool Renderer::Implementation::isDrawnElsewhere(const Frame& frame,
   };
   // Where pictures make do with what fits, that is nowhere the same, but for the coarsest level.
   // And paths to lights go far at the level where they begin, through any number of bricks.
-  const bool coarsest = this->Options.cache.onlyWhatFits || frame.mode == RenderMode::PathTracing;
+  const bool traces = frame.mode == RenderMode::PathTracing;
+  const bool coarsest = this->Options.cache.onlyWhatFits || traces;
+  if (traces) { // through the finer levels, rays go
+    Frame rays = frame;
+    rays.mode = RenderMode::RayMarching;
+    this->Drawn->prove(rays, this->Options.cache.onlyWhatFits ? 1e9 : 1.0, elsewhere, here);
+  }
   this->Drawn->prove(frame, coarsest ? 1e9 : 1.0, elsewhere, here);
   return this->Drawn->draws(frame);
 }
@@ -159,11 +165,7 @@ void Renderer::Implementation::traceAlone(const Frame& frame, const WorkLimit& l
                                           const PassOutput& output, const TraceTiles& trace)
 {
   PathPicture picture;
-  const TraceTiles asOneMore = [&](const PathRound& round) {
-    constexpr bool first = false; // what is known of the picture in the making stays
-    return trace({round.tracer, round.tiles, round.output, round.whole, first});
-  };
-  picture.advance(frame, this->medium(), asOneMore, limit, output);
+  picture.advance(frame, this->medium(), trace, limit, output);
 }
 
 TracedTiles Renderer::Implementation::traceHere(const PathRound& round, const Evaluator& field,
@@ -192,7 +194,10 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
     this->Paths.emplace();
   }
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
-  this->isDrawnElsewhere(frame, keepGoing); // is found out beforehand
+  if (!this->Paths->continues(
+          frame)) { // in its midst another picture would take the device's place
+    this->isDrawnElsewhere(frame, keepGoing);
+  }
   const TraceTiles trace = [&](const PathRound& round) {
     return this->traceRound(round, limit, keepGoing);
   };

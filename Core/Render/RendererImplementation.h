@@ -34,7 +34,8 @@ struct Renderer::Implementation
                  const ModelPointer& model, VolumeInfo volume, const MacroCells& cells,
                  RendererOptions options);
 
-  /// Whether the accelerator draws such a frame itself; it is then known to draw rightly.
+  /// Whether the accelerator draws such a frame itself; it is then known to draw rightly, if a small
+  /// picture of that kind shows anything.
   bool isDrawnElsewhere(const Frame& frame, const std::function<bool()>& keepGoing);
   /// Such a small picture as proves it, drawn there if that does not fail, and by the CPU.
   void proveElsewhere(const Frame& small, const PassOutput& output,

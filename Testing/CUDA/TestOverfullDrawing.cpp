@@ -6,6 +6,8 @@
 #include "Testing/CUDA/FailingMachine.h"
 #include "Testing/CUDA/SmallCache.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 #include <vector>
 
@@ -34,6 +36,16 @@ inr::Frame OtherFrame(inr::RenderMode mode)
 {
   inr::Frame frame = FullResolution(mode);
   frame.clipToWorld[0][0] *= 1.1;
+  return frame;
+}
+
+/// Turned round by half.
+inr::Frame FromBehind(inr::Frame frame)
+{
+  const glm::dvec3 center = 0.5 * glm::dvec3(TrainedModel()->volume.dims);
+  glm::dmat4 turn = glm::translate(glm::dmat4(1.0), center);
+  turn = glm::rotate(turn, glm::radians(180.0), glm::dvec3(0, 1, 0));
+  frame.clipToWorld = glm::translate(turn, -center) * frame.clipToWorld;
   return frame;
 }
 
@@ -241,9 +253,9 @@ using WatchedStore = inr::cuda::DeviceStore<FailingMachine, WatchedCache>;
 class WatchedAccelerator : public EmulatedAccelerator
 {
 public:
-  explicit WatchedAccelerator(std::shared_ptr<FailingOrders> orders)
+  explicit WatchedAccelerator(std::shared_ptr<FailingOrders> orders, std::int64_t bricks = 20)
       : EmulatedAccelerator(inr::cuda::Precision::Float32, Duty::InfersAndDraws),
-        Orders(std::move(orders))
+        Orders(std::move(orders)), Capacity(bricks)
   {}
 
   std::shared_ptr<inr::AcceleratedRenderer>
@@ -253,7 +265,7 @@ public:
     if (!this->Store) {
       this->Store = std::make_shared<WatchedStore>(this->Orders, this->inferenceOf(model),
                                                    inr::Hierarchy(dims, options.brickSize),
-                                                   options.precision, BytesFor(20, 0));
+                                                   options.precision, BytesFor(this->Capacity, 0));
     }
     return std::make_shared<inr::cuda::DeviceRenderer<FailingMachine, WatchedCache>>(
         this->Store, options, inr::cuda::WindowSizes{50, 40});
@@ -263,6 +275,7 @@ public:
 
 private:
   std::shared_ptr<FailingOrders> Orders;
+  std::int64_t Capacity;
   mutable std::shared_ptr<WatchedStore> Store;
 };
 
@@ -357,6 +370,87 @@ TEST(WatchedDrawing, ComesToItsEndBesideAnotherInTheSameCache)
     bool complete[2] = {false, false};
     for (int calls = 0; !(complete[0] && complete[1]); ++calls) {
       ASSERT_LT(calls, MostCalls);
+      for (int k = 0; k < 2; ++k) {
+        complete[k] = renderers[k].render(Hurried(frames[k]), images[k]).complete;
+      }
+    }
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_EQ(images[k].pixels, Draw(frames[k], RoomFor(Place::Host, 0)).rgba.pixels) << k;
+    }
+  }
+}
+
+/// A proof that shows nothing, and is asked for at each picture, leaves what is in the making.
+TEST(WatchedDrawing, ComesToItsEndWhereOnlyFineLevelsShowAnything)
+{
+  inr::TransferFunction peaks = ColoursOf(TrainedModel()->volume);
+  for (std::size_t k = 0; k < peaks.table.size(); ++k) {
+    peaks.table[k].w = 4 * k < 3 * peaks.table.size() ? 0.0f : 0.5f;
+  }
+  const inr::Frame frame = LitFrame(inr::RenderMode::PathTracing);
+  const auto with = [&](const inr::RendererOptions& options) {
+    inr::Renderer renderer = RendererOf(options);
+    renderer.setTransferFunction(peaks);
+    return renderer;
+  };
+  inr::Frame coarse = frame;
+  coarse.levelOfDetailScale = 1e9;
+  inr::Image truth;
+  ASSERT_TRUE(with(RoomFor(Place::Host, 0)).render(coarse, truth).complete);
+  ASSERT_EQ(*std::max_element(truth.pixels.begin(), truth.pixels.end()), 0.0f);
+  ASSERT_TRUE(with(RoomFor(Place::Host, 0)).render(frame, truth).complete);
+  ASSERT_GT(*std::max_element(truth.pixels.begin(), truth.pixels.end()), 0.0f);
+  inr::Renderer renderer = with(Watched(std::make_shared<FailingOrders>()));
+  inr::Image image;
+  End(renderer, Hurried(frame), image);
+  EXPECT_EQ(image.pixels, truth.pixels);
+  EXPECT_FALSE(renderer.acceleratorFailure());
+}
+
+/// Nor is a proof that was stopped gone on with for another picture.
+TEST(WatchedDrawing, IsProvenByItsOwnPictures)
+{
+  const inr::Frame frame = LitFrame(inr::RenderMode::PathTracing);
+  const inr::Frame other = FromBehind(frame);
+  const Drawn truth = Draw(other, RoomFor(Place::Host, 0));
+  for (int most = 0; most < 20; ++most) {
+    inr::Renderer renderer = RendererOf(Watched(std::make_shared<FailingOrders>()));
+    inr::Image image;
+    int asked = 0;
+    const auto stopAfterSome = [&] { return asked++ < most; };
+    EXPECT_THROW(renderer.render(frame, image, nullptr, stopAfterSome), inr::Error) << most;
+    EXPECT_TRUE(renderer.render(other, image).accelerated) << most;
+    EXPECT_FALSE(renderer.acceleratorFailure())
+        << most << " " << renderer.acceleratorFailure()->reason;
+    EXPECT_EQ(image.pixels, truth.rgba.pixels) << most;
+  }
+}
+
+/// The same where either picture would fit, if it had the cache for itself.
+TEST(WatchedDrawing, ComesToItsEndBesideAnotherThatFitsOnlyAlone)
+{
+  for (const inr::RenderMode mode : Modes) {
+    inr::Frame frames[2] = {FullResolution(mode), FullResolution(mode)};
+    for (int k = 0; k < 2; ++k) { // slabs side by side
+      const glm::dvec3 normal(k == 0 ? 1 : -1, 0, 0);
+      const glm::dvec4 width(0, 0, 0, TrainedModel()->volume.dims.x / 6.0);
+      frames[k].clippingPlanes = {PlaneAcross(normal), PlaneAcross(-normal) + width};
+    }
+    std::int64_t most = 0;
+    for (const inr::Frame& frame : frames) {
+      inr::Renderer alone = RendererOf(RoomFor(Place::Host, 0));
+      inr::Image image;
+      End(alone, Hurried(frame), image);
+      most = std::max(most, alone.cachedBricks());
+    }
+    ASSERT_LT(most, 120);
+    const inr::RendererOptions options = Watched(
+        std::make_shared<const WatchedAccelerator>(std::make_shared<FailingOrders>(), most + 1));
+    inr::Renderer renderers[2] = {RendererOf(options), RendererOf(options)};
+    inr::Image images[2];
+    bool complete[2] = {false, false};
+    for (int calls = 0; !(complete[0] && complete[1]); ++calls) {
+      ASSERT_LT(calls, MostCalls) << complete[0] << complete[1];
       for (int k = 0; k < 2; ++k) {
         complete[k] = renderers[k].render(Hurried(frames[k]), images[k]).complete;
       }
