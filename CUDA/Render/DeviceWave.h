@@ -5,6 +5,7 @@
 #include "CUDA/Render/Kernels/Wave.h"
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Inference/Evaluator.h"
+#include "Core/Render/TileLoop.h"
 
 #include <algorithm>
 #include <array>
@@ -45,7 +46,7 @@ public:
     WaveCounts counts{};
     counts.rounds[0].rays = static_cast<std::uint64_t>(slots);
     while (counts.rounds[0].rays > 0) {
-      RequireGoingOn(keepGoing);
+      RequireGoing(keepGoing);
       this->advance(kernel, counts);
       kernel.task = Kernel::Task::GoOn;
       if (counts.marked > 0) {

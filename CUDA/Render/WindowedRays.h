@@ -3,6 +3,7 @@
 
 #include "CUDA/Render/RayTurns.h"
 #include "Core/Error.h"
+#include "Core/Render/TileLoop.h"
 #include "Core/Render/WorkLimit.h"
 
 #include <algorithm>
@@ -12,14 +13,6 @@
 
 namespace inr {
 namespace cuda {
-
-/// Throws Error(Cancelled) when `keepGoing`, which may be empty, says so.
-inline void RequireGoingOn(const std::function<bool()>& keepGoing)
-{
-  if (keepGoing && !keepGoing()) {
-    throw Error(ErrorCode::Cancelled, "rendering stopped on request");
-  }
-}
 
 /// The rays of a picture, window by window: as many at once as have memory to wait in. `Progress`:
 /// of a ray that waits.
@@ -65,7 +58,7 @@ public:
     const std::int64_t most = counts ? maximumRequests : this->Bricks.capacity();
     const auto inTime = [&] { return !limit.endsWithin(0); };
     while (!this->done()) {
-      RequireGoingOn(keepGoing);
+      RequireGoing(keepGoing);
       this->Bricks.beginFrame();
       const bool wait = this->advance(kernel);
       if (!inTime() && cameFurther()) {
@@ -83,7 +76,7 @@ private:
   void requireGoingOn(const std::function<bool()>& keepGoing)
   {
     try {
-      RequireGoingOn(keepGoing);
+      RequireGoing(keepGoing);
     } catch (const Error&) {
       this->Bricks.forgetRequests();
       throw;

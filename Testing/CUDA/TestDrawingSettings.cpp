@@ -6,18 +6,14 @@
 
 namespace {
 
-class DrawingSettings : public testing::TestWithParam<Place>
+class DrawingSettings : public InAPlace
 {
 protected:
-  void SetUp() override { SkipUnlessThere(GetParam()); }
-
   inr::RendererOptions options() const { return OptionsWith(DeviceIn(GetParam())); }
 };
 
 INSTANTIATE_TEST_SUITE_P(Kernels, DrawingSettings, testing::Values(Place::Host, Place::Gpu),
-                         [](const testing::TestParamInfo<Place>& info) {
-                           return info.param == Place::Host ? "Host" : "Gpu";
-                         });
+                         InAPlace::nameOf);
 
 inr::Frame SmallFrame(inr::RenderMode mode)
 {
