@@ -102,7 +102,9 @@ bool AcceleratedFrames::draws(const Frame& frame)
   if (this->Device && this->Field->failure()) { // of which somebody else was told
     this->Device.reset();
   }
-  return this->Device && !frame.layers && frame.blending.mode != BlendMode::Isosurface;
+  const bool isKnown =
+      !frame.layers && !frame.preIntegration && frame.blending.mode != BlendMode::Isosurface;
+  return this->Device && isKnown;
 }
 
 bool AcceleratedFrames::succeeds(const std::function<void()>& call)

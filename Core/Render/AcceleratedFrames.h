@@ -23,7 +23,7 @@ public:
   {}
 
   /// Whether it draws such a frame: what is composited or projected, or traced, without translucent
-  /// layers.
+  /// layers or pre-integration.
   bool draws(const Frame& frame);
   /// See AcceleratedRenderer.
   void setColors(const Majorants& majorants, const ColorLookup& colors);

@@ -4,6 +4,8 @@
 #include "Core/Render/BrickKernel.h"
 
 #include "Core/Inference/Lanes.h"
+#include "Core/Render/IntegralCompositing.h"
+#include "Core/Render/RgbaVectors.h"
 #include "Core/Render/SampleLayout.h"
 
 namespace inr {
@@ -240,16 +242,6 @@ void Classify(const StepLookup& lookup, const SampleBatch& batch, int count, Cla
   }
 }
 
-typedef float Rgba __attribute__((vector_size(16)));
-typedef double ExactRgba __attribute__((vector_size(32)));
-
-Rgba LoadRgba(const float* from)
-{
-  Rgba value;
-  std::memcpy(&value, from, sizeof(value));
-  return value;
-}
-
 /// With colours and opacities of type Vector, four of Number.
 template <typename Number, typename Vector>
 int CompositeAs(const StepLookup& lookup, SampleBatch& batch, int count, float opaque,
@@ -289,7 +281,7 @@ int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opa
 
 } // namespace
 
-const BrickKernel Bricks = {FindShown, SampleRuns, Sample, Composite};
+const BrickKernel Bricks = {FindShown, SampleRuns, Sample, Composite, CompositeIntegrated};
 
 } // namespace INR_ISA
 } // namespace inr

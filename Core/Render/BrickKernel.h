@@ -47,6 +47,26 @@ struct StepLookup
   float bias;
 };
 
+/// A place of a transfer function from which on, to the next one's, density is linear: extinction
+/// times RGB, and extinction, per unit distance.
+struct IntegralNode
+{
+  double integral[4]; ///< of the density over positions, up to here
+  float density[4];
+  float next[4]; ///< at the next node, or the same where there is none
+};
+
+/// The integrals of a frame's colours; see PreIntegratedColors. Node k + 1 is at position k; the
+/// first one stands for all positions below 0, and the last one for all above `last`.
+struct IntegralLookup
+{
+  const IntegralNode* nodes;
+  int last;
+  float scale; ///< position = scale * y + bias
+  float bias;
+  float step; ///< of a ray, in opacity unit distances
+};
+
 /// Samples on a ray's way through a brick: sample k is (start + k * spacing) + offset along it.
 struct SampleRow
 {
@@ -92,6 +112,7 @@ struct SampleBatch
   float high[Room];
   std::int32_t length[Room];
   float value[Room];   ///< out of `sample` and `sampleRuns`
+  float begin[Room];   ///< for `compositeIntegrated`: value where what the sample stands for begins
   float opacity[Room]; ///< out of `composite`: accumulated before the sample
 };
 
@@ -124,6 +145,11 @@ struct BrickKernel
   /// many were used. Adds to `clamped` those outside their range.
   int (*composite)(const StepLookup& lookup, SampleBatch& batch, int count, float opaque,
                    RayColor& color, std::int64_t& clamped);
+
+  /// The same of samples [first, end), each of which has the colours of all values from `begin` to
+  /// `value`; no value is outside its range.
+  int (*compositeIntegrated)(const IntegralLookup& lookup, SampleBatch& batch, int first, int end,
+                             float opaque, RayColor& color);
 };
 
 /// The kernel built for `set`, which must be usable.

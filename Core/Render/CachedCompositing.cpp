@@ -33,16 +33,21 @@ void CachedMarcher::composite(CachedRay& state)
   const int used =
       this->Scene.kernel.composite(this->Scene.steps, this->Batch, this->Count, OpaqueTransmittance,
                                    state.color, this->Statistics.clamped);
-  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
-    int k = 0; // the last sample whose light was not yet halved
-    while (k + 1 < used && this->Batch.opacity[k + 1] < 0.5f) {
-      ++k;
-    }
-    state.halfOpaqueAt = this->timeOf(state, k);
-  }
+  this->noteHalfOpaque(state, 0, used);
   if (this->LastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
     this->Batch.value[this->Count] = last;
     this->compositeLast(state);
+  }
+}
+
+void CachedMarcher::noteHalfOpaque(CachedRay& state, int first, int end) const
+{
+  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
+    int k = first; // the last sample whose light was not yet halved
+    while (k + 1 < end && this->Batch.opacity[k + 1] < 0.5f) {
+      ++k;
+    }
+    state.halfOpaqueAt = this->timeOf(state, k);
   }
 }
 
@@ -84,18 +89,23 @@ void CachedMarcher::clampToRanges()
   this->Statistics.clamped += CountBits(this->Clamped);
 }
 
+double CachedMarcher::lengthOf(int sample) const
+{
+  if (this->LastLength > 0 && sample + 1 == this->Count) {
+    return static_cast<double>(this->LastLength);
+  }
+  const double step = this->Scene.settings.step * this->Scene.settings.unitsPerT;
+  return step * static_cast<double>(StepsOf(this->Batch.length[sample]));
+}
+
 int CachedMarcher::findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const
 {
-  const double step = this->Scene.settings.step * this->Scene.settings.unitsPerT;
   double transmittance = state.color.transmittance;
   int k = 0;
   for (; k < this->Count && transmittance > OpaqueTransmittance; ++k) {
-    const bool isLast = this->LastLength > 0 && k + 1 == this->Count;
-    const float length =
-        isLast ? this->LastLength
-               : static_cast<float>(step * static_cast<double>(StepsOf(this->Batch.length[k])));
     colors[k] = this->Scene.colors.at(this->Batch.value[k]);
-    opacities[k] = colors[k].w > 0.0f ? OpacityOver(length, colors[k].w) : 0.0f;
+    opacities[k] =
+        colors[k].w > 0.0f ? OpacityOver(static_cast<float>(this->lengthOf(k)), colors[k].w) : 0.0f;
     transmittance -= transmittance * opacities[k];
   }
   return k;

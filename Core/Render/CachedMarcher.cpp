@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/CachedMarcher.h"
 
+#include "Core/Render/PreIntegratedColors.h"
 #include "Core/Render/SampleBits.h"
 
 #include <algorithm>
@@ -11,8 +12,8 @@ namespace {
 
 /// Samples that a ray's first batch is for.
 constexpr int FirstRoom = 32;
-/// And, at most, one of samples that are shaded: of these there is a bit for each.
-constexpr int MostShaded = 64;
+/// And, at most, one of samples that are looked at one by one: of these there is a bit for each.
+constexpr int MostSingle = 64;
 
 SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t stream)
 {
@@ -37,9 +38,14 @@ CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
     : Scene(scene), Missing(onMiss),
       DitherMask(scene.settings.projector.findsSurfaces() ? 0 : ~std::int64_t{0})
 {
-  if (scene.settings.projector.findsSurfaces()) {
+  if (scene.settings.looksAtBothEnds()) {
     this->Probe.emplace(scene, onMiss);
-  } else if (scene.shading != nullptr) {
+  }
+  if (scene.settings.preIntegrated != nullptr) {
+    this->Integrals =
+        scene.settings.preIntegrated->kernelLookup(scene.settings.step * scene.settings.unitsPerT);
+  }
+  if (scene.shading != nullptr && !scene.settings.projector.findsSurfaces()) {
     this->Shader.emplace(*scene.shading, BrickGradients(scene.cache, scene.format, scene.kernel));
   }
 }
@@ -97,6 +103,7 @@ bool CachedMarcher::enterNextPart(CachedRay& state) const
   state.samples = SamplesOf(this->Scene, state.ray, state.stream);
   state.color.ofMany = state.color.ofMany || state.samples.end() > ManySamples;
   state.known = {};
+  state.shownTo = CachedRay::Unknown;
   return true;
 }
 
@@ -118,10 +125,12 @@ bool CachedMarcher::marchPart(CachedRay& state)
   this->Room = FirstRoom;
   while (!this->Ended && !this->Waiting) {
     const double before = state.color.transmittance;
-    if (this->Probe) {
+    if (this->Scene.settings.projector.findsSurfaces()) {
       this->advanceSurfaces(state);
     } else if (this->Shader) {
       this->advanceShaded(state);
+    } else if (this->Scene.settings.preIntegrated != nullptr) {
+      this->advanceIntegrated(state);
     } else {
       this->place(state);
       this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
@@ -170,7 +179,7 @@ void CachedMarcher::adaptRoom(double before, double after)
   if (after < 0.5 * before || after < little) {
     this->Room = FirstRoom;
   } else if (after < 1.0 && after > 0.75 * before) {
-    this->Room = std::min(2 * this->Room, this->Shader ? MostShaded : SampleBatch::Capacity);
+    this->Room = std::min(2 * this->Room, this->mayGoBack() ? MostSingle : SampleBatch::Capacity);
   }
 }
 
@@ -190,42 +199,54 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
 
 void CachedMarcher::advanceShaded(CachedRay& state)
 {
-  const CachedRay before = state; // gradients may ask for bricks that are not there
+  const SampleWalker before = state.samples; // bricks may be asked for that are not there
   this->place(state);
   this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
   this->clampToRanges();
+  const bool integrates = this->Scene.settings.preIntegrated != nullptr;
   glm::vec4 colors[SampleBatch::Capacity];
   float opacities[SampleBatch::Capacity];
-  const int needed = this->findOpacities(state, colors, opacities);
+  int known = integrates ? this->findIntegrated(state, colors, opacities)
+                         : this->findOpacities(state, colors, opacities);
   double t[SampleBatch::Capacity];
-  for (int k = 0; k < needed; ++k) {
+  for (int k = 0; k < known; ++k) {
     t[k] = this->timeOf(state, k);
   }
-  const bool stops = this->Missing == OnMiss::Stop;
-  const SampleShader::Request request{
-      state.ray, stops ? BrickGradients::Missing::Stop : BrickGradients::Missing::OneSided,
-      static_cast<float>(state.color.transmittance), this->Bricks, t};
-  const std::size_t asked = this->Requests.entries().size();
-  const int known = this->Shader->shade(this->Batch, needed, request, this->Requests, colors);
-  if (!stops) {
-    this->Statistics.missed += static_cast<std::int64_t>(this->Requests.entries().size() - asked);
-  }
+  known = this->shade(state, known, t, colors);
   for (int k = 0; k < known; ++k) {
     if (opacities[k] > 0.0f) {
       this->addLight(state, colors[k], opacities[k], t[k]);
     }
+  }
+  if (integrates && known > 0) {
+    state.known = this->knownBehind(known - 1);
   }
   if (known < this->Count && state.color.transmittance > OpaqueTransmittance) {
     this->goBackTo(known, before, state);
   }
 }
 
-void CachedMarcher::goBackTo(int sample, const CachedRay& before, CachedRay& state)
+int CachedMarcher::shade(const CachedRay& state, int count, const double* t, glm::vec4* colors)
+{
+  const bool stops = this->Missing == OnMiss::Stop;
+  const SampleShader::Request request{
+      state.ray, stops ? BrickGradients::Missing::Stop : BrickGradients::Missing::OneSided,
+      static_cast<float>(state.color.transmittance), this->Bricks, t};
+  const std::size_t asked = this->Requests.entries().size();
+  const int known = this->Shader->shade(this->Batch, count, request, this->Requests, colors);
+  if (!stops) {
+    this->Statistics.missed += static_cast<std::int64_t>(this->Requests.entries().size() - asked);
+  }
+  return known;
+}
+
+void CachedMarcher::goBackTo(int sample, const SampleWalker& before, CachedRay& state)
 {
   const Origin& origin = this->originOf(sample);
-  this->Statistics.work.cells += state.samples.visited() - before.samples.visited();
-  state.samples = before.samples;
+  this->Statistics.work.cells += state.samples.visited() - before.visited();
+  state.samples = before;
   state.samples.resume(intervalOf(origin, sample), origin.stretch, this->Scene.settings);
+  state.shownTo = intervalOf(origin, sample); // this one is wanted, whether it shows something
   this->Statistics.samples -= this->Count - sample; // they will be counted again
   this->Statistics.clamped -= CountBits(this->Clamped >> sample);
   const int taken = sample - origin.sample;

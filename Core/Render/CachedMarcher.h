@@ -15,7 +15,7 @@ namespace inr {
 /// A value of the field as a level has it.
 struct KnownValue
 {
-  std::int64_t at = -1; ///< place on the ray, of a lattice interval's end
+  std::int64_t at = -2; ///< place on the ray, of the end of an interval of its lattice; -2 = none
   int level = -1;
   float value = 0;
 };
@@ -32,6 +32,9 @@ struct CachedRay
 {
   CachedRay(const CachedScene& scene, int x, int y);
 
+  static constexpr std::int64_t Unknown = -3;
+  static constexpr std::int64_t Nowhere = -2;
+
   Ray ray;
   std::uint64_t stream; ///< of the ray's random numbers
   SampleWalker samples;
@@ -39,7 +42,9 @@ struct CachedRay
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
   SampleTally tally;        ///< of what it took
   Projection projection{};  ///< instead, of values that are projected
-  KnownValue known;         ///< of rays that find surfaces, the latest
+  KnownValue known;         ///< the latest, where both ends of samples are looked at
+  /// There, the interval behind the latest sample, if that may show something.
+  std::int64_t shownTo = Unknown;
 
   int x;
   int y;
@@ -74,6 +79,7 @@ private:
     std::int64_t interval; ///< at which the first one begins
     std::int64_t steps;    ///< that each stands for
     std::uint64_t shown;   ///< see SampleRun
+    std::uint64_t seen;    ///< of these bits, of samples that may add to the picture
     std::int64_t hidden;   ///< samples left out before
     SampleStretch stretch; ///< where the ray may go back
     int level;             ///< that they came from
@@ -112,14 +118,24 @@ private:
   /// Whether samples in these would make the batch longer than what one knows of the ray is good
   /// for.
   bool looksTooFar(const RunPair& runs) const;
+  /// Which of such samples are taken, of these, which may add to the picture, and whose own values
+  /// may be seen: what lies between those and their neighbours may be, too.
+  struct SampleBits
+  {
+    std::uint64_t taken;
+    std::uint64_t seen;
+    std::uint64_t visible;
+  };
+  SampleBits choose(const CachedRay& state, const AlikeSamples& alike, int count,
+                    const RunPair& runs) const;
   /// Adds such samples, the first of them at `place`, but for those that show nothing, as far as
   /// they share bricks and the batch has room. Leaves in `alike` those that it has come past, of
   /// which there are some.
-  void add(const CachedRay& state, AlikeSamples& alike, const RunPair& runs, double place);
+  void add(CachedRay& state, AlikeSamples& alike, const RunPair& runs, double place);
   /// Which of the first of them may show something.
   std::uint64_t findShown(const CachedRay& state, const AlikeSamples& alike, int count,
                           const BrickRun& run) const;
-  void addRun(const CachedRay& state, const AlikeSamples& alike, int count, std::uint64_t shown,
+  void addRun(const CachedRay& state, const AlikeSamples& alike, int count, const SampleBits& bits,
               const BrickRun& fine, const BrickRun& coarse);
   BrickRun* runFor(const CachedRay& state, int level, double place);
   void countUse(const CachedRay& state, const AlikeSamples& alike, int count, BrickRun& fine,
@@ -134,12 +150,37 @@ private:
   void enlist(BrickRun& run);
   const Origin& originOf(int sample) const;
   static std::int64_t intervalOf(const Origin& origin, int sample);
+  /// Of the brick that a sample of the batch is read from.
+  int levelOf(int sample) const { return IdOf(this->Bricks[this->Batch.path[sample]]).level; }
   double timeOf(const CachedRay& state, int sample) const;
   void composite(CachedRay& state);
   void compositeLast(CachedRay& state);
+  /// Notes where light was halved if that was in samples [first, end), and not before.
+  void noteHalfOpaque(CachedRay& state, int first, int end) const;
   void advanceShaded(CachedRay& state);
+  void advanceIntegrated(CachedRay& state);
+  /// Finds the values where what the batch's samples stand for begins, until a brick is not there;
+  /// of how many that was possible.
+  int findBegins(CachedRay& state);
+  /// That of the sample at a place of a run's: the value before, or if no such sample was taken,
+  /// what the field is there.
+  bool findBegin(const CachedRay& state, const Origin& origin, int place, int sample);
+  /// Whether what a sample of the batch stands for is in front of the ray.
+  bool isInFront(int sample) const;
+  /// Samples [first, end), of which it is known where they begin.
+  void compositeKnown(CachedRay& state, int first, int end);
+  /// Makes coordinates of the values of samples [first, end), where colours are logarithmic.
+  void takeCoordinates(int first, int end);
   /// Colours and opacities of the batch's samples until the ray is opaque; how many these are.
   int findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const;
+  /// The same of what has the colours of all values that it passes, and until a brick is not there.
+  int findIntegrated(CachedRay& state, glm::vec4* colors, float* opacities);
+  /// Opacity unit distances that a sample of the batch stands for.
+  double lengthOf(int sample) const;
+  /// Lights the first `count` samples, which are at `t`; for how many of them that was possible.
+  int shade(const CachedRay& state, int count, const double* t, glm::vec4* colors);
+  /// What is known of the field behind a sample of the batch.
+  KnownValue knownBehind(int sample) const;
   void compositeColor(CachedRay& state, const glm::vec4& color, float length, double t);
   void addLight(CachedRay& state, const glm::vec4& color, float opacity, double t);
   void project(CachedRay& state);
@@ -156,7 +197,7 @@ private:
   /// Whether what is found at samples may want bricks that are not there.
   bool mayGoBack() const { return this->Shader || this->Probe; }
   /// Puts the ray back to before a sample of the batch, which began at `before`.
-  void goBackTo(int sample, const CachedRay& before, CachedRay& state);
+  void goBackTo(int sample, const SampleWalker& before, CachedRay& state);
   void takeLogarithms();
 
   const CachedScene& Scene;
@@ -183,7 +224,8 @@ private:
   bool Waiting = false;
   bool Ended = false;
   std::optional<SampleShader> Shader;
-  std::optional<RayProbe> Probe; ///< where surfaces are found
+  IntegralLookup Integrals{};    ///< where there are any
+  std::optional<RayProbe> Probe; ///< where both ends of samples are looked at
   std::optional<CroppedWay> Cropped;
 };
 

@@ -29,6 +29,7 @@ __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
     if (settings.projector.canSkip(state.projection, state.samples.stretch().range) ||
         (this->Cropped && this->isCropped(state, alike))) {
       state.samples.pass(alike, alike.count);
+      state.shownTo = CachedRay::Unknown;
       continue;
     }
     const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
@@ -62,7 +63,8 @@ bool CachedMarcher::isCropped(const CachedRay& state, AlikeSamples& alike) const
 
 // Inline: called once per run of samples, and there are as many of them as of bricks.
 inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
-                                  std::uint64_t shown, const BrickRun& fine, const BrickRun& coarse)
+                                  const SampleBits& bits, const BrickRun& fine,
+                                  const BrickRun& coarse)
 {
   const SampleWalker& samples = state.samples;
   const SampleStretch& stretch = samples.stretch();
@@ -87,7 +89,7 @@ inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& al
   run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
   run.stride = static_cast<std::uint32_t>(this->ditherOf(alike.steps()));
   run.count = count;
-  run.shown = shown;
+  run.shown = bits.taken;
   run.length = LengthOf(alike.joined, alike.power);
   run.low = range.low;
   run.high = range.high;
@@ -97,7 +99,8 @@ inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& al
   origin.offset = offset;
   origin.interval = samples.next();
   origin.steps = alike.steps();
-  origin.shown = shown;
+  origin.shown = bits.taken;
+  origin.seen = bits.seen;
   origin.hidden = this->Statistics.hidden;
   if (this->mayGoBack()) {
     origin.stretch = stretch;
@@ -157,8 +160,22 @@ std::uint64_t CachedMarcher::findShown(const CachedRay& state, const AlikeSample
   return this->Scene.kernel.findShown(this->Scene.format, run.shown(), run.path(), row, count);
 }
 
-void CachedMarcher::add(const CachedRay& state, AlikeSamples& alike, const RunPair& runs,
-                        double place)
+CachedMarcher::SampleBits CachedMarcher::choose(const CachedRay& state, const AlikeSamples& alike,
+                                                int count, const RunPair& runs) const
+{
+  // What is seen in neither is left out, whichever a sample would be from.
+  const std::uint64_t visible =
+      this->findShown(state, alike, count, *runs.fine) |
+      (runs.coarse != runs.fine ? this->findShown(state, alike, count, *runs.coarse) : 0);
+  if (!this->Probe) {
+    return {visible, visible, visible};
+  }
+  const bool follows = state.shownTo == CachedRay::Unknown || state.shownTo == state.samples.next();
+  const std::uint64_t seen = (visible | visible << 1 | (follows ? 1 : 0)) & LowestBits(count);
+  return {seen | seen >> 1, seen, visible};
+}
+
+void CachedMarcher::add(CachedRay& state, AlikeSamples& alike, const RunPair& runs, double place)
 {
   const SampleStretch& stretch = state.samples.stretch();
   // Closed stretches take values for others than those that ranges bound.
@@ -171,19 +188,23 @@ void CachedMarcher::add(const CachedRay& state, AlikeSamples& alike, const RunPa
     const double length = std::min(runs.fine->exit(), runs.coarse->exit()) - place;
     count = CountBelow(length / static_cast<double>(alike.steps()), count);
   }
-  std::uint64_t shown = LowestBits(count);
+  SampleBits bits{LowestBits(count), LowestBits(count), LowestBits(count)};
   int taken = count;
-  if (!all) { // what is seen in neither is left out, whichever a sample would be from
-    shown = this->findShown(state, alike, count, *runs.fine) |
-            (runs.coarse != runs.fine ? this->findShown(state, alike, count, *runs.coarse) : 0);
-    taken = CountBits(shown);
+  if (!all) {
+    bits = this->choose(state, alike, count, runs);
+    taken = CountBits(bits.taken);
     if (taken > room) {
-      count = PlaceOfBit(shown, room);
-      shown &= LowestBits(count);
+      count = PlaceOfBit(bits.taken, room);
+      bits.taken &= LowestBits(count);
       taken = room;
     }
   }
   alike.count = count;
+  if (this->Probe) {
+    const bool isLastVisible = (bits.visible >> (count - 1) & 1) != 0;
+    state.shownTo =
+        isLastVisible ? state.samples.next() + count * alike.steps() : CachedRay::Nowhere;
+  }
   if (taken == 0) {
     this->Statistics.hidden += count;
     return;
@@ -193,7 +214,7 @@ void CachedMarcher::add(const CachedRay& state, AlikeSamples& alike, const RunPa
       this->enlist(*run);
     }
   }
-  this->addRun(state, alike, taken, shown, *runs.fine, *runs.coarse);
+  this->addRun(state, alike, taken, bits, *runs.fine, *runs.coarse);
   this->Statistics.hidden += count - taken;
   this->countUse(state, alike, taken, *runs.fine, *runs.coarse);
 }

@@ -16,13 +16,9 @@ void CachedMarcher::project(CachedRay& state)
 {
   this->clampToRanges();
   const MarchSettings& settings = this->Scene.settings;
-  const double step = settings.step * settings.unitsPerT;
   for (int k = 0; k < this->Count; ++k) {
-    const bool isLast = this->LastLength > 0 && k + 1 == this->Count;
-    const double length = isLast ? static_cast<double>(this->LastLength)
-                                 : step * static_cast<double>(StepsOf(this->Batch.length[k]));
-    settings.projector.add(this->Scene.colors, this->Batch.value[k], length, this->timeOf(state, k),
-                           state.projection);
+    settings.projector.add(this->Scene.colors, this->Batch.value[k], this->lengthOf(k),
+                           this->timeOf(state, k), state.projection);
   }
 }
 

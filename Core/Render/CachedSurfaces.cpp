@@ -7,7 +7,7 @@ namespace inr {
 
 void CachedMarcher::advanceSurfaces(CachedRay& state)
 {
-  const CachedRay before = state; // surfaces may ask for bricks that are not there
+  const SampleWalker before = state.samples; // surfaces may ask for bricks that are not there
   this->place(state);
   this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
   this->clampToRanges();
@@ -24,7 +24,7 @@ bool CachedMarcher::crossSurfaces(CachedRay& state, int sample)
   const Origin& origin = this->originOf(sample);
   const std::int64_t interval = intervalOf(origin, sample);
   const auto begin = static_cast<double>(interval);
-  const int level = IdOf(this->Bricks[this->Batch.path[sample]]).level;
+  const int level = this->levelOf(sample);
   SurfaceInterval passed{level, begin, begin + origin.offset, state.known.value,
                          this->Batch.value[sample]};
   const bool isFirst = interval < 0; // of the ray: nothing is in front of it

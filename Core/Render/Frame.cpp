@@ -41,9 +41,9 @@ bool IsSamePicture(const Frame& a, const Frame& b)
          a.shading == b.shading && a.mode == b.mode && a.paths == b.paths &&
          a.blending == b.blending && a.unitDistance == b.unitDistance &&
          a.sampleDistance == b.sampleDistance && a.adaptiveSampling == b.adaptiveSampling &&
-         a.levelOfDetailScale == b.levelOfDetailScale && a.errorTolerance == b.errorTolerance &&
-         a.seed == b.seed && a.frameIndex == b.frameIndex && HaveSameDepth(a, b) &&
-         IsSame(a.layers, b.layers);
+         a.preIntegration == b.preIntegration && a.levelOfDetailScale == b.levelOfDetailScale &&
+         a.errorTolerance == b.errorTolerance && a.seed == b.seed && a.frameIndex == b.frameIndex &&
+         HaveSameDepth(a, b) && IsSame(a.layers, b.layers);
 }
 
 } // namespace inr

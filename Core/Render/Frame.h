@@ -76,20 +76,27 @@ struct Frame
   /// Samples where little can be seen stand for up to four times the sample distance.
   bool adaptiveSampling = true;
 
+  /// Where ray marching composites, what a sample stands for has the colours of all values between
+  /// that of the sample before and its own, as if the field were linear there (see
+  /// PreIntegratedLookup): of thin peaks in the transfer function nothing is missed, and rays need
+  /// no random offsets. Light falls as on the gradient at the sample. Off: a sample's own colour.
+  /// Ignored where there is an error tolerance and a cache.
+  bool preIntegration = false;
+
   /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel at most a
   /// third larger than a pixel, 0 reads the full resolution everywhere; not negative.
   double levelOfDetailScale = 1;
 
-  /// Takes the place of levelOfDetailScale and adaptiveSampling where it is given: by how many
-  /// 255ths a channel of the picture may differ from the one with all samples, each from the full
-  /// resolution, for 99.9 % of the pixels that show something. 0: not at all; finite, not negative.
-  /// Where nothing is lit, cropped (but to a box) or projected, and samples are a voxel apart or
-  /// less, they come from coarser levels and are further apart wherever that stays within it; see
-  /// LevelChooser. Everything else, paths, and volumes whose values may leave the ranges of their
-  /// macro-cells (MacroCells::rangesHold) are drawn as with 0. What the precision of the cache
-  /// rounds comes on top (see PrecisionWithin), and up to 0.26 in opaque media, as rays end at
-  /// 0.999 of opacity; and between voxels of the full resolution the field is taken to be linear.
-  /// Of pieces, all together keep to it. Ignored without a cache.
+  /// Takes the place of levelOfDetailScale, adaptiveSampling and preIntegration where it is given:
+  /// by how many 255ths a channel of the picture may differ from the one with all samples, each
+  /// from the full resolution, for 99.9 % of the pixels that show something. 0: not at all; finite,
+  /// not negative. Where nothing is lit, cropped (but to a box) or projected, and samples are a
+  /// voxel apart or less, they come from coarser levels and are further apart wherever that stays
+  /// within it; see LevelChooser. Everything else, paths, and volumes whose values may leave the
+  /// ranges of their macro-cells (MacroCells::rangesHold) are drawn as with 0. What the precision
+  /// of the cache rounds comes on top (see PrecisionWithin), and up to 0.26 in opaque media, as
+  /// rays end at 0.999 of opacity; and between voxels of the full resolution the field is taken to
+  /// be linear. Of pieces, all together keep to it. Ignored without a cache.
   std::optional<double> errorTolerance;
 
   /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones
@@ -97,7 +104,8 @@ struct Frame
   /// to be complete. Ignored without a cache.
   double timeLimit = 0;
 
-  /// Offsets of the samples along their rays, and paths, are random in (seed, frameIndex, pixel).
+  /// Offsets of the samples along their rays, but for preIntegration, and paths are random in
+  /// (seed, frameIndex, pixel).
   std::uint64_t seed = 0;
   std::uint64_t frameIndex = 0;
 };

@@ -10,6 +10,8 @@
 
 namespace inr {
 
+class PreIntegratedLookup;
+
 /// What the stages of ray marching share within a frame.
 struct MarchSettings
 {
@@ -22,6 +24,14 @@ struct MarchSettings
   Cropping cropping;
   /// Of each of the finest macro-cells, where its samples come from; null: LevelOfDetail chooses.
   const CellSampling* cellSampling = nullptr;
+  /// Null: a sample has the colour of its value; else of the values since the one before it.
+  const PreIntegratedLookup* preIntegrated = nullptr;
+
+  /// Whether samples are at the ends of what they stand for, as values at both ends are looked at.
+  INR_HOST_DEVICE bool looksAtBothEnds() const
+  {
+    return this->projector.findsSurfaces() || this->preIntegrated != nullptr;
+  }
 };
 
 /// Optical depth that needs no finer sampling.

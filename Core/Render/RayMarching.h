@@ -27,7 +27,7 @@ struct MarchState
   double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
   int part = 0;                ///< of the way: how many translucent layers lie behind
   LayeredLight light{};
-  double knownAt = -1; ///< t where the value is known, of rays that find surfaces
+  double knownAt = -1; ///< t where the value is known, where both ends of samples are looked at
   float known = 0;
 };
 
@@ -51,10 +51,10 @@ inline PixelStreams StreamsOf(const Frame& frame)
 }
 
 /// SampleWalker's jitter: random, as noise disturbs less than bands do (its counter is one that no
-/// sample has); but of extremes and surfaces both ends of a ray count.
+/// sample has); but of extremes, and where both ends of samples are looked at, both of a ray count.
 INR_HOST_DEVICE inline double JitterOf(const MarchSettings& settings, std::uint64_t stream)
 {
-  const bool ends = settings.projector.isExtreme() || settings.projector.findsSurfaces();
+  const bool ends = settings.projector.isExtreme() || settings.looksAtBothEnds();
   return ends ? 1.0 : RandomUnit(stream, ~std::uint64_t{0});
 }
 

@@ -18,12 +18,15 @@ RendererOptions Consistent(RendererOptions options)
   return options;
 }
 
-/// Where there is a tolerance, what else would choose levels and distances of samples is off.
-Frame WithoutOtherErrors(Frame frame)
+/// Without what such a frame is not for.
+Frame AsItIsDrawn(Frame frame, bool cached)
 {
-  if (frame.errorTolerance) {
+  frame.preIntegration = frame.preIntegration && frame.mode == RenderMode::RayMarching &&
+                         frame.blending.mode == BlendMode::Composite;
+  if (frame.errorTolerance && cached) { // that chooses levels and distances of samples
     frame.levelOfDetailScale = 0;
     frame.adaptiveSampling = false;
+    frame.preIntegration = false;
   }
   return frame;
 }
@@ -155,6 +158,7 @@ void Renderer::Implementation::build()
   if (this->Levels) {
     this->Levels->forgetColors();
   }
+  this->PreIntegrated.reset();
   this->Surfaces = VisibleSurfaces(this->Seen.isosurfaces, this->Volume, this->Colors->lookup());
   this->Cells.update(VisibilityFor(this->projector(), *this->Colors), this->Threads);
   if (this->Drawn) {
@@ -211,7 +215,7 @@ FrameStatistics Renderer::render(const Frame& wanted, Image& rgba, Image* depth,
 {
   const Timer timer;
   Implementation& self = *this->Self;
-  const Frame frame = self.Cached ? WithoutOtherErrors(wanted) : wanted;
+  const Frame frame = AsItIsDrawn(wanted, self.Cached.has_value());
   if (!self.Colors) {
     throw Error(ErrorCode::InvalidArgument, "set a transfer function before rendering");
   }

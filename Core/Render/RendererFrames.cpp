@@ -22,7 +22,7 @@ TracedTiles EmptyTiles(const PathRound& round)
 
 } // namespace
 
-MarchWay Renderer::Implementation::wayOf(const Frame& frame) const
+MarchWay Renderer::Implementation::wayOf(const Frame& frame)
 {
   MarchWay way{RayGeometry(frame, this->Volume.dims), {}, ShadingOf(frame)};
   MarchSettings& settings = way.settings;
@@ -31,6 +31,12 @@ MarchWay Renderer::Implementation::wayOf(const Frame& frame) const
   settings.adaptive = frame.adaptiveSampling && frame.blending.mode == BlendMode::Composite;
   settings.unitsPerT = way.geometry.worldPerUnit() / frame.unitDistance;
   settings.projector = this->projector();
+  if (frame.preIntegration) {
+    if (!this->PreIntegrated) {
+      this->PreIntegrated.emplace(this->Colors->lookup());
+    }
+    settings.preIntegrated = &this->PreIntegrated->lookup();
+  }
   if (frame.cropping && !BoxOf(*frame.cropping).full) { // rays end where a box does
     settings.crops = true;
     settings.cropping = *frame.cropping;

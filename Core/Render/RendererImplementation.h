@@ -6,6 +6,7 @@
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/LevelChooser.h"
 #include "Core/Render/PathPicture.h"
+#include "Core/Render/PreIntegratedColors.h"
 #include "Core/Render/Renderer.h"
 #include "Core/Render/WorkLimit.h"
 
@@ -34,8 +35,8 @@ struct Renderer::Implementation
                  const ModelPointer& model, VolumeInfo volume, const MacroCells& cells,
                  RendererOptions options);
 
-  /// Whether the accelerator draws such a frame itself; it is then known to draw rightly, if a small
-  /// picture of that kind shows anything.
+  /// Whether the accelerator draws such a frame itself; it is then known to draw rightly, if a
+  /// small picture of that kind shows anything.
   bool isDrawnElsewhere(const Frame& frame, const std::function<bool()>& keepGoing);
   /// Such a small picture as proves it, drawn there if that does not fail, and by the CPU.
   void proveElsewhere(const Frame& small, const PassOutput& output,
@@ -59,7 +60,7 @@ struct Renderer::Implementation
   bool chooseLevels(const Frame& frame, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing, MarchSettings& settings);
 
-  MarchWay wayOf(const Frame& frame) const;
+  MarchWay wayOf(const Frame& frame);
   FrameStatistics march(const Frame& frame, const PassOutput& output,
                         const std::function<bool()>& keepGoing);
   /// By the accelerator, if that does not fail.
@@ -95,6 +96,7 @@ struct Renderer::Implementation
   Majorants Cells;
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
+  std::optional<PreIntegratedColors> PreIntegrated; ///< once a frame wanted them, of `Colors`
   bool Built = false;                     ///< the majorants, for the colours and for `Seen`
   Blending Seen;                          ///< how pictures are blended that the majorants are for
   std::vector<float> Surfaces;            ///< of these pictures

@@ -29,7 +29,7 @@ struct SampleStretch
   int power = 0;        ///< there are 2^power steps between samples
   int faint = 0;        ///< 2^faint of them may be taken at once
   ValueRange range;     ///< of the cells
-  double reach = -1;    ///< where cells end that matter; see Projector::findsSurfaces
+  double reach = -1;    ///< where cells end that matter; see MarchSettings::looksAtBothEnds
   bool closed = false;  ///< samples belong to it only with all of their steps, or are of one step
   int level = 0;        ///< of a closed one, that samples come from
 };

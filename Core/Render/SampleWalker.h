@@ -49,8 +49,9 @@ public:
   INR_HOST_DEVICE SampleWalker(const MajorantsView& majorants, const MarchSettings& settings,
                                const Ray& ray, double scale, int levels, double jitter)
       : Detail(ray, scale, levels), Cells(majorants, settings.dims, ray, scale, levels),
-        Jitter(jitter), End(ray.length / settings.step), PieceBegin(ray.pieceBegin / settings.step),
-        PieceEnd(ray.pieceEnd / settings.step), Next(jitter < 1.0 ? 0 : -1)
+        Jitter(jitter), Shared(settings.projector.findsSurfaces()), End(ray.length / settings.step),
+        PieceBegin(ray.pieceBegin / settings.step), PieceEnd(ray.pieceEnd / settings.step),
+        Next(jitter < 1.0 || !(ray.length > 0) ? 0 : -1)
   {}
 
   /// Moves on to the next sample of the ray's piece that may be seen; false when there is none. Of
@@ -167,7 +168,8 @@ private:
     if (onRay < 1.0) {
       return {1, 1, power, true};
     }
-    if (power < this->Stretch.power) { // up to the next interval of so many
+    // Up to the next interval of so many; and what is in front of the ray counts for nothing.
+    if (power < this->Stretch.power || (this->Next < 0 && this->Stretch.faint > 0)) {
       return {1, 1, power, false};
     }
     if (this->Stretch.closed && power > 0) {
@@ -191,11 +193,11 @@ private:
   }
 
   /// Where a piece must not have ended for the first of such samples to belong to it: at its place.
-  /// One at the end of what it stands for is taken by all pieces that this meets.
+  /// Where surfaces are looked for, all pieces take it that meet what it stands for.
   INR_HOST_DEVICE double belongsFrom(const AlikeSamples& samples) const
   {
     const auto begin = static_cast<double>(this->Next);
-    return this->Jitter < 1.0 ? begin + this->offset(samples) : begin;
+    return this->Shared ? begin : begin + this->offset(samples);
   }
 
   /// How many of these samples, the first of them in any case, begin on a way of `length`.
@@ -262,11 +264,10 @@ private:
   }
 
   /// Whether the steps of the next sample, which is behind cells that matter, begin in one of them:
-  /// surfaces are found between places that are known.
+  /// where both ends of samples are looked at, it is the other one.
   INR_HOST_DEVICE bool isLeaving(const MarchSettings& settings) const
   {
-    return settings.projector.findsSurfaces() &&
-           static_cast<double>(this->Next) < this->Stretch.reach;
+    return settings.looksAtBothEnds() && static_cast<double>(this->Next) < this->Stretch.reach;
   }
 
   INR_HOST_DEVICE void beginStretch(const MarchSettings& settings)
@@ -286,10 +287,12 @@ private:
                                    glm::min(end, this->End * settings.step));
     // What an extreme can skip is found cell by cell.
     const bool joins = matters && !settings.projector.isExtreme();
+    bool leaves = false;
     while (joins && exit < enough) {
       this->Cells.moveTo(exit);
       const float extinction = this->Cells.extinction();
-      if (extinction <= 0.0f || FaintSamples(settings, extinction * depth) != faint) {
+      leaves = extinction <= 0.0f;
+      if (leaves || FaintSamples(settings, extinction * depth) != faint) {
         break;
       }
       range.extend(this->Cells.range().low);
@@ -298,7 +301,13 @@ private:
     }
     const double stepsPerT = 1.0 / settings.step;
     const double reach = matters ? exit * stepsPerT : this->Stretch.reach;
-    const double last = matters ? reach : std::nextafter(this->firstPlace(), this->End + 1);
+    double last = matters ? reach : std::nextafter(this->firstPlace(), this->End + 1);
+    if (leaves && settings.looksAtBothEnds() && this->Cells.exit() >= exit + length) {
+      // With the sample that isLeaving() would be said of.
+      range.extend(this->Cells.range().low);
+      range.extend(this->Cells.range().high);
+      last += PowerOfTwo(level);
+    }
     this->Stretch = SampleStretch();
     this->Stretch.exit = last;
     this->Stretch.levelEnd = end * stepsPerT;
@@ -389,6 +398,7 @@ private:
   CellWalker Cells;
   SampleStretch Stretch;
   double Jitter;
+  bool Shared; ///< samples that stand for steps in several pieces, by all of these
   double End;
   double PieceBegin;
   double PieceEnd;

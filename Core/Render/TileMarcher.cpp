@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/TileMarcher.h"
 
+#include "Core/Render/PreIntegratedColors.h"
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/Timer.h"
 
@@ -17,6 +18,8 @@ FrameStatistics TileMarcher::march(const Tile& tile, Image& rgba, Image* depth)
     this->inferValues();
     if (this->Scene.settings.projector.findsSurfaces()) {
       this->findSurfaces();
+    } else if (this->Scene.settings.preIntegrated != nullptr) {
+      this->inferBegins();
     }
     if (this->Scene.shading != nullptr) {
       this->inferGradients();
@@ -88,9 +91,7 @@ void TileMarcher::listVisible()
   for (std::size_t live = 0; live < this->Live.size(); ++live) {
     double opacity = this->Rays[static_cast<std::size_t>(this->Live[live])].color.w;
     for (; k < static_cast<std::size_t>(this->SampleEnds[live]); ++k) {
-      float value = this->Values[k];
-      ClampToRange(this->Samples[k].range, value); // counted when it is composited
-      this->Lit[k] = this->Scene.colors.at(value);
+      this->Lit[k] = this->colorOf(k);
       if (this->Lit[k].w > 0.0f && opacity < OpaqueEnough) {
         this->Visible.push_back(k);
         opacity += (1.0 - opacity) * OpacityOver(this->Samples[k].length, this->Lit[k].w);
@@ -166,6 +167,18 @@ void TileMarcher::composite()
   this->Live.resize(alive);
 }
 
+glm::vec4 TileMarcher::colorOf(std::size_t sample) const
+{
+  float value = this->Values[sample];
+  ClampToRange(this->Samples[sample].range, value); // counted when it is composited
+  const PreIntegratedLookup* const preIntegrated = this->Scene.settings.preIntegrated;
+  if (preIntegrated == nullptr) {
+    return this->Scene.colors.at(value);
+  }
+  return this->Samples[sample].begin < 0 ? glm::vec4(0.0f) // in front of the ray
+                                         : preIntegrated->between(this->Begins[sample], value);
+}
+
 float TileMarcher::clampedValue(std::size_t sample)
 {
   float value = this->Values[sample];
@@ -176,9 +189,8 @@ float TileMarcher::clampedValue(std::size_t sample)
 bool TileMarcher::compositeRay(std::size_t first, std::size_t end, MarchState& state)
 {
   for (std::size_t k = first; k < end && state.color.w < OpaqueEnough; ++k) {
-    const float value = this->clampedValue(k);
-    const glm::vec4 color =
-        this->Scene.shading != nullptr ? this->Lit[k] : this->Scene.colors.at(value);
+    this->clampedValue(k);
+    const glm::vec4 color = this->Scene.shading != nullptr ? this->Lit[k] : this->colorOf(k);
     Composite(color, this->Samples[k], state);
   }
   return state.color.w < OpaqueEnough;

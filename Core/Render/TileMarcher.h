@@ -56,7 +56,10 @@ private:
   void shade();
   /// Makes samples of the surfaces in a round's samples: the ones that are shaded and composited.
   void findSurfaces();
+  /// Where both ends of samples are looked at: values before each of them.
   void inferBegins();
+  /// What a sample shows per unit distance; its value may leave its macro-cell's range.
+  glm::vec4 colorOf(std::size_t sample) const;
   void listCrossings();
   void listCrossing(int ray, const MarchSample& sample, float first, float last);
   void bisectCrossings();
@@ -85,7 +88,7 @@ private:
   std::vector<float> Neighbors;     ///< below and above each of them along x, y and z
   std::vector<glm::vec4> Lit;       ///< straight RGB and opacity of each sample
   std::vector<char> Exhausted;      ///< of each live ray: there are no more samples
-  std::vector<float> Begins;        ///< where surfaces are found, values before each sample
+  std::vector<float> Begins;        ///< where both ends are looked at, values before each sample
   std::vector<Crossing> Crossings;
 };
 

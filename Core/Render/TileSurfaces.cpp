@@ -9,9 +9,6 @@ namespace inr {
 
 void TileMarcher::findSurfaces()
 {
-  for (std::size_t k = 0; k < this->Samples.size(); ++k) {
-    this->Values[k] = this->clampedValue(k);
-  }
   this->inferBegins();
   this->listCrossings();
   this->bisectCrossings();
@@ -21,6 +18,9 @@ void TileMarcher::findSurfaces()
 /// Where the steps of a sample begin the value is that of the sample before, or not known yet.
 void TileMarcher::inferBegins()
 {
+  for (std::size_t k = 0; k < this->Samples.size(); ++k) {
+    this->Values[k] = this->clampedValue(k);
+  }
   this->Positions.clear();
   std::vector<std::size_t> unknown;
   std::size_t k = 0;

@@ -190,7 +190,9 @@ inline FuzzScene MakeFuzzScene(const inr::VolumeInfo& volume, SceneBytes& bytes)
   constexpr double mostSteps = 200;
   const double longest = fuzz_scene::LongestRay(volume);
   frame.sampleDistance = std::max(bytes.power(2), longest / mostSteps);
-  frame.adaptiveSampling = bytes.below(2) == 0;
+  const int sampling = bytes.below(4);
+  frame.adaptiveSampling = sampling % 2 == 0;
+  frame.preIntegration = sampling >= 2;
   // Full resolution everywhere costs a brick for every few samples.
   frame.levelOfDetailScale = longest > 200 ? bytes.power(1) + 1 : bytes.below(3);
   const glm::dvec3 edges = glm::abs(volume.spacing);

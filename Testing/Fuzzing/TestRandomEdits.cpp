@@ -134,6 +134,7 @@ void EditFrame(inr::Frame& frame, Dice& dice)
   default:
     frame.unitDistance = 1 + dice.below(8);
     frame.adaptiveSampling = !frame.adaptiveSampling;
+    frame.preIntegration = dice.below(2) == 0;
   }
 }
 

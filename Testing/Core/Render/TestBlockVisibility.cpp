@@ -131,6 +131,15 @@ const Way Ways[] = {
        frame.unitDistance = 1e4; // faint enough for that
      }},
     {"far apart", [](inr::Frame& frame, inr::CacheOptions&) { frame.sampleDistance = 6; }},
+    {"pre-integrated", [](inr::Frame& frame, inr::CacheOptions&) { frame.preIntegration = true; }},
+    {"pre-integrated and shaded, levels mixed, with a small cache",
+     [](inr::Frame& frame, inr::CacheOptions& cache) {
+       frame.preIntegration = true;
+       frame.shading.emplace();
+       frame.lights.emplace_back();
+       frame.levelOfDetailScale = 1.5;
+       cache.bytes = cache.bytes / 200;
+     }},
     {"large bricks",
      [](inr::Frame& frame, inr::CacheOptions& cache) {
        cache.brickSize = 50;

@@ -4,6 +4,7 @@
 // at a time.
 #include "Core/Random.h"
 #include "Core/Render/ColorTable.h"
+#include "Core/Render/PreIntegratedColors.h"
 #include "Core/Render/SampleBits.h"
 #include "Core/Render/StepTable.h"
 #include "Testing/Core/Kernels.h"
@@ -309,6 +310,75 @@ TEST_P(BrickKernels, CompositeAnyNumberOfSamples)
     EXPECT_NEAR(color.rgb[0], 0.25 * (1 - truth), bound);
     EXPECT_NEAR(color.rgb[2], 1 - truth, bound);
     EXPECT_EQ(clamped, 0);
+  }
+}
+
+/// Peaks, steps at the ends, what is faint, and if wanted what is opaque.
+inr::TransferFunction Rugged(bool opaque)
+{
+  inr::TransferFunction function;
+  function.low = 0.1;
+  function.high = 0.9;
+  for (int k = 0; k < 40; ++k) {
+    const bool isOpaque = opaque && k > 30 && k < 33;
+    function.table.emplace_back(Random(0, 1), Random(0, 1), Random(0, 1),
+                                isOpaque ? 1.0f : std::pow(10.0f, Random(-6, -0.2f)));
+  }
+  function.table[20].w = function.table[21].w = function.table[22].w = 0;
+  function.below = {1, 0.5f, 0, 0.02f};
+  function.above = {0, 1, 0.25f, 0};
+  return function;
+}
+
+void FillRamps(inr::SampleBatch& batch, int lengths)
+{
+  for (int k = 0; k < inr::SampleBatch::Capacity; ++k) {
+    batch.length[k] = RandomInt(0, lengths - 1);
+    batch.value[k] = Random(0, 1);
+    const int kind = RandomInt(0, 3);
+    batch.begin[k] = kind == 0   ? Random(0, 1)
+                     : kind == 1 ? batch.value[k]
+                     : kind == 2 ? batch.value[k] + Random(-1e-5f, 1e-5f)
+                     : k > 0     ? batch.value[k - 1]
+                                 : 0.0f;
+  }
+}
+
+// Samples between two values, against the same in double one by one.
+TEST_P(BrickKernels, CompositeWhatIsIntegrated)
+{
+  const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
+  constexpr int lengths = 7;
+  constexpr double step = 0.01;
+  for (int round = 0; round < 300; ++round) {
+    // Next to what is opaque, density rises so fast that the rounding of a position shows.
+    const bool opaque = round % 3 == 0;
+    const double tolerance = opaque ? 2e-3 : 5e-5;
+    const inr::ColorTable colors(Rugged(opaque), inr::VolumeInfo{});
+    const inr::PreIntegratedColors integrals(colors.lookup());
+    const auto batch = std::make_unique<inr::SampleBatch>();
+    FillRamps(*batch, lengths);
+    const int first = RandomInt(0, 40);
+    const int end = RandomInt(first, inr::SampleBatch::Capacity);
+    inr::RayColor color{{0.1, 0.2, 0.3}, 0.75, round % 2 == 0};
+    const int used = kernel.compositeIntegrated(integrals.lookup().kernelLookup(step), *batch,
+                                                first, end, 0.001f, color);
+    glm::dvec3 rgb(0.1, 0.2, 0.3);
+    double transmittance = 0.75;
+    int k = first;
+    for (; k < end && transmittance > 0.001; ++k) {
+      ASSERT_NEAR(batch->opacity[k], 1 - transmittance, tolerance) << k;
+      const glm::vec4 mean = integrals.lookup().between(batch->begin[k], batch->value[k]);
+      const double length = step * static_cast<double>(inr::StepsOf(batch->length[k]));
+      const double opacity = -std::expm1(length * std::log1p(-static_cast<double>(mean.w)));
+      rgb += glm::dvec3(mean) * (transmittance * opacity);
+      transmittance -= transmittance * opacity;
+    }
+    EXPECT_NEAR(used, k - first, 1); // at 0.001, rounding decides
+    EXPECT_NEAR(color.transmittance, transmittance, tolerance);
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_NEAR(color.rgb[channel], rgb[channel], tolerance);
+    }
   }
 }
 

@@ -19,8 +19,8 @@ template <typename... Field> std::size_t Count(const Field&...) { return sizeof.
 
 std::size_t FieldsOf(const inr::Frame& frame)
 {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w] = frame;
-  return Count(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x] = frame;
+  return Count(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x);
 }
 
 std::size_t FieldsOf(const inr::Material& material)
@@ -154,6 +154,7 @@ TEST(Frame, MakesAnotherPictureWithAnotherValueOfAnyFieldThatCounts)
       {"unitDistance", [](Frame& frame) { frame.unitDistance = 2; }},
       {"sampleDistance", [](Frame& frame) { frame.sampleDistance = 2; }},
       {"adaptiveSampling", [](Frame& frame) { frame.adaptiveSampling = false; }},
+      {"preIntegration", [](Frame& frame) { frame.preIntegration = true; }},
       {"levelOfDetailScale", [](Frame& frame) { frame.levelOfDetailScale = 2; }},
       {"errorTolerance", [](Frame& frame) { frame.errorTolerance = 2; }},
       {"errorTolerance", [](Frame& frame) { frame.errorTolerance = 0; }},

@@ -109,7 +109,8 @@ void ExpectPiecesOfWhole(bool cached, const inr::Frame& frame)
   for (std::size_t k = 0; k < whole.pixels.size(); ++k) {
     ASSERT_NEAR(blended.pixels[k], whole.pixels[k], 1e-5f) << k;
   }
-  if (!frame.shading) { // gradients are counted, too, and know no pieces
+  // Gradients, and what the network says of the beginnings of pieces, are counted, too.
+  if (!frame.shading && (cached || !frame.preIntegration)) {
     EXPECT_EQ(pieces.samples[0] + pieces.samples[1] + pieces.samples[2], samples);
   }
   for (const std::int64_t count : pieces.samples) {
@@ -135,6 +136,17 @@ TEST(Pieces, MakeTheWholeOfEverySampleDistance)
       frame.adaptiveSampling = adaptive;
       ExpectPiecesOfWhole(true, frame);
     }
+  }
+}
+
+TEST(Pieces, MakeTheWholeWhenPreIntegrated)
+{
+  for (const double distance : {0.3, 2.0}) {
+    inr::Frame frame = Slanted(1);
+    frame.sampleDistance = distance;
+    frame.preIntegration = true;
+    ExpectPiecesOfWhole(true, frame);
+    ExpectPiecesOfWhole(false, frame);
   }
 }
 

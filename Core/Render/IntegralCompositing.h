@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Compositing of samples that have the colours of all values between two. Only for sources that are
+// built once per instruction set; see Core/Inference/Lanes.h.
+#pragma once
+
+#include "Core/Inference/Lanes.h"
+#include "Core/Render/BrickKernel.h"
+#include "Core/Render/RgbaVectors.h"
+
+#include <cstring>
+
+namespace inr {
+namespace INR_ISA {
+
+namespace {
+
+/// Where values are in a transfer function, from sample `first` of a batch on.
+struct Positions
+{
+  float place[SampleBatch::Room];
+  std::int32_t node[SampleBatch::Room]; ///< in IntegralLookup::nodes
+};
+
+void FindPositions(const IntegralLookup& lookup, const float* values, int count, Positions& out)
+{
+  const Floats last = Spread(static_cast<float>(lookup.last));
+  for (int k = 0; k < count; k += LaneCount) {
+    const Floats place = MultiplyAdd(Load(values + k), Spread(lookup.scale), Spread(lookup.bias));
+    const Floats inside = Minimum(Maximum(place, Floats{}), last);
+    Ints node = __builtin_convertvector(inside, Ints);
+    const Ints most = (lookup.last - 1) - Ints{};
+    node = (node < most ? node : most) + 1;
+    node = place < Floats{} ? Ints{} : (place > last ? (lookup.last + 1) - Ints{} : node);
+    Store(out.place + k, place);
+    std::memcpy(out.node + k, &node, sizeof(node));
+  }
+}
+
+/// Density at a position, and its integral from the node before to there.
+struct Reached
+{
+  Rgba density;
+  Rgba integral;
+};
+
+Reached Reach(const IntegralLookup& lookup, const Positions& positions, int k)
+{
+  const int number = positions.node[k];
+  const float way = positions.place[k] - static_cast<float>(number - 1);
+  const IntegralNode& node = lookup.nodes[number];
+  const Rgba begin = LoadRgba(node.density);
+  const Rgba density = begin + (LoadRgba(node.next) - begin) * way;
+  return {density, (begin + density) * (0.5f * way)};
+}
+
+/// Mean densities from begins to ends.
+void FindDensities(const IntegralLookup& lookup, const Positions& begins, const Positions& ends,
+                   int count, float* densities)
+{
+  Reached end{};
+  for (int k = 0; k < count; ++k) {
+    const bool isNext = k > 0 && begins.place[k] == ends.place[k - 1];
+    const Reached begin = isNext ? end : Reach(lookup, begins, k);
+    end = Reach(lookup, ends, k);
+    Rgba mean = (begin.density + end.density) * 0.5f;
+    const int from = begins.node[k];
+    const int to = ends.node[k];
+    const float rise = ends.place[k] - begins.place[k];
+    if (from != to && __builtin_fabsf(rise) > 0.01f) { // of less, too few digits would be left
+      // In double: what is opaque elsewhere must not round away what is faint here.
+      const ExactRgba between =
+          LoadExactRgba(lookup.nodes[to].integral) - LoadExactRgba(lookup.nodes[from].integral);
+      mean = (__builtin_convertvector(between, Rgba) + (end.integral - begin.integral)) *
+             (1.0f / rise);
+    }
+    std::memcpy(densities + 4 * k, &mean, sizeof(mean));
+  }
+}
+
+/// 1 - exp(-depth) for depths that are not negative, to a few units in the last place.
+Floats OpacityOf(Floats depth)
+{
+  constexpr int halvings = 5;
+  const Floats part = Minimum(depth, Spread(32.0f)) * (1.0f / (1 << halvings)); // 32: opaque
+  // The series of (1 - exp(-x)) / x, for x up to 1.
+  constexpr float factors[] = {-1.0f / 3628800, 1.0f / 362880, -1.0f / 40320, 1.0f / 5040,
+                               -1.0f / 720,     1.0f / 120,    -1.0f / 24,    1.0f / 6,
+                               -1.0f / 2,       1.0f};
+  Floats sum = Spread(factors[0]);
+  for (int k = 1; k < 10; ++k) {
+    sum = MultiplyAdd(sum, part, Spread(factors[k]));
+  }
+  Floats opacity = sum * part;
+  for (int k = 0; k < halvings; ++k) { // of twice the depth
+    opacity = opacity * (2.0f - opacity);
+  }
+  return opacity;
+}
+
+/// Of the samples of which `densities` are, opacities, and by what these are to be multiplied.
+void FindWeights(const IntegralLookup& lookup, const float* densities, const std::int32_t* lengths,
+                 int count, float* opacities, float* weights)
+{
+  for (int k = 0; k < count; k += LaneCount) {
+    Floats extinction;
+    for (int lane = 0; lane < LaneCount; ++lane) {
+      extinction[lane] = densities[4 * (k + lane) + 3];
+    }
+    extinction = Maximum(extinction, Floats{});
+    Ints length;
+    std::memcpy(&length, lengths + k, sizeof(length));
+    const Ints steps = ((length & 1) * 2 + 1) << (length >> 1); // StepsOf
+    const Floats opacity =
+        OpacityOf(extinction * (__builtin_convertvector(steps, Floats) * lookup.step));
+    Store(opacities + k, opacity);
+    Store(weights + k, opacity / Maximum(extinction, Spread(1e-30f)));
+  }
+}
+
+/// With colours and opacities of type Vector, four of Number.
+template <typename Number, typename Vector>
+int AddUp(const float* densities, const float* opacities, const float* weights, int count,
+          float opaque, float* before, RayColor& color)
+{
+  const auto number = [](double value) { return static_cast<Number>(value); };
+  Vector sum = {number(color.rgb[0]), number(color.rgb[1]), number(color.rgb[2]), 0};
+  Number transmittance = number(color.transmittance);
+  int used = 0;
+  while (used < count && transmittance > opaque) {
+    const Vector density = __builtin_convertvector(LoadRgba(densities + 4 * used), Vector);
+    before[used] = static_cast<float>(1 - transmittance);
+    sum += density * (transmittance * weights[used]);
+    transmittance *= 1 - static_cast<Number>(opacities[used]);
+    ++used;
+  }
+  color.rgb[0] = sum[0];
+  color.rgb[1] = sum[1];
+  color.rgb[2] = sum[2];
+  color.transmittance = transmittance;
+  return used;
+}
+
+int CompositeIntegrated(const IntegralLookup& lookup, SampleBatch& batch, int first, int end,
+                        float opaque, RayColor& color)
+{
+  const int count = end - first;
+  Positions begins;
+  Positions ends;
+  float densities[4 * SampleBatch::Room];
+  float opacities[SampleBatch::Room];
+  float weights[SampleBatch::Room];
+  FindPositions(lookup, batch.begin + first, count, begins);
+  FindPositions(lookup, batch.value + first, count, ends);
+  FindDensities(lookup, begins, ends, count, densities);
+  for (int lane = count; lane % LaneCount != 0; ++lane) { // whatever can be computed with
+    std::memset(densities + 4 * lane, 0, 4 * sizeof(float));
+  }
+  FindWeights(lookup, densities, batch.length + first, count, opacities, weights);
+  float* const before = batch.opacity + first;
+  return color.ofMany
+             ? AddUp<double, ExactRgba>(densities, opacities, weights, count, opaque, before, color)
+             : AddUp<float, Rgba>(densities, opacities, weights, count, opaque, before, color);
+}
+
+} // namespace
+
+} // namespace INR_ISA
+} // namespace inr

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Colours of all values between two samples: the integrals against sums in double, pictures against
+// media whose transmittance is known, finer sampling, and one another.
+#include "Core/Image/Metrics.h"
+#include "Core/Render/PreIntegratedColors.h"
+#include "Testing/Core/Render/HiddenScene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace {
+
+inr::VolumeInfo VolumeBetween(double low, double high)
+{
+  inr::VolumeInfo volume = VolumeOf({8, 8, 8});
+  volume.low = low;
+  volume.high = high;
+  return volume;
+}
+
+/// Extinction times RGB, and extinction, of the middle values of many pieces.
+glm::dvec4 MeanDensity(const inr::ColorLookup& colors, double first, double last)
+{
+  constexpr int pieces = 40000;
+  glm::dvec4 sum(0.0);
+  for (int k = 0; k < pieces; ++k) {
+    const double value = first + (last - first) * (k + 0.5) / pieces;
+    const glm::vec4 entry = colors.at(static_cast<float>(value));
+    const double extinction = -std::log1p(-std::min<double>(entry.w, 1 - 0x1p-24));
+    sum += glm::dvec4(glm::dvec3(entry) * extinction, extinction);
+  }
+  return sum / static_cast<double>(pieces);
+}
+
+void ExpectMean(const inr::PreIntegratedLookup& lookup, const inr::ColorLookup& colors, float first,
+                float last)
+{
+  const glm::dvec4 truth = MeanDensity(colors, first, last);
+  const glm::dvec4 found = lookup.between(first, last);
+  const double extinction = -std::log1p(-found.w);
+  EXPECT_NEAR(extinction, truth.w, 2e-3 * truth.w + 1e-6) << first << " " << last;
+  for (int channel = 0; channel < 3; ++channel) {
+    EXPECT_NEAR(found[channel] * extinction, truth[channel], 2e-3 * truth.w + 1e-6)
+        << first << " " << last << " " << channel;
+  }
+  EXPECT_EQ(lookup.between(last, first), lookup.between(first, last));
+}
+
+/// A peak that is 1/100 of the range wide, over something faint, and opaque from 0.9 on.
+inr::TransferFunction Peaks()
+{
+  inr::TransferFunction function;
+  for (int k = 0; k <= 1000; ++k) {
+    const float x = static_cast<float>(k) / 1000;
+    const float peak = std::max(0.0f, 0.8f - 160 * std::abs(x - 0.4f));
+    function.table.emplace_back(x, 1 - x, 0.25f, x >= 0.9f ? 1.0f : std::max(peak, 1e-3f));
+  }
+  return function;
+}
+
+TEST(PreIntegration, IsTheMeanOfAllValuesBetween)
+{
+  inr::TransferFunction few;
+  few.table = {{1, 0, 0, 0}, {0, 1, 0, 0.3f}, {0, 0, 1, 0.95f}, {0, 0, 0, 0.1f}};
+  inr::TransferFunction narrow = few; // with a step at either end
+  narrow.low = 0.25;
+  narrow.high = 0.7;
+  narrow.below = {1, 1, 0, 0.2f};
+  narrow.above = {0, 1, 1, 0};
+  for (const auto& function : {few, narrow, Peaks()}) {
+    const inr::ColorTable colors(function, VolumeBetween(0, 1));
+    const inr::PreIntegratedColors integrals(colors.lookup());
+    for (const auto& [first, last] : std::vector<std::pair<float, float>>{
+             {0.1f, 0.8f}, {0.0f, 1.0f}, {0.39f, 0.41f}, {0.2f, 0.26f}, {0.3f, 0.3005f}}) {
+      ExpectMean(integrals.lookup(), colors.lookup(), first, last);
+    }
+  }
+}
+
+TEST(PreIntegration, OfALogarithmIsTheMeanOverThat)
+{
+  inr::TransferFunction function;
+  function.table = {{1, 0, 0, 0.1f}, {0, 1, 0, 0.8f}};
+  function.logarithmic = true;
+  function.low = 1;
+  function.high = 1e4;
+  const inr::ColorTable colors(function, VolumeBetween(0, 1e4));
+  const inr::PreIntegratedColors integrals(colors.lookup());
+  // Half of the way between the logarithms of 10 and 1,000 is 100, where opacity is 0.45.
+  const glm::vec4 mean = integrals.lookup().between(1e-3f, 1e-1f);
+  double extinction = 0;
+  for (int k = 0; k < 1000; ++k) {
+    extinction -= std::log1p(-(0.1 + 0.7 * (0.25 + 0.5 * (k + 0.5) / 1000))) / 1000;
+  }
+  EXPECT_NEAR(-std::log1p(-mean.w), extinction, 1e-3 * extinction);
+}
+
+TEST(PreIntegration, OfOneValueIsItsColour)
+{
+  const inr::ColorTable colors(Peaks(), VolumeBetween(0, 1));
+  const inr::PreIntegratedColors integrals(colors.lookup());
+  for (float y = 0; y < 0.9f; y += 1.0f / 777) {
+    const glm::vec4 entry = colors.lookup().at(y);
+    const glm::vec4 found = integrals.lookup().between(y, y);
+    for (int channel = 0; channel < 4; ++channel) {
+      EXPECT_NEAR(found[channel], entry[channel], 1e-3f) << y << " " << channel;
+    }
+    const glm::vec4 near = integrals.lookup().between(y, y + 3e-6f); // no jump where sums begin
+    EXPECT_NEAR(near.w, found.w, 2e-3f) << y;
+  }
+  EXPECT_NEAR(integrals.lookup().between(0.95f, 0.95f).w, 1.0f, 1e-6f);
+}
+
+inr::Frame AlongZ(double distance)
+{
+  inr::Frame frame = ParallelFrame(6, {4, 4}, {20, 20}, -30, 80);
+  frame.levelOfDetailScale = 0;
+  frame.sampleDistance = distance;
+  frame.preIntegration = true;
+  return frame;
+}
+
+// A field that rises from 0 to 1 along the rays meets each value for as long as any other,
+// however few samples there are.
+TEST(PreIntegration, MissesNoPeakOfALinearMedium)
+{
+  const glm::i64vec3 dims(24, 24, 33);
+  const inr::ColorTable colors(Peaks(), VolumeBetween(0, 1));
+  inr::TransferFunction peaks = Peaks();
+  for (glm::vec4& entry : peaks.table) { // no more than half a peak's light is held back
+    entry.w = entry.w < 1 ? 0.5f * entry.w : 0.0f;
+  }
+  const inr::ColorTable half(peaks, VolumeBetween(0, 1));
+  const double extinction = MeanDensity(half.lookup(), 0.5 / 33, 32.5 / 33).w;
+  for (const bool cached : {false, true}) {
+    inr::Renderer renderer = FieldRenderer(
+        dims, [](const glm::vec3& u) { return u.z; }, {}, 2, cached);
+    renderer.setTransferFunction(peaks);
+    for (const double distance : {0.1, 0.7, 1.0, 3.3}) {
+      for (const double unit : {1.0, 2.5}) {
+        inr::Frame frame = AlongZ(distance);
+        frame.unitDistance = unit;
+        const double opacity = -std::expm1(-extinction * 32 / unit);
+        for (const float alpha :
+             {Render(renderer, frame).pixel(2, 2)[3], Render(renderer, frame).pixel(5, 0)[3]}) {
+          EXPECT_NEAR(alpha, opacity, 2e-3 * opacity) << distance << " " << unit << " " << cached;
+        }
+      }
+    }
+  }
+}
+
+TEST(PreIntegration, IsExactInAHomogeneousMedium)
+{
+  for (const bool cached : {false, true}) {
+    inr::Renderer renderer = FieldRenderer(
+        {24, 24, 33}, [](const glm::vec3&) { return 0.5f; }, {}, 2, cached);
+    renderer.setTransferFunction(UniformMedium(0.03f, {0.2f, 0.4f, 0.8f}));
+    for (const double distance : {0.3, 1.0, 7.0, 100.0}) {
+      const inr::Image picture = Render(renderer, AlongZ(distance));
+      const double opacity = 1 - std::pow(0.97, 32);
+      EXPECT_NEAR(picture.pixel(1, 1)[3], opacity, 1e-5) << distance;
+      EXPECT_NEAR(picture.pixel(1, 1)[2], 0.8 * opacity, 1e-5) << distance;
+    }
+  }
+}
+
+constexpr glm::i64vec3 Dims(60, 45, 52);
+
+inr::Frame Near(double distance)
+{
+  inr::Frame frame = Oblique(glm::dvec3(Dims));
+  frame.sampleDistance = distance;
+  frame.adaptiveSampling = false;
+  return frame;
+}
+
+double PsnrOf(inr::Renderer& renderer, const inr::Frame& frame, const inr::Image& truth)
+{
+  return inr::ImagePsnr(Render(renderer, frame), truth);
+}
+
+// What it is for: of thin shells, as much as many times as many samples show.
+TEST(PreIntegration, ShowsThinShellsWithFewSamples)
+{
+  for (const bool cached : {false, true}) {
+    inr::Renderer renderer = FieldRenderer(Dims, Waves, {}, 2, cached);
+    renderer.setTransferFunction(Shell(0));
+    const inr::Image truth = Render(renderer, Near(1. / 40));
+    inr::Frame frame = Near(1);
+    const double plain = PsnrOf(renderer, frame, truth);
+    frame.preIntegration = true;
+    EXPECT_GT(PsnrOf(renderer, frame, truth), plain + 12) << cached;
+    frame.sampleDistance = 2;
+    EXPECT_GT(PsnrOf(renderer, frame, truth), plain + 6) << cached;
+    frame.sampleDistance = 1. / 40; // and with many it is the same
+    EXPECT_GT(PsnrOf(renderer, frame, truth), 55) << cached;
+  }
+}
+
+struct Kind
+{
+  std::string name;
+  std::function<void(inr::Frame&)> set;
+};
+
+const Kind Kinds[] = {
+    {"as it is", [](inr::Frame&) {}},
+    {"shaded",
+     [](inr::Frame& frame) {
+       frame.shading.emplace();
+       frame.lights.emplace_back();
+     }},
+    {"joined",
+     [](inr::Frame& frame) {
+       frame.adaptiveSampling = true;
+       frame.unitDistance = 60;
+     }},
+    {"far apart", [](inr::Frame& frame) { frame.sampleDistance = 3.7; }},
+    {"cropped",
+     [](inr::Frame& frame) {
+       frame.cropping = {{20, 15, 20}, {40, 30, 35}, 0x2ebfeba};
+     }},
+    {"behind something opaque",
+     [](inr::Frame& frame) {
+       static const std::vector<float> depth(static_cast<std::size_t>(frame.width) * frame.height,
+                                             0.905f);
+       frame.opaqueDepth = depth.data();
+     }},
+    {"around something translucent",
+     [](inr::Frame& frame) {
+       const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
+       auto layers = std::make_shared<inr::TranslucentLayers>();
+       layers->layers.push_back(
+           {std::vector<float>(pixels, 0.905f),
+            std::vector<glm::vec4>(pixels, glm::vec4(0.1f, 0.2f, 0.3f, 0.5f))});
+       frame.layers = layers;
+     }},
+    {"a piece",
+     [](inr::Frame& frame) {
+       frame.piece = {{0.3, 0.2, 1, -35}, {-0.3, -0.2, -1, 55}};
+     }},
+};
+
+// Asking for each sample by itself, through whatever is in between, gives the same picture as the
+// cache of the same voxels, in whatever bricks.
+TEST(PreIntegration, IsTheSameFromTheCacheAndFromDenseVoxels)
+{
+  const Voxels voxels(Dims, Waves);
+  inr::Renderer dense = FieldRenderer(
+      Dims, [&](const glm::vec3& u) { return voxels.at(u); }, {}, 2);
+  dense.setTransferFunction(Shell(0));
+  for (const Kind& kind : Kinds) {
+    SCOPED_TRACE(kind.name);
+    inr::Frame frame = Near(0.7);
+    frame.preIntegration = true;
+    kind.set(frame);
+    const inr::Image truth = Render(dense, frame);
+    for (const int brickSize : {9, 40}) {
+      inr::Renderer cached =
+          CachedRenderer(Dims, Waves, Options(inr::CachePrecision::Float32, brickSize));
+      cached.setTransferFunction(Shell(0));
+      EXPECT_GT(PsnrOf(cached, frame, truth), 85) << brickSize;
+    }
+    EXPECT_GT(*std::max_element(truth.pixels.begin(), truth.pixels.end()), 0.02f);
+  }
+}
+
+// Rays that wait for bricks, and bricks that have to go in between.
+TEST(PreIntegration, DoesNotDependOnWhatFits)
+{
+  for (const Kind& kind : Kinds) {
+    SCOPED_TRACE(kind.name);
+    inr::Frame frame = Near(0.7);
+    frame.preIntegration = true;
+    frame.levelOfDetailScale = 1.7;
+    kind.set(frame);
+    inr::CacheOptions options = Options(inr::CachePrecision::Bits16, 17);
+    inr::Image pictures[2];
+    for (const int small : {0, 1}) {
+      options.bytes = small != 0 ? options.bytes / 300 : options.bytes;
+      inr::Renderer renderer = CachedRenderer(Dims, Waves, options, small != 0 ? 1 : 2);
+      renderer.setTransferFunction(Shell(0));
+      EXPECT_TRUE(renderer.render(frame, pictures[small]).complete);
+    }
+    EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
+  }
+}
+
+TEST(PreIntegration, GivesWayToAnErrorTolerance)
+{
+  inr::Renderer renderer = FieldRenderer(Dims, Waves, {}, 2, true);
+  renderer.setTransferFunction(Shell(0));
+  inr::Frame frame = Near(0.7);
+  frame.errorTolerance = 2;
+  const inr::Image plain = Render(renderer, frame);
+  frame.preIntegration = true;
+  EXPECT_EQ(Render(renderer, frame).pixels, plain.pixels);
+}
+
+TEST(PreIntegration, IsForWhatIsComposited)
+{
+  inr::Renderer renderer = FieldRenderer(Dims, Waves, {}, 2, true);
+  renderer.setTransferFunction(Shell(0));
+  inr::Frame frame = Near(0.7);
+  for (const auto mode : {inr::BlendMode::MaximumIntensity, inr::BlendMode::Additive}) {
+    frame.blending.mode = mode;
+    frame.preIntegration = false;
+    const inr::Image plain = Render(renderer, frame);
+    frame.preIntegration = true;
+    EXPECT_EQ(Render(renderer, frame).pixels, plain.pixels);
+  }
+}
+
+} // namespace
