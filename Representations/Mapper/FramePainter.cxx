@@ -62,6 +62,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   frame.samplesPerPixel = settings.samplesPerPixel;
   frame.sampleDistance = settings.sampleDistance;
   frame.adaptiveSampling = settings.adaptiveSampling;
+  frame.preIntegration = settings.preIntegration;
   frame.levelOfDetailScale = settings.levelOfDetailScale;
   frame.errorTolerance = settings.errorTolerance;
   frame.seed = settings.seed;

@@ -18,6 +18,7 @@ struct PaintSettings
   int samplesPerPixel = 64;
   double sampleDistance = 0.5; ///< voxels; interactive pictures have twice that
   bool adaptiveSampling = true;
+  bool preIntegration = false;
   double levelOfDetailScale = 1;
   std::optional<double> errorTolerance;
   bool countSamples = false;  ///< into PaintedFrame::samples

@@ -320,6 +320,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
       glm::dvec3(this->AmbientLight[0], this->AmbientLight[1], this->AmbientLight[2]);
   settings.sampleDistance = this->SampleDistance;
   settings.adaptiveSampling = this->AdaptiveSampling;
+  settings.preIntegration = this->PreIntegration;
   settings.levelOfDetailScale = this->LevelOfDetailScale;
   if (!(this->ErrorTolerance < 0)) { // what is no number is refused with the frame
     settings.errorTolerance = this->ErrorTolerance;
@@ -438,6 +439,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << this->AmbientLight[2] << "\n"
      << indent << "SampleDistance: " << this->SampleDistance << "\n"
      << indent << "AdaptiveSampling: " << this->AdaptiveSampling << "\n"
+     << indent << "PreIntegration: " << this->PreIntegration << "\n"
      << indent << "LevelOfDetailScale: " << this->LevelOfDetailScale << "\n"
      << indent << "ErrorTolerance: " << this->ErrorTolerance << "\n"
      << indent << "CacheMode: " << this->CacheMode << "\n"

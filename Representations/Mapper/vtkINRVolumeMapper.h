@@ -207,6 +207,19 @@ public:
 
   ///@{
   /**
+   * Whether composited pictures take into account all values between a sample and the one before,
+   * as if the field were linear there (pre-integrated classification), instead of the sample's own
+   * value: thin peaks in the opacity are not missed, and no grain shows, even with a SampleDistance
+   * of 1 or 2. With an ErrorTolerance of 0 or more it does not count. Drawn by the CPU. Default
+   * off.
+   */
+  vtkSetMacro(PreIntegration, bool);
+  vtkGetMacro(PreIntegration, bool);
+  vtkBooleanMacro(PreIntegration, bool);
+  ///@}
+
+  ///@{
+  /**
    * How coarse the levels are that far voxels are read from: 1, the default, makes a voxel at most
    * a third larger than a pixel, and at least half as large where it is not of the full resolution;
    * 0 always reads the full resolution; 2 is faster and softer.
@@ -220,14 +233,15 @@ public:
    * By how many 255ths a channel of the picture may differ from the one with every sample from the
    * full resolution, for 99.9 % of its pixels. Levels, distances of samples and the precision of
    * the cache (BITS16 where what that rounds cannot show, else FLOAT32) follow from it;
-   * LevelOfDetailScale, AdaptiveSampling, InferencePrecision and CachePrecision do not count. 0:
-   * not at all. Below 0, the default: they do, and levels follow from the distance to the viewer.
-   * Lit, cropped (but to a box), projected and path-traced pictures, those with a SampleDistance
-   * above 1, and those of models that instantvnr or cINR wrote, whose values may leave the ranges
-   * that their files state, are as with 0. It needs the cache: CacheMode NETWORK_ONLY does without.
-   * It has to know the field where that can be seen, which the first picture waits for: up to ten
-   * times as long as decoding that; where it is more than some 450 million voxels, all are of the
-   * full resolution. Rays end at 0.999 of opacity, so below 0.3 it cannot be kept in opaque media.
+   * LevelOfDetailScale, AdaptiveSampling, PreIntegration, InferencePrecision and CachePrecision do
+   * not count. 0: not at all. Below 0, the default: they do, and levels follow from the distance to
+   * the viewer. Lit, cropped (but to a box), projected and path-traced pictures, those with a
+   * SampleDistance above 1, and those of models that instantvnr or cINR wrote, whose values may
+   * leave the ranges that their files state, are as with 0. It needs the cache: CacheMode
+   * NETWORK_ONLY does without. It has to know the field where that can be seen, which the first
+   * picture waits for: up to ten times as long as decoding that; where it is more than some 450
+   * million voxels, all are of the full resolution. Rays end at 0.999 of opacity, so below 0.3 it
+   * cannot be kept in opaque media.
    */
   vtkSetClampMacro(ErrorTolerance, double, -1.0, 255.0);
   vtkGetMacro(ErrorTolerance, double);
@@ -508,6 +522,7 @@ private:
   double AmbientLight[3] = {0.5, 0.5, 0.5};
   double SampleDistance = 0.5;
   bool AdaptiveSampling = true;
+  bool PreIntegration = false;
   double LevelOfDetailScale = 1.0;
   double ErrorTolerance = -1.0;
   int CacheMode = CACHE_AND_NETWORK;

@@ -391,6 +391,11 @@ void vtkINRVolumeRepresentation::SetAdaptiveSampling(bool on)
   this->GetMapper()->SetAdaptiveSampling(on);
 }
 
+void vtkINRVolumeRepresentation::SetPreIntegration(bool on)
+{
+  this->GetMapper()->SetPreIntegration(on);
+}
+
 void vtkINRVolumeRepresentation::SetLevelOfDetailScale(double scale)
 {
   this->GetMapper()->SetLevelOfDetailScale(scale);

@@ -57,6 +57,7 @@ public:
   void SetAmbientLight(double red, double green, double blue);
   void SetSampleDistance(double voxels);
   void SetAdaptiveSampling(bool on);
+  void SetPreIntegration(bool on);
   void SetLevelOfDetailScale(double scale);
   void SetErrorTolerance(double tolerance);
   void SetCacheMode(int mode);
