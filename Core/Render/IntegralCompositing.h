@@ -15,11 +15,12 @@ namespace INR_ISA {
 
 namespace {
 
-/// Where values are in a transfer function, from sample `first` of a batch on.
+/// Where values are in a transfer function.
 struct Positions
 {
   float place[SampleBatch::Room];
-  std::int32_t node[SampleBatch::Room]; ///< in IntegralLookup::nodes
+  float way[SampleBatch::Room];         ///< from the node before to there
+  std::int32_t node[SampleBatch::Room]; ///< that one, in IntegralLookup::nodes
 };
 
 void FindPositions(const IntegralLookup& lookup, const float* values, int count, Positions& out)
@@ -30,10 +31,26 @@ void FindPositions(const IntegralLookup& lookup, const float* values, int count,
     const Floats inside = Minimum(Maximum(place, Floats{}), last);
     Ints node = __builtin_convertvector(inside, Ints);
     const Ints most = (lookup.last - 1) - Ints{};
-    node = (node < most ? node : most) + 1;
-    node = place < Floats{} ? Ints{} : (place > last ? (lookup.last + 1) - Ints{} : node);
+    node = node < most ? node : most;
+    node = place < Floats{} ? Ints{} - 1 : (place > last ? lookup.last - Ints{} : node);
     Store(out.place + k, place);
+    Store(out.way + k, place - __builtin_convertvector(node, Floats));
+    node = node + 1;
     std::memcpy(out.node + k, &node, sizeof(node));
+  }
+}
+
+/// 1 / (end - begin), or 0 where that leaves too few digits, or where there is no node in between.
+void FindSlopes(const Positions& begins, const Positions& ends, int count, float* slopes)
+{
+  for (int k = 0; k < count; k += LaneCount) {
+    const Floats rise = Load(ends.place + k) - Load(begins.place + k);
+    Ints from;
+    Ints to;
+    std::memcpy(&from, begins.node + k, sizeof(from));
+    std::memcpy(&to, ends.node + k, sizeof(to));
+    const Ints isFar = (Maximum(rise, -rise) > Spread(0.01f)) & (from != to);
+    Store(slopes + k, isFar ? 1.0f / rise : Floats{});
   }
 }
 
@@ -44,11 +61,8 @@ struct Reached
   Rgba integral;
 };
 
-Reached Reach(const IntegralLookup& lookup, const Positions& positions, int k)
+Reached Reach(const IntegralNode& node, float way)
 {
-  const int number = positions.node[k];
-  const float way = positions.place[k] - static_cast<float>(number - 1);
-  const IntegralNode& node = lookup.nodes[number];
   const Rgba begin = LoadRgba(node.density);
   const Rgba density = begin + (LoadRgba(node.next) - begin) * way;
   return {density, (begin + density) * (0.5f * way)};
@@ -58,21 +72,20 @@ Reached Reach(const IntegralLookup& lookup, const Positions& positions, int k)
 void FindDensities(const IntegralLookup& lookup, const Positions& begins, const Positions& ends,
                    int count, float* densities)
 {
+  float slopes[SampleBatch::Room];
+  FindSlopes(begins, ends, count, slopes);
   Reached end{};
   for (int k = 0; k < count; ++k) {
+    const IntegralNode& from = lookup.nodes[begins.node[k]];
+    const IntegralNode& to = lookup.nodes[ends.node[k]];
     const bool isNext = k > 0 && begins.place[k] == ends.place[k - 1];
-    const Reached begin = isNext ? end : Reach(lookup, begins, k);
-    end = Reach(lookup, ends, k);
+    const Reached begin = isNext ? end : Reach(from, begins.way[k]);
+    end = Reach(to, ends.way[k]);
     Rgba mean = (begin.density + end.density) * 0.5f;
-    const int from = begins.node[k];
-    const int to = ends.node[k];
-    const float rise = ends.place[k] - begins.place[k];
-    if (from != to && __builtin_fabsf(rise) > 0.01f) { // of less, too few digits would be left
+    if (slopes[k] != 0.0f) {
       // In double: what is opaque elsewhere must not round away what is faint here.
-      const ExactRgba between =
-          LoadExactRgba(lookup.nodes[to].integral) - LoadExactRgba(lookup.nodes[from].integral);
-      mean = (__builtin_convertvector(between, Rgba) + (end.integral - begin.integral)) *
-             (1.0f / rise);
+      const ExactRgba between = LoadExactRgba(to.integral) - LoadExactRgba(from.integral);
+      mean = (__builtin_convertvector(between, Rgba) + (end.integral - begin.integral)) * slopes[k];
     }
     std::memcpy(densities + 4 * k, &mean, sizeof(mean));
   }
