@@ -200,6 +200,7 @@ void CachedMarcher::close(BrickRun& run, float transmittance)
 void CachedMarcher::advanceShaded(CachedRay& state)
 {
   const SampleWalker before = state.samples; // bricks may be asked for that are not there
+  const KnownValue knownBefore = state.known;
   this->place(state);
   this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
   this->clampToRanges();
@@ -218,8 +219,8 @@ void CachedMarcher::advanceShaded(CachedRay& state)
       this->addLight(state, colors[k], opacities[k], t[k]);
     }
   }
-  if (integrates && known > 0) {
-    state.known = this->knownBehind(known - 1);
+  if (integrates) { // no further than what is lit: it goes on from there
+    state.known = known > 0 ? this->knownBehind(known - 1) : knownBefore;
   }
   if (known < this->Count && state.color.transmittance > OpaqueTransmittance) {
     this->goBackTo(known, before, state);

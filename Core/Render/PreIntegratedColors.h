@@ -47,7 +47,7 @@ private:
 
   const IntegralNode& nodeAt(double position) const
   {
-    if (position < 0.0) {
+    if (!(position >= 0.0)) { // what is no number, too
       return this->Nodes[0];
     }
     if (position > this->Last) {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -290,6 +291,71 @@ TEST(PreIntegration, DoesNotDependOnWhatFits)
       EXPECT_TRUE(renderer.render(frame, pictures[small]).complete);
     }
     EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
+  }
+}
+
+// Of lit samples, the first of a batch may wait for the bricks around it more than once: its light
+// falls through what was between it and the one before all the same.
+TEST(PreIntegration, KeepsWhatItKnewWhileLightWaitsForBricks)
+{
+  inr::Frame frame = Near(0.2);
+  frame.preIntegration = true;
+  frame.levelOfDetailScale = 1;
+  frame.shading.emplace();
+  frame.lights.emplace_back();
+  inr::CacheOptions options = Options(inr::CachePrecision::Float32, 6);
+  inr::Image pictures[2];
+  for (const int small : {0, 1}) {
+    options.bytes = small != 0 ? 24 << 10 : options.bytes;
+    inr::Renderer renderer = CachedRenderer(Dims, Waves, options, small != 0 ? 1 : 2);
+    renderer.setTransferFunction(Shell(0, 0.03f));
+    EXPECT_TRUE(renderer.render(frame, pictures[small]).complete);
+  }
+  EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
+}
+
+// Values before the first sample of a cell are asked for where no range bounds them.
+TEST(PreIntegration, EndsWithANumberBesideWhatIsNone)
+{
+  const glm::i64vec3 dims(24, 24, 33);
+  inr::MacroCells cells = inr::MakeMacroCells(dims, 16);
+  const auto layer = static_cast<std::size_t>(cells.dims.x * cells.dims.y);
+  for (std::size_t k = 0; k < cells.ranges.size(); ++k) { // the first layer shows nothing
+    const float value = k < layer ? 0.1f : 0.7f;
+    cells.ranges[k] = {value, value};
+  }
+  const auto field = [](const glm::vec3& u) {
+    return u.z < 0.495f ? std::numeric_limits<float>::quiet_NaN() : 0.7f;
+  };
+  for (const bool cached : {false, true}) {
+    inr::Renderer renderer = FieldRenderer(dims, field, cells, 2, cached);
+    renderer.setTransferFunction(Shell(0));
+    for (const float number : Render(renderer, AlongZ(0.7)).pixels) {
+      EXPECT_TRUE(std::isfinite(number)) << cached;
+    }
+  }
+}
+
+// The cache composites logarithms, and other colours after others.
+TEST(PreIntegration, IsTheSameFromTheCacheForOtherColours)
+{
+  const Voxels voxels(Dims, Waves);
+  inr::TransferFunction logarithmic = Shell(0);
+  logarithmic.logarithmic = true;
+  logarithmic.low = 0.05;
+  inr::Renderer dense = FieldRenderer(
+      Dims, [&](const glm::vec3& u) { return voxels.at(u); }, {}, 2);
+  inr::Renderer cached = CachedRenderer(Dims, Waves, Options(inr::CachePrecision::Float32, 17));
+  inr::Frame frame = Near(0.7);
+  frame.preIntegration = true;
+  for (const auto& function : {Shell(0), logarithmic, Shell(0, 0.05f)}) {
+    dense.setTransferFunction(function);
+    cached.setTransferFunction(function);
+    const inr::Image truth = Render(dense, frame);
+    EXPECT_GT(PsnrOf(cached, frame, truth), 85);
+    inr::Renderer fresh = CachedRenderer(Dims, Waves, Options(inr::CachePrecision::Float32, 17));
+    fresh.setTransferFunction(function);
+    EXPECT_EQ(Render(fresh, frame).pixels, Render(cached, frame).pixels);
   }
 }
 
