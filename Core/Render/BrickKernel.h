@@ -56,6 +56,10 @@ struct IntegralNode
   float next[4]; ///< at the next node, or the same where there is none
 };
 
+/// Extinction per unit distance from which on a stretch is opaque, however short: an opacity in
+/// float is 1 there.
+constexpr float OpaqueFrom = 16.635532f; // 24 ln 2
+
 /// The integrals of a frame's colours; see PreIntegratedColors. Node k + 1 is at position k; the
 /// first one stands for all positions below 0, and the last one for all above `last`.
 struct IntegralLookup
@@ -147,7 +151,7 @@ struct BrickKernel
                    RayColor& color, std::int64_t& clamped);
 
   /// The same of samples [first, end), each of which has the colours of all values from `begin` to
-  /// `value`; no value is outside its range.
+  /// `value`, which is in its range.
   int (*compositeIntegrated)(const IntegralLookup& lookup, SampleBatch& batch, int first, int end,
                              float opaque, RayColor& color);
 };

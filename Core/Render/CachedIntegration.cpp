@@ -66,10 +66,17 @@ bool CachedMarcher::findBegin(const CachedRay& state, const Origin& origin, int 
     begin = state.known.value;
     return true;
   }
-  const bool isSeen = interval >= 0 && (origin.seen >> place & 1) != 0;
-  return !isSeen ||
-         this->Probe->find(state.ray, this->levelOf(sample), static_cast<double>(interval),
-                           static_cast<float>(state.color.transmittance), this->Requests, begin);
+  if (interval < 0 || (origin.seen >> place & 1) == 0) {
+    return true; // of what is in front of the ray, or shows nothing, only the value counts
+  }
+  const std::size_t asked = this->Requests.entries().size();
+  const bool found =
+      this->Probe->find(state.ray, this->levelOf(sample), static_cast<double>(interval),
+                        static_cast<float>(state.color.transmittance), this->Requests, begin);
+  if (found && this->Requests.entries().size() > asked) {
+    ++this->Statistics.missed; // from a coarser level
+  }
+  return found;
 }
 
 void CachedMarcher::compositeKnown(CachedRay& state, int first, int end)

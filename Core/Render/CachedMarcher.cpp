@@ -25,6 +25,18 @@ SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t s
           JitterOf(scene.settings, stream)};
 }
 
+double ShortestBlockOf(const BrickFormat& format)
+{
+  const double edge = 1.0 / static_cast<double>(format.blocksPerVoxel);
+  double shortest = edge;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (format.lastCell[axis] >= 0) { // else the volume is one voxel thick
+      shortest = std::min(shortest, format.lastCell[axis] + 1 - format.lastBlock[axis] * edge);
+    }
+  }
+  return shortest;
+}
+
 } // namespace
 
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
@@ -36,7 +48,8 @@ CachedRay::CachedRay(const CachedScene& scene, int x, int y)
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
     : Scene(scene), Missing(onMiss),
-      DitherMask(scene.settings.projector.findsSurfaces() ? 0 : ~std::int64_t{0})
+      DitherMask(scene.settings.projector.findsSurfaces() ? 0 : ~std::int64_t{0}),
+      ShortestBlock(ShortestBlockOf(scene.format))
 {
   if (scene.settings.looksAtBothEnds()) {
     this->Probe.emplace(scene, onMiss);

@@ -32,8 +32,8 @@ struct CachedRay
 {
   CachedRay(const CachedScene& scene, int x, int y);
 
-  static constexpr std::int64_t Unknown = -3;
-  static constexpr std::int64_t Nowhere = -2;
+  static constexpr std::int64_t Unknown = -3; ///< shownTo: nothing was looked at right before
+  static constexpr std::int64_t Nowhere = -2; ///< shownTo: what was right before is invisible
 
   Ray ray;
   std::uint64_t stream; ///< of the ray's random numbers
@@ -126,6 +126,9 @@ private:
     std::uint64_t seen;
     std::uint64_t visible;
   };
+  /// Whether from one such sample to the next there may be blocks, besides those of the two, of
+  /// which all values are looked at.
+  bool spansBlocks(const AlikeSamples& alike, const RunPair& runs) const;
   SampleBits choose(const CachedRay& state, const AlikeSamples& alike, int count,
                     const RunPair& runs) const;
   /// Adds such samples, the first of them at `place`, but for those that show nothing, as far as
@@ -219,6 +222,7 @@ private:
   int RunCount = 0;                ///< in Batch
   int Paths = 0;                   ///< in Batch
   std::int64_t DitherMask;         ///< of sample numbers
+  double ShortestBlock;            ///< edge in voxels: the last one along an axis may be cut off
   std::uint64_t Clamped = 0; ///< those of the batch's samples that clampToRanges moved, bit by bit
   float LastLength = 0;      ///< of the ray's last sample, if it is shorter than a step; else 0
   bool Waiting = false;

@@ -175,11 +175,18 @@ CachedMarcher::SampleBits CachedMarcher::choose(const CachedRay& state, const Al
   return {seen | seen >> 1, seen, visible};
 }
 
+bool CachedMarcher::spansBlocks(const AlikeSamples& alike, const RunPair& runs) const
+{
+  const double voxels = static_cast<double>(alike.steps()) * this->Scene.settings.step;
+  const double level = PowerOfTwo(runs.fine->servedLevel());
+  return this->Probe && voxels > level * this->ShortestBlock;
+}
+
 void CachedMarcher::add(CachedRay& state, AlikeSamples& alike, const RunPair& runs, double place)
 {
   const SampleStretch& stretch = state.samples.stretch();
   // Closed stretches take values for others than those that ranges bound.
-  const bool all = (stretch.closed && stretch.level > 0) ||
+  const bool all = (stretch.closed && stretch.level > 0) || this->spansBlocks(alike, runs) ||
                    (runs.fine->shown().kind == ShownBlocks::Kind::All &&
                     runs.coarse->shown().kind == ShownBlocks::Kind::All);
   const int room = std::min(this->Room - this->Count, SampleRow::Most);

@@ -78,9 +78,10 @@ struct Frame
 
   /// Where ray marching composites, what a sample stands for has the colours of all values between
   /// that of the sample before and its own, as if the field were linear there (see
-  /// PreIntegratedLookup): of thin peaks in the transfer function nothing is missed, and rays need
-  /// no random offsets. Light falls as on the gradient at the sample. Off: a sample's own colour.
-  /// Ignored where there is an error tolerance and a cache.
+  /// PreIntegratedLookup): no peak in the transfer function is too thin, and rays need no random
+  /// offsets. Macro-cells narrower than the distance may be skipped if both ends are invisible.
+  /// Light falls as on the gradient at the sample. Off: a sample's own colour. Ignored where there
+  /// is an error tolerance and a cache.
   bool preIntegration = false;
 
   /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel at most a

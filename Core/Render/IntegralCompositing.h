@@ -27,7 +27,8 @@ void FindPositions(const IntegralLookup& lookup, const float* values, int count,
 {
   const Floats last = Spread(static_cast<float>(lookup.last));
   for (int k = 0; k < count; k += LaneCount) {
-    const Floats place = MultiplyAdd(Load(values + k), Spread(lookup.scale), Spread(lookup.bias));
+    Floats place = MultiplyAdd(Load(values + k), Spread(lookup.scale), Spread(lookup.bias));
+    place = Maximum(place, Spread(-1e30f)); // a beginning may be no number: below all colours
     const Floats inside = Minimum(Maximum(place, Floats{}), last);
     Ints node = __builtin_convertvector(inside, Ints);
     const Ints most = (lookup.last - 1) - Ints{};
@@ -91,11 +92,13 @@ void FindDensities(const IntegralLookup& lookup, const Positions& begins, const 
   }
 }
 
+constexpr float Opaque = 32; ///< depth
+
 /// 1 - exp(-depth) for depths that are not negative, to a few units in the last place.
 Floats OpacityOf(Floats depth)
 {
   constexpr int halvings = 5;
-  const Floats part = Minimum(depth, Spread(32.0f)) * (1.0f / (1 << halvings)); // 32: opaque
+  const Floats part = Minimum(depth, Spread(Opaque)) * (1.0f / (1 << halvings));
   // The series of (1 - exp(-x)) / x, for x up to 1.
   constexpr float factors[] = {-1.0f / 3628800, 1.0f / 362880, -1.0f / 40320, 1.0f / 5040,
                                -1.0f / 720,     1.0f / 120,    -1.0f / 24,    1.0f / 6,
@@ -124,8 +127,9 @@ void FindWeights(const IntegralLookup& lookup, const float* densities, const std
     Ints length;
     std::memcpy(&length, lengths + k, sizeof(length));
     const Ints steps = ((length & 1) * 2 + 1) << (length >> 1); // StepsOf
-    const Floats opacity =
-        OpacityOf(extinction * (__builtin_convertvector(steps, Floats) * lookup.step));
+    const Floats depth = extinction * (__builtin_convertvector(steps, Floats) * lookup.step);
+    const Ints isOpaque = extinction >= Spread(OpaqueFrom);
+    const Floats opacity = OpacityOf(isOpaque ? Spread(Opaque) : depth);
     Store(opacities + k, opacity);
     Store(weights + k, opacity / Maximum(extinction, Spread(1e-30f)));
   }

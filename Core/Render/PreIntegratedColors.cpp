@@ -10,9 +10,14 @@ namespace {
 constexpr int FewestNodes = 1 << 10;
 constexpr int MostNodes = 1 << 14;
 constexpr double Tolerance = 2e-4; // of the extinction
-constexpr double MostOpaque = 1.0 - 0x1p-24;
+/// Of what is opaque: enough for a stretch of which 1/4000 is to be so, and little enough that what
+/// is faint is not lost in sums with it.
+constexpr double OpaqueExtinction = 0x1p16;
 
-double ExtinctionOf(double opacity) { return -std::log1p(-std::min(opacity, MostOpaque)); }
+double ExtinctionOf(double opacity)
+{
+  return opacity < 1.0 ? -std::log1p(-opacity) : OpaqueExtinction;
+}
 
 glm::vec4 DensityOf(const glm::vec4& entry)
 {

@@ -21,8 +21,9 @@ class PreIntegratedLookup
 {
 public:
   /// Straight RGB and opacity per unit distance of a stretch between two normalised values, in
-  /// either order; where they are equal that is ColorLookup::at. What is opaque has an optical
-  /// depth of 24 ln 2 per unit distance.
+  /// either order; where they are equal that is ColorLookup::at. A stretch is opaque if
+  /// any part of it to speak of is: its mean extinction is OpaqueFrom then. Linear means in
+  /// ColorLookup::coordinate, so in the logarithm where that is taken.
   glm::vec4 between(float first, float last) const
   {
     const glm::dvec4 density = this->meanBetween(this->positionOf(first), this->positionOf(last));
@@ -30,7 +31,8 @@ public:
       return glm::vec4(0.0f);
     }
     const glm::dvec3 color = glm::dvec3(density) / density.w;
-    return {glm::vec3(color), static_cast<float>(-std::expm1(-density.w))};
+    const bool isOpaque = density.w >= static_cast<double>(OpaqueFrom);
+    return {glm::vec3(color), isOpaque ? 1.0f : static_cast<float>(-std::expm1(-density.w))};
   }
 
   /// For BrickKernel::compositeIntegrated, with rays' steps of so many opacity unit distances.
@@ -63,7 +65,8 @@ private:
     const IntegralNode& b = this->nodeAt(last);
     const Reached begin = this->reach(a, first);
     const Reached end = this->reach(b, last);
-    if (&a == &b || std::abs(last - first) < 1e-3) { // too few digits would be left
+    // Of less, too few digits would be left; positions have fewer in float, see the kernel's.
+    if (&a == &b || std::abs(last - first) < 1e-3) {
       return 0.5 * (begin.density + end.density);
     }
     const glm::dvec4 between = glm::make_vec4(b.integral) - glm::make_vec4(a.integral);
@@ -90,8 +93,11 @@ private:
   double NodesPerEntry = 1; ///< of the colour table
 };
 
-/// The integrals of a colour table, with as many nodes between two of its entries as the density
-/// needs to be linear between them within 2e-4 of it, up to 2^14 in all, and 1024 at least.
+/// The integrals of a colour table. From one node to the next density is taken to be linear, and
+/// between two entries of the table there are as many nodes as extinction needs for that, within
+/// 2e-4 of it: 1024 in all at least, and no more than 2^14 if the table has not more itself. Where
+/// colour changes with opacity from each entry to the next, it is off by 1/6 of that change between
+/// nodes.
 class PreIntegratedColors
 {
 public:

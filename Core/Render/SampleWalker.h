@@ -54,8 +54,8 @@ public:
         Next(jitter < 1.0 || !(ray.length > 0) ? 0 : -1)
   {}
 
-  /// Moves on to the next sample of the ray's piece that may be seen; false when there is none. Of
-  /// samples at the ends of what they stand for, the last one may be behind the piece.
+  /// Moves on to the next sample of the ray's piece that may be seen; false when there is none.
+  /// Where surfaces are looked for, the last one may be behind the piece.
   INR_HOST_DEVICE bool moveToVisible(const MarchSettings& settings)
   {
     while (this->moveAlongRay(settings)) {

@@ -70,6 +70,7 @@ private:
   bool projectRay(std::size_t first, std::size_t end, MarchState& state);
   /// Sends a ray that wants more on behind the next translucent layer; false when there is no more.
   bool enterNextPart(int k, bool goesOn);
+  /// Counts it if it has to be moved.
   float clampedValue(std::size_t sample);
   glm::vec4 colorOf(const MarchState& state) const;
   double depthOf(const MarchState& state) const;

@@ -191,6 +191,27 @@ TEST(BlockVisibility, LeavesPicturesAsTheyAre)
   }
 }
 
+// Nor are blocks left out that lie between two samples.
+TEST(BlockVisibility, LeavesOutNoBlockThatColoursAreIntegratedThrough)
+{
+  for (const int brickSize : {8, 17, 40}) {
+    for (const double distance : {2.5, 3.6, 9.0}) {
+      SCOPED_TRACE(testing::Message() << brickSize << " " << distance);
+      inr::Frame frame = Oblique(glm::dvec3(Dims));
+      frame.preIntegration = true;
+      frame.sampleDistance = distance;
+      inr::Image pictures[2];
+      for (const int all : {0, 1}) {
+        inr::Renderer renderer =
+            CachedRenderer(Dims, Waves, Options(inr::CachePrecision::Bits16, brickSize));
+        renderer.setTransferFunction(Shell(all != 0 ? Invisible : 0));
+        renderer.render(frame, pictures[all]);
+      }
+      ExpectSame(pictures[0], pictures[1]);
+    }
+  }
+}
+
 // Samples are left out where none of the voxels around them can be seen, and nowhere else than in
 // a block's reach of that.
 TEST(BlockVisibility, TakesTheSamplesOfBlocksThatAreSeen)
