@@ -96,10 +96,10 @@ public:
    * What draws; one of Backends, anything else is refused. A GPU has the model, the cache
    * (CacheSize at most, and half of its free memory), the rays and the paths; but of isosurfaces
    * and of pictures with translucent surfaces, PreIntegration or an ErrorTolerance, the CPU draws
-   * what the GPU infers. Its values are float32, as the CPU's are, but for the order of summation. One that
-   * fails, at whatever time, or draws another picture than the CPU, is given up for the CPU with a
-   * warning, without change in a picture, until this is called again, if only with the same. So is
-   * one whose memory is short, of which AUTO says nothing. A change empties the cache.
+   * what the GPU infers. Its values are float32, as the CPU's are, but for the order of summation.
+   * One that fails, at whatever time, or draws another picture than the CPU, is given up for the CPU
+   * with a warning, without change in a picture, until this is called again, if only with the same.
+   * So is one whose memory is short, of which AUTO says nothing. A change empties the cache.
    * GetBackendInUse() says what is at work. Default AUTO.
    */
   void SetBackend(int backend);
@@ -209,9 +209,9 @@ public:
   /**
    * Whether composited pictures take into account all values between a sample and the one before,
    * as if the field were linear there (pre-integrated classification), instead of the sample's own
-   * value: thin peaks in the opacity are not missed, and no grain shows, even with a SampleDistance
-   * of 1 or 2. With an ErrorTolerance of 0 or more it does not count. Drawn by the CPU. Default
-   * off.
+   * value: thin peaks in the opacity show with far less grain at the same SampleDistance, for some
+   * 1.5 times the time. With an ErrorTolerance of 0 or more it does not count. Drawn by the CPU.
+   * Default off.
    */
   vtkSetMacro(PreIntegration, bool);
   vtkGetMacro(PreIntegration, bool);
