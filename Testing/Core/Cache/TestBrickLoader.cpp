@@ -145,12 +145,11 @@ TEST_P(BrickLoaderTest, WorksALayerAtLeastAndNoLongerThanItMay)
 
 TEST_F(BrickLoaderTest, DoesNotKeepACallerForALayer)
 {
-  this->Source->delay = std::chrono::milliseconds(1000);
+  this->Source->delay = std::chrono::seconds(3); // longer than a busy machine holds a thread up
   inr::BrickLoader loader(this->Source, 1, 100);
   loader.request(Bricks(0, 1));
-  const auto start = std::chrono::steady_clock::now();
   loader.loadFor(0.001);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(900));
+  EXPECT_EQ(this->Source->layers, 0);
 }
 
 TEST_P(BrickLoaderTest, HoldsNoMoreThanItHasRoomFor)
