@@ -75,6 +75,27 @@ inline inr::Frame PlainFrame()
   return frame;
 }
 
+constexpr inr::RenderMode Modes[] = {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing};
+
+/// Of few pixels, for what is drawn many times or by slow devices.
+inline inr::Frame SmallFrame(inr::RenderMode mode)
+{
+  inr::Frame frame = PlainFrame();
+  frame.mode = mode;
+  frame.width = 16;
+  frame.height = 12;
+  frame.samplesPerPixel = 1;
+  return frame;
+}
+
+/// The same from level 0.
+inline inr::Frame FullResolution(inr::RenderMode mode)
+{
+  inr::Frame frame = SmallFrame(mode);
+  frame.levelOfDetailScale = 0;
+  return frame;
+}
+
 /// A picture and all that comes with it.
 struct Drawn
 {
@@ -132,6 +153,13 @@ inline void LightUp(inr::Frame& frame)
 {
   frame.lights = {LightOf(inr::LightKind::Point), LightOf(inr::LightKind::Directional),
                   LightOf(inr::LightKind::Spot)};
+}
+
+/// Lights samples with these.
+inline void Shade(inr::Frame& frame)
+{
+  frame.shading = inr::Material();
+  LightUp(frame);
 }
 
 /// Through the middle of the volume.

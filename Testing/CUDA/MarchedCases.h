@@ -9,10 +9,7 @@
 
 inline std::vector<Case> MarchedCases()
 {
-  const auto lit = [](inr::Frame& frame) {
-    frame.shading = inr::Material();
-    LightUp(frame);
-  };
+  const auto lit = [](inr::Frame& frame) { Shade(frame); };
   const auto piece = [](inr::Frame& frame) { frame.piece = {PlaneAcross({0.1, 1, 0.4})}; };
   const auto opaque = [](inr::Frame& frame) { frame.unitDistance = 0.02; };
   const auto both = [](const auto& first, const auto& second) {

@@ -43,17 +43,6 @@ inline inr::RendererOptions RoomFor(Place place, std::int64_t bricks, HostLaunch
   return options;
 }
 
-inline inr::Frame FullResolution(inr::RenderMode mode)
-{
-  inr::Frame frame = PlainFrame();
-  frame.mode = mode;
-  frame.samplesPerPixel = 1;
-  frame.levelOfDetailScale = 0;
-  frame.width = 16;
-  frame.height = 12;
-  return frame;
-}
-
 /// As often as it takes.
 inline inr::Image Finish(inr::Renderer& renderer, const inr::Frame& frame, int& calls)
 {

@@ -38,8 +38,7 @@ std::vector<Case> Cases()
   cases.push_back({"MixedLevels", [](inr::Frame& frame) { frame.levelOfDetailScale = 2.5; }});
   cases.push_back({"LitMixedLevels", [](inr::Frame& frame) {
                      frame.levelOfDetailScale = 2.5;
-                     frame.shading = inr::Material();
-                     LightUp(frame);
+                     Shade(frame);
                    }});
   return cases;
 }
@@ -112,10 +111,9 @@ TEST_P(Drawing, NeedsNoMoreThanTheSmallestCache)
 {
   HostLaunch backward;
   backward.backward = true;
-  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+  for (const inr::RenderMode mode : Modes) {
     inr::Frame frame = FullResolution(mode);
-    frame.shading = inr::Material();
-    LightUp(frame);
+    Shade(frame);
     const inr::Image truth = DrawnInTheEnd(frame, RoomFor(GetParam(), 0));
     for (const std::int64_t bricks : {8, 16}) {
       EXPECT_EQ(DrawnInTheEnd(frame, RoomFor(GetParam(), bricks)).pixels, truth.pixels) << bricks;
@@ -129,8 +127,7 @@ TEST_P(Drawing, ComesToTheSamePictureInTime)
 {
   for (const bool deterministic : {true, false}) {
     for (const std::int64_t bricks : {0, 20}) {
-      for (const inr::RenderMode mode :
-           {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+      for (const inr::RenderMode mode : Modes) {
         inr::Frame frame = FullResolution(mode);
         inr::RendererOptions options = RoomFor(GetParam(), bricks);
         options.cache.maximumRequests = 15;
@@ -152,7 +149,7 @@ TEST_P(Drawing, MakesDoWithWhatFits)
 {
   inr::RendererOptions options = RoomFor(GetParam(), 20);
   options.cache.onlyWhatFits = true;
-  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+  for (const inr::RenderMode mode : Modes) {
     const Drawn drawn = Draw(FullResolution(mode), options);
     EXPECT_TRUE(drawn.statistics.complete);
     EXPECT_GT(drawn.statistics.levels.coarsest, 0);
@@ -169,7 +166,7 @@ TEST(DrawingOnTheHost, DoesNotDependOnTheOrderOfThreads)
   backward.backward = true;
   HostLaunch few;
   few.blocks = 1;
-  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+  for (const inr::RenderMode mode : Modes) {
     frame.mode = mode;
     frame.samplesPerPixel = 1;
     const Drawn forward = Draw(frame, OptionsWith(Device()));

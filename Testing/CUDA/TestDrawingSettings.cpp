@@ -15,19 +15,6 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Kernels, DrawingSettings, testing::Values(Place::Host, Place::Gpu),
                          InAPlace::nameOf);
 
-inr::Frame SmallFrame(inr::RenderMode mode)
-{
-  inr::Frame frame = PlainFrame();
-  frame.mode = mode;
-  frame.width = 24;
-  frame.height = 18;
-  frame.samplesPerPixel = 1;
-  frame.levelOfDetailScale = 0;
-  return frame;
-}
-
-constexpr inr::RenderMode Modes[] = {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing};
-
 /// A few paths part ways for rounding.
 void ExpectAlike(const inr::Image& drawn, const inr::Image& truth, inr::RenderMode mode)
 {
@@ -56,10 +43,10 @@ TEST_P(DrawingSettings, EveryPrecisionOfTheCacheGivesThePicturesOfTheCpu)
       SCOPED_TRACE(static_cast<int>(precision));
       inr::RendererOptions options = this->options();
       options.cache.precision = precision;
-      const Drawn drawn = Draw(SmallFrame(mode), options);
+      const Drawn drawn = Draw(FullResolution(mode), options);
       EXPECT_TRUE(drawn.statistics.accelerated);
       options.accelerator = nullptr;
-      ExpectAlike(drawn.rgba, Draw(SmallFrame(mode), options).rgba, mode);
+      ExpectAlike(drawn.rgba, Draw(FullResolution(mode), options).rgba, mode);
     }
   }
 }
@@ -78,10 +65,9 @@ TEST_P(DrawingSettings, LogarithmicColoursGiveThePicturesOfTheCpu)
   ASSERT_GT(Logarithmic().low, 0);
   for (const inr::RenderMode mode : Modes) {
     for (const bool lit : {false, true}) {
-      inr::Frame frame = SmallFrame(mode);
+      inr::Frame frame = FullResolution(mode);
       if (lit) {
-        frame.shading = inr::Material();
-        LightUp(frame);
+        Shade(frame);
       }
       inr::Image pictures[2];
       for (const bool accelerated : {false, true}) {
@@ -106,7 +92,7 @@ TEST_P(DrawingSettings, OfFramesBeforeNothingIsLeft)
       for (glm::vec4& color : colours.table) {
         color = {color.y, color.z, color.x, 0.9f * color.w};
       }
-      inr::Frame frame = SmallFrame(mode);
+      inr::Frame frame = FullResolution(mode);
       frame.width = width;
       frame.sampleDistance = width == 9 ? 0.4 : 0.7;
       const auto drawnBy = [&](inr::Renderer& one) {
@@ -129,7 +115,7 @@ TEST_P(DrawingSettings, DepthsAreThoseOfTheCpu)
         inr::BlendMode::MinimumIntensity, inr::BlendMode::AverageIntensity}) {
     SCOPED_TRACE(static_cast<int>(mode));
     inr::RendererOptions options = this->options();
-    inr::Frame frame = SmallFrame(inr::RenderMode::RayMarching);
+    inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
     frame.blending.mode = mode;
     frame.unitDistance = 0.2;
     inr::TransferFunction colours = ColoursOf(TrainedModel()->volume);
@@ -169,8 +155,9 @@ TEST_P(DrawingSettings, ValuesOutsideTheirRangesAreMovedAsByTheCpu)
     for (const bool accelerated : {false, true}) {
       inr::Renderer renderer(model, accelerated ? this->options() : OptionsWith(nullptr));
       renderer.setTransferFunction(colours);
-      const inr::FrameStatistics statistics =
-          renderer.render(SmallFrame(mode), pictures[accelerated]);
+      inr::Frame frame = FullResolution(mode);
+      frame.width = 24; // more values
+      const inr::FrameStatistics statistics = renderer.render(frame, pictures[accelerated]);
       EXPECT_EQ(statistics.accelerated, accelerated);
       clamped[accelerated] = statistics.clamped;
     }
@@ -185,7 +172,7 @@ TEST_P(DrawingSettings, ValuesOutsideTheirRangesAreMovedAsByTheCpu)
 /// What the statistics of paths and rays say, too.
 TEST_P(DrawingSettings, CountsAreThoseOfTheCpu)
 {
-  inr::Frame frame = SmallFrame(inr::RenderMode::RayMarching);
+  inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
   frame.levelOfDetailScale = 2.5;
   const Drawn marched = Draw(frame, this->options());
   const Drawn truth = Draw(frame, OptionsWith(nullptr));
@@ -199,8 +186,7 @@ TEST_P(DrawingSettings, CountsAreThoseOfTheCpu)
   }
   EXPECT_EQ(others, 0u);
 
-  frame.shading = inr::Material();
-  LightUp(frame);
+  Shade(frame);
   ExpectAbout(Draw(frame, this->options()).statistics.work.gradients,
               Draw(frame, OptionsWith(nullptr)).statistics.work.gradients);
 

@@ -27,19 +27,9 @@ private:
   std::shared_ptr<FailingOrders> Orders;
 };
 
-inr::Frame SmallFrame(inr::RenderMode mode)
-{
-  inr::Frame frame = PlainFrame();
-  frame.mode = mode;
-  frame.width = 16;
-  frame.height = 12;
-  frame.samplesPerPixel = 2;
-  return frame;
-}
-
 TEST(LostDrawing, LeavesThePictureToTheCpu)
 {
-  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+  for (const inr::RenderMode mode : Modes) {
     const inr::Frame frame = SmallFrame(mode);
     const Drawn truth = Draw(frame, OptionsWith(nullptr));
     const auto counting = std::make_shared<FailingOrders>();
@@ -84,7 +74,7 @@ TEST(LostDrawing, IsNotTrustedWithOtherPictures)
 /// And goes on as if nothing had been.
 TEST(LostDrawing, StopsOnRequest)
 {
-  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+  for (const inr::RenderMode mode : Modes) {
     const inr::Frame frame = SmallFrame(mode);
     const Drawn truth = Draw(frame, OptionsWith(Device()));
     inr::Renderer renderer = RendererOf(OptionsWith(Device()));

@@ -49,20 +49,13 @@ inr::RendererOptions Uncached(std::shared_ptr<const inr::Accelerator> accelerato
   return options;
 }
 
-inr::Frame SmallFrame(inr::RenderMode mode)
+inr::Frame LitFrame(inr::RenderMode mode)
 {
-  inr::Frame frame = PlainFrame();
-  frame.width = 20;
-  frame.height = 14;
-  frame.mode = mode;
-  frame.samplesPerPixel = 1;
-  frame.shading = inr::Material();
+  inr::Frame frame = SmallFrame(mode);
+  Shade(frame);
   frame.paths.ambientLight = glm::vec3(0.3f, 0.4f, 0.5f);
-  LightUp(frame);
   return frame;
 }
-
-constexpr inr::RenderMode Modes[] = {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing};
 
 bool ShowsSomething(const inr::Image& image)
 {
@@ -155,7 +148,7 @@ TEST(NetworkDrawing, DependsNeitherOnTheSizeOfWavesNorOnTheOrderOfThreads)
   HostLaunch few;
   few.blocks = 1;
   for (const inr::RenderMode mode : Modes) {
-    const inr::Frame frame = SmallFrame(mode);
+    const inr::Frame frame = LitFrame(mode);
     const Drawn drawn = Draw(frame, Uncached(Device()));
     ASSERT_TRUE(ShowsSomething(drawn.rgba));
     const auto with = [&](HostLaunch launch, const inr::cuda::WaveSizes& sizes) {
@@ -180,7 +173,7 @@ TEST(NetworkDrawing, DrawsOneFrameAfterAnother)
   for (const inr::RenderMode mode : {Modes[0], Modes[1], Modes[0]}) {
     for (const bool lit : {false, true}) {
       for (const int width : {6, 20, 9}) {
-        inr::Frame frame = SmallFrame(mode);
+        inr::Frame frame = LitFrame(mode);
         frame.width = width;
         if (!lit) {
           frame.shading.reset();
@@ -198,7 +191,7 @@ TEST(NetworkDrawing, StopsWhenItIsAskedTo)
   for (const inr::RenderMode mode : Modes) {
     const auto orders = std::make_shared<FailingOrders>();
     inr::Renderer renderer = RendererOf(Uncached(Failing(orders, {3, 3})));
-    const inr::Frame frame = SmallFrame(mode);
+    const inr::Frame frame = LitFrame(mode);
     inr::Image image;
     renderer.render(frame, image); // nothing is left to be proven
     const inr::Image whole = image;
@@ -228,7 +221,7 @@ TEST(NetworkDrawing, StopsWhenItIsAskedTo)
 TEST(NetworkDrawing, LeavesAllToTheCpuWhenTheDeviceIsLost)
 {
   for (const inr::RenderMode mode : Modes) {
-    const inr::Frame frame = SmallFrame(mode);
+    const inr::Frame frame = LitFrame(mode);
     const Drawn truth = Draw(frame, Uncached(nullptr));
     const auto counting = std::make_shared<FailingOrders>();
     ASSERT_TRUE(Draw(frame, Uncached(Failing(counting))).statistics.accelerated);
@@ -253,7 +246,7 @@ TEST(NetworkDrawing, LeavesAllToTheCpuWhenTheDeviceIsLost)
 TEST(NetworkDrawing, IsNotTrustedUnseen)
 {
   for (const inr::RenderMode mode : Modes) {
-    const inr::Frame frame = SmallFrame(mode);
+    const inr::Frame frame = LitFrame(mode);
     const auto orders = std::make_shared<FailingOrders>();
     orders->lies = true;
     inr::Renderer renderer = RendererOf(Uncached(Failing(orders)));
@@ -265,17 +258,46 @@ TEST(NetworkDrawing, IsNotTrustedUnseen)
   }
 }
 
-/// What rays find surfaces in is the CPU's.
-TEST(NetworkDrawing, LeavesSurfacesToTheCpu)
+class LeftToTheCpu : public testing::TestWithParam<Case>
+{};
+
+INSTANTIATE_TEST_SUITE_P(
+    NetworkDrawing, LeftToTheCpu,
+    testing::Values(Case{"Surfaces",
+                         [](inr::Frame& frame) {
+                           frame.blending.mode = inr::BlendMode::Isosurface;
+                           frame.blending.isosurfaces = {0.3};
+                         }},
+                    Case{"PreIntegration", [](inr::Frame& frame) { frame.preIntegration = true; }},
+                    Case{"Layers",
+                         [](inr::Frame& frame) {
+                           const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
+                           auto layers = std::make_shared<inr::TranslucentLayers>();
+                           layers->layers.push_back(
+                               {std::vector<float>(pixels, 0.905f),
+                                std::vector<glm::vec4>(pixels, glm::vec4(0.1f, 0.2f, 0.3f, 0.5f))});
+                           frame.layers = layers;
+                         }}),
+    [](const auto& info) { return info.param.name; });
+
+/// What kernels do not draw they infer, with and without a cache.
+TEST_P(LeftToTheCpu, IsInferredByTheDevice)
 {
-  inr::Frame frame = SmallFrame(inr::RenderMode::RayMarching);
-  frame.blending.mode = inr::BlendMode::Isosurface;
-  frame.blending.isosurfaces = {0.3};
-  const Drawn truth = Draw(frame, Uncached(nullptr));
-  ASSERT_TRUE(ShowsSomething(truth.rgba));
-  const Drawn drawn = Draw(frame, Uncached(Device()));
-  EXPECT_FALSE(drawn.statistics.accelerated);
-  EXPECT_GE(inr::ImagePsnr(drawn.rgba, truth.rgba), 60);
+  inr::Frame frame = LitFrame(inr::RenderMode::RayMarching);
+  const inr::Image plain = Draw(frame, Uncached(nullptr)).rgba;
+  GetParam().change(frame);
+  for (const bool cached : {false, true}) {
+    SCOPED_TRACE(cached);
+    inr::RendererOptions options = OptionsWith(nullptr);
+    options.cached = cached;
+    const Drawn truth = Draw(frame, options);
+    ASSERT_TRUE(ShowsSomething(truth.rgba));
+    EXPECT_LT(inr::ImagePsnr(truth.rgba, plain), 50);
+    options.accelerator = Device();
+    const Drawn drawn = Draw(frame, options);
+    EXPECT_FALSE(drawn.statistics.accelerated);
+    EXPECT_GE(inr::ImagePsnr(drawn.rgba, truth.rgba), 60);
+  }
 }
 
 /// How many of a thousand values leave float32's range on their way.
@@ -312,7 +334,7 @@ TEST(NetworkDrawing, HasCoreComputeWhatOverflows)
   ASSERT_LT(Marked(model, launch), 950);
   for (const inr::RenderMode mode : Modes) {
     for (const bool lit : {false, true}) {
-      inr::Frame frame = SmallFrame(mode);
+      inr::Frame frame = LitFrame(mode);
       if (!lit) {
         frame.shading.reset();
       }

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double Hurry = 1e-9;  ///< s: a call brings some ray further, and no more
 constexpr int MostCalls = 2000; ///< that any of these pictures takes
-constexpr inr::RenderMode Modes[] = {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing};
 
 inr::Frame Hurried(inr::Frame frame)
 {
@@ -26,8 +25,7 @@ inr::Frame Hurried(inr::Frame frame)
 inr::Frame LitFrame(inr::RenderMode mode)
 {
   inr::Frame frame = FullResolution(mode);
-  frame.shading = inr::Material();
-  LightUp(frame);
+  Shade(frame);
   return frame;
 }
 

@@ -36,11 +36,7 @@ const std::vector<PictureKind>& Kinds()
          return job.frame.blending.mode == inr::BlendMode::Composite && !job.shading &&
                 !job.settings.crops;
        }},
-      {"Lit",
-       [](inr::Frame& frame) {
-         frame.shading = inr::Material();
-         LightUp(frame);
-       },
+      {"Lit", [](inr::Frame& frame) { Shade(frame); },
        [](const inr::MarchJob& job) { return job.shading != nullptr; }},
       {"Cropped", Crop, [](const inr::MarchJob& job) { return job.settings.crops; }},
       Blended("Largest", inr::BlendMode::MaximumIntensity),

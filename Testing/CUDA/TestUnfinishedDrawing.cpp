@@ -63,8 +63,7 @@ TEST(UnfinishedDrawing, ShowsWhatIsThere)
       const auto with = [&](inr::Frame frame) {
         frame.sampleDistance = distance;
         if (lit) {
-          frame.shading = inr::Material();
-          LightUp(frame);
+          Shade(frame);
         }
         return frame;
       };
@@ -104,7 +103,7 @@ TEST(UnfinishedDrawing, IsNotMovedIntoOtherLevelsRanges)
 /// Level by level, or the wanted ones at once.
 TEST(UnfinishedDrawing, AsksForWhatItIsToAskFor)
 {
-  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+  for (const inr::RenderMode mode : Modes) {
     for (const bool preloading : {true, false}) {
       SCOPED_TRACE(preloading);
       inr::Renderer renderer = RendererOf(SmallBricks(preloading));
@@ -158,8 +157,7 @@ TEST(UnfinishedDrawing, TracesAgainWhatHasMissedSomething)
 TEST(UnfinishedDrawing, IsNotCompleteWithoutWhatGradientsNeed)
 {
   inr::Frame frame = FrameAt(0);
-  frame.shading = inr::Material();
-  LightUp(frame);
+  Shade(frame);
   frame.clippingPlanes = {{1, 0, 0, -16.2}}; // a brick begins at 16
   const inr::Image truth = Draw(frame, SmallBricks(false)).rgba;
   inr::Renderer renderer = RendererOf(SmallBricks(false));
@@ -173,7 +171,7 @@ TEST(UnfinishedDrawing, IsNotCompleteWithoutWhatGradientsNeed)
 /// Also where nothing waits for all of it.
 TEST(UnfinishedDrawing, StopsOnRequest)
 {
-  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+  for (const inr::RenderMode mode : Modes) {
     for (const bool inTime : {true, false}) {
       for (const int most : {0, 1}) {
         SCOPED_TRACE(std::to_string(static_cast<int>(mode)) + (inTime ? " in time" : ""));
