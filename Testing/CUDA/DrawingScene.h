@@ -7,8 +7,8 @@
 #include "Core/Image/Metrics.h"
 #include "Testing/CUDA/EmulatedAccelerator.h"
 #include "Testing/CUDA/Places.h"
+#include "Testing/CUDA/TrainedModel.h"
 #include "Testing/Core/Render/VoxelScene.h"
-#include "Testing/Core/Training/Fields.h"
 
 #include <algorithm>
 #include <functional>
@@ -17,15 +17,6 @@
 #include <tuple>
 #include <utility>
 #include <vector>
-
-inline const inr::ModelPointer& TrainedModel()
-{
-  static const inr::ModelPointer model = [] {
-    const Field<float> field = Waves();
-    return inr::TrainModel(field.data(), {}, Steps(100));
-  }();
-  return model;
-}
 
 /// Whose macro-cells, as another program's file may, say less than there is.
 inline inr::ModelPointer WithNarrowRanges()

@@ -6,10 +6,10 @@
 #include "Core/Image/Metrics.h"
 #include "Testing/CUDA/EmulatedAccelerator.h"
 #include "Testing/CUDA/Places.h"
+#include "Testing/CUDA/TrainedModel.h"
 #include "Testing/Core/FakeAccelerator.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Render/VoxelScene.h"
-#include "Testing/Core/Training/Fields.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,16 +20,6 @@ enum class Way { Cached, Uncached, Paths, UncachedPaths };
 constexpr Way Ways[] = {Way::Cached, Way::Uncached, Way::Paths, Way::UncachedPaths};
 
 bool IsTraced(Way way) { return way == Way::Paths || way == Way::UncachedPaths; }
-
-/// A field that is learnt, as those that are drawn.
-const inr::ModelPointer& TrainedModel()
-{
-  static const inr::ModelPointer model = [] {
-    const Field<float> field = Waves();
-    return inr::TrainModel(field.data(), {}, Steps(100));
-  }();
-  return model;
-}
 
 inr::RendererOptions OptionsFor(Way way, std::shared_ptr<const inr::Accelerator> accelerator)
 {
