@@ -298,24 +298,54 @@ TEST(PreIntegration, DoesNotDependOnWhatFits)
   }
 }
 
+struct LitScene
+{
+  double distance;
+  float width; ///< of the shell
+  int brickSize;
+  std::int64_t bytes; ///< of the smaller cache
+};
+
 // Of lit samples, the first of a batch may wait for the bricks around it more than once: its light
-// falls through what was between it and the one before all the same.
+// falls through what was between it and the one before all the same, whether it shows something
+// itself, as those close together do, or not.
 TEST(PreIntegration, KeepsWhatItKnewWhileLightWaitsForBricks)
 {
-  inr::Frame frame = Near(0.2);
-  frame.preIntegration = true;
-  frame.levelOfDetailScale = 1;
-  frame.shading.emplace();
-  frame.lights.emplace_back();
-  inr::CacheOptions options = Options(inr::CachePrecision::Float32, 6);
-  inr::Image pictures[2];
-  for (const int small : {0, 1}) {
-    options.bytes = small != 0 ? 24 << 10 : options.bytes;
-    inr::Renderer renderer = CachedRenderer(Dims, Waves, options, small != 0 ? 1 : 2);
-    renderer.setTransferFunction(Shell(0, 0.03f));
-    EXPECT_TRUE(renderer.render(frame, pictures[small]).complete);
+  for (const LitScene& scene : {LitScene{0.2, 0.03f, 6, 24 << 10}, {3.7, 0.06f, 9, 60 << 10}}) {
+    SCOPED_TRACE(scene.distance);
+    inr::Frame frame = Near(scene.distance);
+    frame.preIntegration = true;
+    frame.levelOfDetailScale = 1;
+    frame.shading.emplace();
+    frame.lights.emplace_back();
+    inr::CacheOptions options = Options(inr::CachePrecision::Float32, scene.brickSize);
+    inr::Image pictures[2];
+    for (const int small : {0, 1}) {
+      options.bytes = small != 0 ? scene.bytes : options.bytes;
+      inr::Renderer renderer = CachedRenderer(Dims, Waves, options, small != 0 ? 1 : 2);
+      renderer.setTransferFunction(Shell(0, scene.width));
+      EXPECT_TRUE(renderer.render(frame, pictures[small]).complete);
+    }
+    EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
   }
-  EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
+}
+
+// What is looked at between samples is of their level, and for the most part in their bricks.
+TEST(PreIntegration, AsksForHardlyMoreBricks)
+{
+  for (const double scale : {0.0, 2.0, 4.0}) {
+    std::int64_t bricks[2];
+    for (const bool integrates : {false, true}) {
+      inr::Renderer renderer = CachedRenderer(Dims, Waves, Options(inr::CachePrecision::Bits16, 9));
+      renderer.setTransferFunction(Shell(0));
+      inr::Frame frame = Near(2);
+      frame.levelOfDetailScale = scale;
+      frame.preIntegration = integrates;
+      Render(renderer, frame);
+      bricks[integrates] = renderer.cachedBricks();
+    }
+    EXPECT_LE(bricks[1], bricks[0] + bricks[0] / 5) << scale;
+  }
 }
 
 // Values before the first sample of a cell are asked for where no range bounds them.
