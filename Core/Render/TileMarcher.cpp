@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/TileMarcher.h"
 
-#include "Core/Render/PreIntegratedColors.h"
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/Timer.h"
 
@@ -80,72 +79,8 @@ void TileMarcher::inferValues()
   const auto count = static_cast<std::int64_t>(this->Samples.size());
   this->Scene.evaluator.evaluate(this->Positions.data(), count, this->Values.data());
   this->Statistics.samples += count;
-}
-
-/// The samples of which something is seen; those behind which a ray is opaque are the last.
-void TileMarcher::listVisible()
-{
-  this->Lit.resize(this->Samples.size());
-  this->Visible.clear();
-  std::size_t k = 0;
-  for (std::size_t live = 0; live < this->Live.size(); ++live) {
-    double opacity = this->Rays[static_cast<std::size_t>(this->Live[live])].color.w;
-    for (; k < static_cast<std::size_t>(this->SampleEnds[live]); ++k) {
-      this->Lit[k] = this->colorOf(k);
-      if (this->Lit[k].w > 0.0f && opacity < OpaqueEnough) {
-        this->Visible.push_back(k);
-        opacity += (1.0 - opacity) * OpacityOver(this->Samples[k].length, this->Lit[k].w);
-      }
-    }
-  }
-}
-
-void TileMarcher::inferGradients()
-{
-  const glm::vec3 voxel(1.0 / this->Scene.settings.dims);
-  const glm::vec3 low = 0.5f * voxel;
-  this->listVisible();
-  this->Positions.clear();
-  for (const std::size_t k : this->Visible) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const float side : {-1.0f, 1.0f}) {
-        glm::vec3 position = this->Samples[k].position;
-        position[axis] =
-            glm::clamp(position[axis] + side * voxel[axis], low[axis], 1.0f - low[axis]);
-        this->Positions.push_back(position);
-      }
-    }
-  }
-  const auto count = static_cast<std::int64_t>(this->Positions.size());
-  this->Neighbors.resize(this->Positions.size());
-  this->Scene.evaluator.evaluate(this->Positions.data(), count, this->Neighbors.data());
-  this->Statistics.samples += count;
-  this->Statistics.work.gradients += static_cast<std::int64_t>(this->Visible.size());
-}
-
-void TileMarcher::shade()
-{
-  const ShadingView& lighting = this->Scene.shading->view();
-  const glm::vec3 dims(this->Scene.settings.dims);
-  std::size_t live = 0;
-  for (std::size_t k = 0; k < this->Visible.size(); ++k) {
-    glm::vec3 gradient(0.0f);
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::size_t lower = 6 * k + 2 * static_cast<std::size_t>(axis);
-      const float length =
-          (this->Positions[lower + 1][axis] - this->Positions[lower][axis]) * dims[axis];
-      const float difference = this->Neighbors[lower + 1] - this->Neighbors[lower];
-      gradient[axis] = length > 0.0f ? difference / length : 0.0f;
-    }
-    const std::size_t sample = this->Visible[k];
-    while (sample >= static_cast<std::size_t>(this->SampleEnds[live])) {
-      ++live;
-    }
-    const Ray& ray = this->Rays[static_cast<std::size_t>(this->Live[live])].ray;
-    glm::vec4& color = this->Lit[sample];
-    const glm::vec3 lit = lighting.shade(glm::vec3(color), lighting.toEye(ray),
-                                         ray.at(this->Samples[sample].t), gradient);
-    color = glm::vec4(lit, color.w);
+  for (std::size_t k = 0; k < this->Samples.size(); ++k) {
+    this->Statistics.clamped += ClampToRange(this->Samples[k].range, this->Values[k]) ? 1 : 0;
   }
 }
 
@@ -167,30 +102,10 @@ void TileMarcher::composite()
   this->Live.resize(alive);
 }
 
-glm::vec4 TileMarcher::colorOf(std::size_t sample) const
-{
-  float value = this->Values[sample];
-  ClampToRange(this->Samples[sample].range, value); // counted when it is composited
-  const PreIntegratedLookup* const preIntegrated = this->Scene.settings.preIntegrated;
-  if (preIntegrated == nullptr) {
-    return this->Scene.colors.at(value);
-  }
-  return this->Samples[sample].begin < 0 ? glm::vec4(0.0f) // in front of the ray
-                                         : preIntegrated->between(this->Begins[sample], value);
-}
-
-float TileMarcher::clampedValue(std::size_t sample)
-{
-  float value = this->Values[sample];
-  this->Statistics.clamped += ClampToRange(this->Samples[sample].range, value) ? 1 : 0;
-  return value;
-}
-
 bool TileMarcher::compositeRay(std::size_t first, std::size_t end, MarchState& state)
 {
   for (std::size_t k = first; k < end && state.color.w < OpaqueEnough; ++k) {
-    this->clampedValue(k);
-    const glm::vec4 color = this->Scene.shading != nullptr ? this->Lit[k] : this->colorOf(k);
+    const glm::vec4 color = this->Scene.shading != nullptr ? this->Lit[k] : this->sampleColor(k);
     Composite(color, this->Samples[k], state);
   }
   return state.color.w < OpaqueEnough;
@@ -201,13 +116,13 @@ bool TileMarcher::projectRay(std::size_t first, std::size_t end, MarchState& sta
   const Projector& projector = this->Scene.settings.projector;
   for (std::size_t k = first; k < end; ++k) {
     const MarchSample& sample = this->Samples[k];
-    projector.add(this->Scene.colors, this->clampedValue(k), static_cast<double>(sample.length),
+    projector.add(this->Scene.colors, this->Values[k], static_cast<double>(sample.length),
                   static_cast<double>(sample.t), state.projection);
   }
   return !projector.isFinal(state.projection);
 }
 
-glm::vec4 TileMarcher::colorOf(const MarchState& state) const
+glm::vec4 TileMarcher::rayColor(const MarchState& state) const
 {
   const Projector& projector = this->Scene.settings.projector;
   if (this->Scene.frame.layers) {
@@ -226,7 +141,7 @@ double TileMarcher::depthOf(const MarchState& state) const
     return state.halfOpaqueDepth;
   }
   const bool projects = this->Scene.settings.projector.projects();
-  const bool shows = projects && this->colorOf(state).w >= 0.5f;
+  const bool shows = projects && this->rayColor(state).w >= 0.5f;
   const double t = shows ? state.projection.at : state.halfOpaqueAt;
   return t >= 0 ? this->Scene.geometry.windowDepth(state.ray.at(t)) : 1.0;
 }
@@ -263,7 +178,7 @@ void TileMarcher::writePixels(const Tile& tile, Image& rgba, Image* depth) const
     const int x = tile.x + k % tile.width;
     const int y = tile.y + k / tile.width;
     const MarchState& state = this->Rays[static_cast<std::size_t>(k)];
-    const glm::vec4 color = this->colorOf(state);
+    const glm::vec4 color = this->rayColor(state);
     std::copy_n(&color.x, 4, rgba.pixel(x, y));
     if (depth != nullptr) {
       *depth->pixel(x, y) = static_cast<float>(this->depthOf(state));

@@ -50,6 +50,7 @@ private:
 
   void generateRays(const Tile& tile);
   void placeSamples();
+  /// In their macro-cells' ranges; counts those that have to be moved.
   void inferValues();
   void listVisible();
   void inferGradients();
@@ -58,8 +59,8 @@ private:
   void findSurfaces();
   /// Where both ends of samples are looked at: values before each of them.
   void inferBegins();
-  /// What a sample shows per unit distance; its value may leave its macro-cell's range.
-  glm::vec4 colorOf(std::size_t sample) const;
+  /// What a sample shows per unit distance.
+  glm::vec4 sampleColor(std::size_t sample) const;
   void listCrossings();
   void listCrossing(int ray, const MarchSample& sample, float first, float last);
   void bisectCrossings();
@@ -70,9 +71,7 @@ private:
   bool projectRay(std::size_t first, std::size_t end, MarchState& state);
   /// Sends a ray that wants more on behind the next translucent layer; false when there is no more.
   bool enterNextPart(int k, bool goesOn);
-  /// Counts it if it has to be moved.
-  float clampedValue(std::size_t sample);
-  glm::vec4 colorOf(const MarchState& state) const;
+  glm::vec4 rayColor(const MarchState& state) const;
   double depthOf(const MarchState& state) const;
   void writePixels(const Tile& tile, Image& rgba, Image* depth) const;
 

@@ -15,41 +15,6 @@ void TileMarcher::findSurfaces()
   this->placeOnSurfaces();
 }
 
-/// Where the steps of a sample begin the value is that of the sample before, or not known yet.
-void TileMarcher::inferBegins()
-{
-  for (std::size_t k = 0; k < this->Samples.size(); ++k) {
-    this->Values[k] = this->clampedValue(k);
-  }
-  this->Positions.clear();
-  std::vector<std::size_t> unknown;
-  std::size_t k = 0;
-  this->Begins.assign(this->Samples.size(), 0.0f);
-  for (std::size_t live = 0; live < this->Live.size(); ++live) {
-    MarchState& state = this->Rays[static_cast<std::size_t>(this->Live[live])];
-    for (; k < static_cast<std::size_t>(this->SampleEnds[live]); ++k) {
-      const MarchSample& sample = this->Samples[k];
-      if (sample.begin < 0) { // nothing is in front of it
-        this->Begins[k] = this->Values[k];
-      } else if (state.knownAt == sample.begin) {
-        this->Begins[k] = state.known;
-      } else {
-        unknown.push_back(k);
-        this->Positions.push_back(FieldPosition(this->Scene.settings, state.ray.at(sample.begin)));
-      }
-      state.knownAt = sample.end;
-      state.known = this->Values[k];
-    }
-  }
-  std::vector<float> values(unknown.size());
-  const auto count = static_cast<std::int64_t>(unknown.size());
-  this->Scene.evaluator.evaluate(this->Positions.data(), count, values.data());
-  this->Statistics.samples += count;
-  for (std::size_t i = 0; i < unknown.size(); ++i) {
-    this->Begins[unknown[i]] = values[i];
-  }
-}
-
 void TileMarcher::listCrossings()
 {
   this->Crossings.clear();
