@@ -4,8 +4,8 @@
 #include "Core/Render/BrickKernel.h"
 
 #include "Core/Inference/Lanes.h"
+#include "Core/Render/FrontToBack.h"
 #include "Core/Render/IntegralCompositing.h"
-#include "Core/Render/RgbaVectors.h"
 #include "Core/Render/SampleLayout.h"
 
 namespace inr {
@@ -242,41 +242,19 @@ void Classify(const StepLookup& lookup, const SampleBatch& batch, int count, Cla
   }
 }
 
-/// With colours and opacities of type Vector, four of Number.
-template <typename Number, typename Vector>
-int CompositeAs(const StepLookup& lookup, SampleBatch& batch, int count, float opaque,
-                const Classified& at, RayColor& color)
-{
-  const auto number = [](double value) { return static_cast<Number>(value); };
-  Vector sum = {number(color.rgb[0]), number(color.rgb[1]), number(color.rgb[2]), 0};
-  Number transmittance = number(color.transmittance);
-  int used = 0;
-  while (used < count && transmittance > opaque) {
-    const std::int64_t row =
-        static_cast<std::int64_t>(batch.length[used]) * lookup.rows + at.entry[used];
-    const Rgba first = LoadRgba(lookup.entries + 4 * row);
-    const Rgba second = LoadRgba(lookup.entries + 4 * row + 4);
-    const Vector entry =
-        __builtin_convertvector(first + (second - first) * at.weight[used], Vector);
-    batch.opacity[used] = static_cast<float>(1 - transmittance);
-    sum += entry * (transmittance * entry[3]);
-    transmittance *= 1 - entry[3]; // one step after another: the shorter way
-    ++used;
-  }
-  color.rgb[0] = sum[0];
-  color.rgb[1] = sum[1];
-  color.rgb[2] = sum[2];
-  color.transmittance = transmittance;
-  return used;
-}
-
 int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opaque,
               RayColor& color, std::int64_t& clamped)
 {
   Classified at;
   Classify(lookup, batch, count, at, clamped);
-  return color.ofMany ? CompositeAs<double, ExactRgba>(lookup, batch, count, opaque, at, color)
-                      : CompositeAs<float, Rgba>(lookup, batch, count, opaque, at, color);
+  const auto sampleAt = [&](int k) {
+    const std::int64_t row = static_cast<std::int64_t>(batch.length[k]) * lookup.rows + at.entry[k];
+    const Rgba first = LoadRgba(lookup.entries + 4 * row);
+    const Rgba second = LoadRgba(lookup.entries + 4 * row + 4);
+    const Rgba entry = first + (second - first) * at.weight[k];
+    return ShownSample{entry, entry[3], entry[3]};
+  };
+  return AddUp(count, opaque, sampleAt, batch.opacity, color);
 }
 
 } // namespace

@@ -6,7 +6,7 @@
 
 #include "Core/Inference/Lanes.h"
 #include "Core/Render/BrickKernel.h"
-#include "Core/Render/RgbaVectors.h"
+#include "Core/Render/FrontToBack.h"
 
 #include <cstring>
 
@@ -135,29 +135,6 @@ void FindWeights(const IntegralLookup& lookup, const float* densities, const std
   }
 }
 
-/// With colours and opacities of type Vector, four of Number.
-template <typename Number, typename Vector>
-int AddUp(const float* densities, const float* opacities, const float* weights, int count,
-          float opaque, float* before, RayColor& color)
-{
-  const auto number = [](double value) { return static_cast<Number>(value); };
-  Vector sum = {number(color.rgb[0]), number(color.rgb[1]), number(color.rgb[2]), 0};
-  Number transmittance = number(color.transmittance);
-  int used = 0;
-  while (used < count && transmittance > opaque) {
-    const Vector density = __builtin_convertvector(LoadRgba(densities + 4 * used), Vector);
-    before[used] = static_cast<float>(1 - transmittance);
-    sum += density * (transmittance * weights[used]);
-    transmittance *= 1 - static_cast<Number>(opacities[used]);
-    ++used;
-  }
-  color.rgb[0] = sum[0];
-  color.rgb[1] = sum[1];
-  color.rgb[2] = sum[2];
-  color.transmittance = transmittance;
-  return used;
-}
-
 int CompositeIntegrated(const IntegralLookup& lookup, SampleBatch& batch, int first, int end,
                         float opaque, RayColor& color)
 {
@@ -174,10 +151,10 @@ int CompositeIntegrated(const IntegralLookup& lookup, SampleBatch& batch, int fi
     std::memset(densities + 4 * lane, 0, 4 * sizeof(float));
   }
   FindWeights(lookup, densities, batch.length + first, count, opacities, weights);
-  float* const before = batch.opacity + first;
-  return color.ofMany
-             ? AddUp<double, ExactRgba>(densities, opacities, weights, count, opaque, before, color)
-             : AddUp<float, Rgba>(densities, opacities, weights, count, opaque, before, color);
+  const auto sampleAt = [&](int k) {
+    return ShownSample{LoadRgba(densities + 4 * k), weights[k], opacities[k]};
+  };
+  return AddUp(count, opaque, sampleAt, batch.opacity + first, color);
 }
 
 } // namespace
