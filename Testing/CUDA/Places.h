@@ -18,6 +18,8 @@ enum class Place { Host, Gpu };
 
 inline const char* TextOf(Place place) { return place == Place::Host ? "Host" : "Gpu"; }
 
+inline void PrintTo(Place place, std::ostream* stream) { *stream << TextOf(place); }
+
 /// The last thing that SetUp does: skips, with the reason, where there is no such place.
 inline void SkipUnlessThere(Place place)
 {

@@ -16,6 +16,8 @@ struct PictureKind
   std::function<bool(const inr::MarchJob&)> isIt; ///< empty: paths
 };
 
+void PrintTo(const PictureKind& kind, std::ostream* stream) { *stream << kind.name; }
+
 void CropToABox(inr::Frame& frame)
 {
   Crop(frame);
