@@ -269,15 +269,7 @@ INSTANTIATE_TEST_SUITE_P(
                            frame.blending.isosurfaces = {0.3};
                          }},
                     Case{"PreIntegration", [](inr::Frame& frame) { frame.preIntegration = true; }},
-                    Case{"Layers",
-                         [](inr::Frame& frame) {
-                           const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
-                           auto layers = std::make_shared<inr::TranslucentLayers>();
-                           layers->layers.push_back(
-                               {std::vector<float>(pixels, 0.905f),
-                                std::vector<glm::vec4>(pixels, glm::vec4(0.1f, 0.2f, 0.3f, 0.5f))});
-                           frame.layers = layers;
-                         }}),
+                    Case{"Layers", AddLayerHalfWay}),
     [](const auto& info) { return info.param.name; });
 
 /// What kernels do not draw they infer, with and without a cache.

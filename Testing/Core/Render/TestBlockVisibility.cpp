@@ -150,15 +150,7 @@ const Way Ways[] = {
        frame.piece = {{0.3, 0.2, 1, -35}, {-0.3, -0.2, -1, 55}};
      }},
     {"of a translucent surface",
-     [](inr::Frame& frame, inr::CacheOptions&) {
-       const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
-       auto layers = std::make_shared<inr::TranslucentLayers>();
-       const float halfWay = 0.905f;
-       layers->layers.push_back(
-           {std::vector<float>(pixels, halfWay),
-            std::vector<glm::vec4>(pixels, glm::vec4(0.1f, 0.2f, 0.3f, 0.5f))});
-       frame.layers = layers;
-     }},
+     [](inr::Frame& frame, inr::CacheOptions&) { AddLayerHalfWay(frame); }},
 };
 
 /// Between one value and the other only where coarse voxels are half of this and half of that: a

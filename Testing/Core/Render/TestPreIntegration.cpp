@@ -238,15 +238,7 @@ const Kind Kinds[] = {
                                              0.905f);
        frame.opaqueDepth = depth.data();
      }},
-    {"around something translucent",
-     [](inr::Frame& frame) {
-       const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
-       auto layers = std::make_shared<inr::TranslucentLayers>();
-       layers->layers.push_back(
-           {std::vector<float>(pixels, 0.905f),
-            std::vector<glm::vec4>(pixels, glm::vec4(0.1f, 0.2f, 0.3f, 0.5f))});
-       frame.layers = layers;
-     }},
+    {"around something translucent", AddLayerHalfWay},
     {"a piece",
      [](inr::Frame& frame) {
        frame.piece = {{0.3, 0.2, 1, -35}, {-0.3, -0.2, -1, 55}};

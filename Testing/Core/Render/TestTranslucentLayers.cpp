@@ -29,12 +29,7 @@ inr::Frame View()
 
 void AddSurface(inr::Frame& frame, double place, const glm::vec4& color)
 {
-  const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
-  auto layers = frame.layers ? std::make_shared<inr::TranslucentLayers>(*frame.layers)
-                             : std::make_shared<inr::TranslucentLayers>();
-  layers->layers.push_back(
-      {std::vector<float>(pixels, DepthAt(place)), std::vector<glm::vec4>(pixels, color)});
-  frame.layers = layers;
+  AddLayer(frame, DepthAt(place), color);
 }
 
 glm::vec4 Over(const glm::vec4& front, const glm::vec4& back)

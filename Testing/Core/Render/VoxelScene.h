@@ -89,6 +89,23 @@ inline inr::Frame Oblique(const glm::dvec3& dims, int size = 48)
   return frame;
 }
 
+/// Adds a translucent surface, behind those there are, at a window-space depth in all pixels.
+inline void AddLayer(inr::Frame& frame, float depth, const glm::vec4& color)
+{
+  const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
+  auto layers = frame.layers ? std::make_shared<inr::TranslucentLayers>(*frame.layers)
+                             : std::make_shared<inr::TranslucentLayers>();
+  layers->layers.push_back(
+      {std::vector<float>(pixels, depth), std::vector<glm::vec4>(pixels, color)});
+  frame.layers = layers;
+}
+
+/// One half way through what Oblique() shows.
+inline void AddLayerHalfWay(inr::Frame& frame)
+{
+  AddLayer(frame, 0.905f, {0.1f, 0.2f, 0.3f, 0.5f});
+}
+
 inline inr::CacheOptions Options(inr::CachePrecision precision, int brickSize)
 {
   inr::CacheOptions options;
