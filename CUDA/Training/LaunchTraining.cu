@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Device/LaunchDefinition.cuh"
 #include "CUDA/Training/Kernels/TrainDraw.h"
+#include "CUDA/Training/Kernels/TrainLayers.h"
 #include "CUDA/Training/Kernels/TrainNetwork.h"
 #include "CUDA/Training/Kernels/TrainUpdate.h"
-#include "CUDA/Device/LaunchDefinition.cuh"
 
 namespace inr {
 namespace cuda {
@@ -12,6 +13,7 @@ INR_INSTANTIATE(TrainEncode);
 INR_INSTANTIATE(TrainNetwork);
 INR_INSTANTIATE(TrainWeights);
 INR_INSTANTIATE(TrainScatter);
+INR_INSTANTIATE(TrainUpdateLayers);
 INR_INSTANTIATE(TrainUpdateWeights);
 INR_INSTANTIATE(TrainUpdateGrid);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "CUDA/Training/Kernels/TrainDraw.h"
+#include "CUDA/Training/Kernels/TrainLayers.h"
 #include "CUDA/Training/Kernels/TrainNetwork.h"
 #include "CUDA/Training/Kernels/TrainUpdate.h"
 #include "CUDA/Training/PackedVolume.h"
@@ -23,7 +24,7 @@ namespace cuda {
 
 /// A training on a machine (CUDA/Device/Machine.h).
 ///
-/// A step is six launches, and two more for each further piece of a batch whose layers would take
+/// A step is eight launches, and two more for each further piece of a batch whose layers would take
 /// more than 256 MiB: draw or copy the samples, encode them, then through the network and back,
 /// weights' gradients, grid's gradients, update. The host waits for it once, for the loss.
 template <class Machine> class MachineTraining : public AcceleratedTraining
@@ -35,6 +36,7 @@ public:
         Shape(task.description), WeightCount(static_cast<std::int64_t>(this->Shape.gridOffset)),
         ParameterCount(static_cast<std::int64_t>(this->Shape.parameterCount)),
         GridCount(this->ParameterCount - this->WeightCount),
+        Orthogonalised(OrthogonalisedLayers(task.description.network)),
         Weights(this->Place->template allocate<float>(this->WeightCount)),
         Features(this->Place->template allocate<float>(this->GridCount)),
         FirstMoments(this->Place->template allocate<float>(this->ParameterCount)),
@@ -49,6 +51,8 @@ public:
         EncodedDelta(this->Place->template allocate<float>(this->Count * this->Shape.encodedWidth)),
         LayerRows(this->Place->template allocate<float>(
             plan.pieceSize * LayerFloats(task.description, this->Shape))),
+        UpdateRows(this->Place->template allocate<float>(
+            this->Orthogonalised * LargestUpdate(this->Shape, this->Orthogonalised))),
         Losses(this->Place->template allocate<double>(TilesOf(this->Count))),
         Largest(this->Place->template allocate<std::uint32_t>(1)),
         Schedule(this->uploaded(AdamUpdates())), Updating(AdamUpdates()),
@@ -226,6 +230,15 @@ private:
 
   void update(std::uint64_t number, float learningRate)
   {
+    if (this->Orthogonalised > 0) {
+      this->Place->run(
+          TrainUpdateLayers{this->Layers.data(), this->Orthogonalised, this->Weights.data(),
+                            this->FirstMoments.data(), this->ShardGradients.data(),
+                            this->WeightCount, this->Plan.shards, MomentumKept,
+                            learningRate * OrthogonalRate(number), this->UpdateRows.data(),
+                            LargestUpdate(this->Shape, this->Orthogonalised)},
+          this->Orthogonalised * TrainUpdateLayers::Threads, TrainUpdateLayers::SharedBytes);
+    }
     AdamRun run{this->Weights.data(),
                 this->ShardGradients.data(),
                 this->FirstMoments.data(),
@@ -236,8 +249,10 @@ private:
     AdamStep step =
         this->Updating[static_cast<std::size_t>(std::min<std::uint64_t>(number, LastAdamUpdate))];
     step.rate *= learningRate;
-    this->Place->run(TrainUpdateWeights{run, this->WeightCount, this->Plan.shards, step},
-                     this->WeightCount);
+    const auto first = static_cast<std::int64_t>(
+        this->Shape.layers[static_cast<std::size_t>(this->Orthogonalised)].offset);
+    this->Place->run(TrainUpdateWeights{run, first, this->WeightCount, this->Plan.shards, step},
+                     this->WeightCount - first);
     run.parameters = this->Features.data();
     run.gradients = nullptr;
     run.firstMoments += this->WeightCount;
@@ -262,6 +277,7 @@ private:
   std::int64_t WeightCount;
   std::int64_t ParameterCount;
   std::int64_t GridCount;
+  int Orthogonalised; ///< layers
   Array<float> Weights;
   Array<float> Features;
   Array<float> FirstMoments;
@@ -275,6 +291,7 @@ private:
   Array<float> Encoded;
   Array<float> EncodedDelta;
   Array<float> LayerRows;
+  Array<float> UpdateRows;
   Array<double> Losses;
   Array<std::uint32_t> Largest;
   Array<AdamStep> Schedule;

@@ -2,9 +2,10 @@
 #include "CUDA/Training/TrainingPlan.h"
 
 #include "CUDA/Inference/Kernels/Activate.h"
-#include "CUDA/Training/Kernels/WarpProducts.h"
+#include "CUDA/Training/Kernels/TrainLayers.h"
 #include "Core/Error.h"
 #include "Core/Training/AdamSchedule.h"
+#include "Core/Training/Optimiser.h"
 #include "Core/Training/TrainKernel.h"
 
 #include <algorithm>
@@ -45,6 +46,16 @@ std::int64_t LayerFloats(const Description& description, const Layout& layout)
   return floats;
 }
 
+std::int64_t LargestUpdate(const Layout& layout, int layers)
+{
+  std::int64_t floats = 0;
+  for (int l = 0; l < layers; ++l) {
+    const LayerShape& layer = layout.layers[static_cast<std::size_t>(l)];
+    floats = std::max(floats, TallMatrix(layer.rows, layer.columns).workspace());
+  }
+  return floats;
+}
+
 TrainingPlan::TrainingPlan(const TrainingTask& task, std::int64_t freeBytes)
 {
   const Layout layout(task.description);
@@ -67,8 +78,10 @@ TrainingPlan::TrainingPlan(const TrainingTask& task, std::int64_t freeBytes)
   const std::int64_t ofBatch = task.samples * (16 + 8 * std::int64_t{layout.encodedWidth} + 12);
   const std::int64_t ofLosses = 8 * TilesOf(task.samples);
   const std::int64_t ofSums = 4 * (this->shards * weights + this->pieceSize * perSample);
+  const int orthogonalised = OrthogonalisedLayers(task.description.network);
+  const std::int64_t ofUpdates = 4 * orthogonalised * LargestUpdate(layout, orthogonalised);
   const std::int64_t ofTables = static_cast<std::int64_t>(sizeof(AdamStep)) * (LastAdamUpdate + 1);
-  this->bytes = ofParameters + ofBatch + ofLosses + ofSums + ofTables;
+  this->bytes = ofParameters + ofBatch + ofLosses + ofSums + ofUpdates + ofTables;
   if (this->bytes > freeBytes) {
     throw Error(ErrorCode::Device,
                 "training this model takes " + InMiB(this->bytes) + " of the GPU's memory, and " +

@@ -27,5 +27,8 @@ struct TrainingPlan
 /// slope needs it, what went into the activation.
 std::int64_t LayerFloats(const Description& description, const Layout& layout);
 
+/// Floats of the largest of the first layers, so many, while TrainUpdateLayers updates them.
+std::int64_t LargestUpdate(const Layout& layout, int layers);
+
 } // namespace cuda
 } // namespace inr

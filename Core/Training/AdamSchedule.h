@@ -8,10 +8,6 @@
 
 namespace inr {
 
-/// What is written into checkpoints: one by another optimiser would not go on to the same model. To
-/// be changed with the numbers.
-constexpr const char* OptimiserName = "Adam, 0.9, 0.99 to 0.999";
-
 /// Share of the first moment that every update keeps.
 constexpr float FirstMomentKept = 0.9f;
 

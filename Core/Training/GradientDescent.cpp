@@ -49,17 +49,6 @@ float InitialBound(const Description& description, const Layout& layout, std::si
 
 } // namespace
 
-float LearningRate::at(std::uint64_t step, std::uint64_t plannedSteps) const
-{
-  const std::uint64_t constant = plannedSteps / ConstantShare;
-  if (step <= constant) {
-    return this->initial;
-  }
-  const double fallen = static_cast<double>(step - constant) /
-                        static_cast<double>(std::max(plannedSteps - constant, std::uint64_t{1}));
-  return std::max(this->last, static_cast<float>(this->initial * (1.0 - fallen)));
-}
-
 std::vector<float> InitialParameters(const Description& description, const Layout& layout,
                                      std::uint64_t seed)
 {
@@ -90,8 +79,9 @@ void DrawBatch(const BatchSource& batches, std::uint64_t stream, std::uint64_t s
 
 GradientDescent::GradientDescent(const Description& description, std::uint64_t seed,
                                  InstructionSet set, const Arena& arena)
-    : Threads(arena), Kernel(TrainKernelFor(set)), Shape(description), Seed(seed),
-      Parameters(InitialParameters(description, this->Shape, seed)),
+    : Threads(arena), Kernel(TrainKernelFor(set)), Shape(description),
+      Orthogonalised(static_cast<std::size_t>(OrthogonalisedLayers(description.network))),
+      Seed(seed), Parameters(InitialParameters(description, this->Shape, seed)),
       Views(description, this->Shape, this->Parameters.data()), Gradient(this->Parameters.size()),
       Grid(this->Views.view(), this->Gradient.data() + this->Shape.gridOffset),
       FirstMoments(this->Parameters.size()), SecondMoments(this->Parameters.size()),
@@ -141,7 +131,8 @@ std::optional<double> GradientDescent::step(BatchSource& batches, const StopChec
   }
   const float rate = this->Rate.at(this->Steps, this->PlannedSteps);
   ++this->Steps;
-  this->updateNetwork(rate);
+  this->updateLayers(rate);
+  this->updateOtherLayers(rate);
   this->updateGrid(rate);
   return loss;
 }
@@ -270,19 +261,38 @@ void GradientDescent::scatter(const float* xyz, std::int64_t count, const StopCh
   });
 }
 
-void GradientDescent::updateNetwork(float learningRate)
+void GradientDescent::updateLayers(float learningRate)
 {
-  const AdamRun run{this->Parameters.data(),
-                    this->Gradient.data(),
-                    this->FirstMoments.data(),
-                    this->SecondMoments.data(),
+  const auto count = static_cast<std::int64_t>(this->Orthogonalised);
+  this->Threads.forEachBlock(count, 1, [&](std::int64_t task, std::int64_t) {
+    const LayerShape& layer = this->Shape.layers[static_cast<std::size_t>(task)];
+    const OrthogonalRun run{&this->Parameters[layer.offset],
+                            &this->Gradient[layer.offset],
+                            &this->FirstMoments[layer.offset],
+                            layer.rows,
+                            layer.columns,
+                            MomentumKept,
+                            learningRate * OrthogonalRate(this->Steps)};
+    std::vector<float> workspace(
+        static_cast<std::size_t>(this->Kernel.orthogonalWorkspace(layer.rows, layer.columns)));
+    this->Kernel.orthogonal(run, workspace.data());
+  });
+}
+
+void GradientDescent::updateOtherLayers(float learningRate)
+{
+  const std::uint64_t first = this->Shape.layers[this->Orthogonalised].offset;
+  const AdamRun run{&this->Parameters[first],
+                    &this->Gradient[first],
+                    &this->FirstMoments[first],
+                    &this->SecondMoments[first],
                     FirstMomentKept,
                     AdamEpsilon,
                     WeightDecay};
   const std::size_t last = std::min<std::uint64_t>(this->Steps, LastAdamUpdate);
   AdamStep step = this->Updating[last];
   step.rate *= learningRate;
-  this->Kernel.adam(run, static_cast<std::int64_t>(this->Shape.gridOffset), step);
+  this->Kernel.adam(run, static_cast<std::int64_t>(this->Shape.gridOffset - first), step);
 }
 
 void GradientDescent::updateGrid(float learningRate)

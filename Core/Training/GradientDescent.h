@@ -7,6 +7,7 @@
 #include "Core/Training/Descent.h"
 #include "Core/Training/GradientExchange.h"
 #include "Core/Training/GridGradient.h"
+#include "Core/Training/Optimiser.h"
 #include "Core/Training/TrainKernel.h"
 
 #include <cstdint>
@@ -15,22 +16,6 @@
 #include <vector>
 
 namespace inr {
-
-/// Learning rate over a training of planned length: constant at first, then falling in a straight
-/// line to a low one, at which it stays. A function of step and plan alone, so that a run stopped
-/// by the clock can be repeated.
-struct LearningRate
-{
-  float initial = 1e-2f;
-  float last = 1e-4f;
-  static constexpr std::uint64_t ConstantShare = 10; ///< the first tenth of the planned steps
-
-  float at(std::uint64_t step, std::uint64_t plannedSteps) const;
-};
-
-/// Of Adam, and the L2 regularisation of the MLP only.
-constexpr float AdamEpsilon = 1e-15f;
-constexpr float WeightDecay = 1e-6f;
 
 /// Xavier-uniform MLP weights (SIREN's for sine; Sitzmann et al., NeurIPS 2020) and grid features
 /// uniform in +-1e-4, from `seed`.
@@ -41,9 +26,9 @@ std::vector<float> InitialParameters(const Description& description, const Layou
 void DrawBatch(const BatchSource& batches, std::uint64_t stream, std::uint64_t step,
                const Arena& arena, glm::vec3* positions, float* targets);
 
-/// Fits the parameters of one INR with Adam on mini-batches, by the CPU. The parameters after n
-/// steps depend on description, seed, plan, batches and instruction set, not on the number of
-/// threads.
+/// Fits the parameters of one INR on mini-batches, by the CPU: features of the grid with Adam, the
+/// network as Optimiser.h says. The parameters after n steps depend on description, seed, plan,
+/// batches and instruction set, not on the number of threads.
 class GradientDescent : public Descent
 {
 public:
@@ -95,13 +80,15 @@ private:
                           std::int64_t end, std::int64_t total, const StopCheck& check);
   void sumShards();
   void scatter(const float* xyz, std::int64_t count, const StopCheck& check);
-  void updateNetwork(float learningRate);
+  void updateLayers(float learningRate);
+  void updateOtherLayers(float learningRate);
   void updateGrid(float learningRate);
 
   const Arena& Threads;
   std::optional<GradientExchange> Exchange; ///< empty = alone
   const TrainKernel& Kernel;
   Layout Shape;
+  std::size_t Orthogonalised; ///< so many layers, whose second moments stay zero
   std::uint64_t Seed;
   std::uint64_t Steps = 0;
   std::uint64_t PlannedSteps = std::numeric_limits<std::uint64_t>::max();

@@ -6,6 +6,7 @@
 #include "Core/Training/AdamUpdate.h"
 #include "Core/Training/Backpropagate.h"
 #include "Core/Training/LevelPasses.h"
+#include "Core/Training/OrthogonalUpdate.h"
 
 namespace inr {
 namespace INR_ISA {
@@ -45,7 +46,8 @@ std::int64_t Workspace(const ModelView& model) { return Activity::size(model); }
 
 } // namespace
 
-const TrainKernel Train = {Workspace, Encode, BackpropagateBlock, Scatter, AdamAll, AdamSparse};
+const TrainKernel Train = {Workspace, Encode,     BackpropagateBlock,  Scatter,
+                           AdamAll,   AdamSparse, OrthogonalWorkspace, UpdateOrthogonally};
 
 } // namespace INR_ISA
 } // namespace inr

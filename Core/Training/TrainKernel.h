@@ -60,6 +60,18 @@ struct AdamSchedule
   std::uint16_t last;
 };
 
+/// An update of a layer's weights by orthogonalised momentum: of the matrix that gradient and
+/// momentum come to, singular values are made nearly 1 (K. Jordan et al., "Muon", 2024).
+struct OrthogonalRun
+{
+  float* parameters; ///< rows x columns, row by row, and so are the others
+  const float* gradients;
+  float* momentum;
+  int rows, columns;
+  float kept; ///< share of the momentum
+  float rate; ///< what the nearly orthogonal matrix is multiplied by
+};
+
 /// What one gradient step needs, for one instruction set.
 ///
 /// Encoded features and their gradients have a block of encodedWidth * TrainBlockSize floats per
@@ -81,6 +93,10 @@ struct TrainKernel
   /// says how often parameter k was updated.
   void (*adamSparse)(const AdamRun& run, std::int64_t count, std::uint8_t* touched,
                      float learningRate, std::uint16_t* counts, const AdamSchedule& schedule);
+  std::int64_t (*orthogonalWorkspace)(int rows, int columns); ///< floats
+  /// Where gradient and momentum are zero nothing moves; where an element is not finite, no weight
+  /// of the layer is afterwards.
+  void (*orthogonal)(const OrthogonalRun& run, float* workspace);
 };
 
 /// The kernel built for `set`, which must be usable.

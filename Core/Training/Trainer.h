@@ -76,11 +76,11 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 
 /// Fits an INR to `volume`; `info` gives geometry, name and type (its low and high are measured).
 ///
-/// Mini-batches of BatchSize StratifiedPositions, trilinear targets, L2 loss, Adam. In a cell with
-/// a NaN or infinite voxel the target is the nearest voxel's value, and where that one is not
-/// finite the position carries no gradient; such voxels are counted and left out of range and
-/// quality. A constant volume takes no step and is exact. A start shows in the record's
-/// earlierSteps, where it is of use. The result's quality and macro-cells are
+/// Mini-batches of BatchSize StratifiedPositions, trilinear targets, L2 loss; updates as
+/// Optimiser.h says. In a cell with a NaN or infinite voxel the target is the nearest voxel's
+/// value, and where that one is not finite the position carries no gradient; such voxels are
+/// counted and left out of range and quality. A constant volume takes no step and is exact. A start
+/// shows in the record's earlierSteps, where it is of use. The result's quality and macro-cells are
 /// those of the parameters as they are stored. For a given seed, number of steps, plan and kernel
 /// family the result is the same whatever the number of threads. Throws Error(InvalidArgument) for
 /// a volume without finite voxels or when no limit is set; before it trains what RequireStorable

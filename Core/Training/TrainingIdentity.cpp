@@ -3,7 +3,7 @@
 
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelBlobs.h"
-#include "Core/Training/AdamSchedule.h"
+#include "Core/Training/Optimiser.h"
 
 #include <nlohmann/json.hpp>
 

@@ -149,7 +149,7 @@ private:
   std::vector<float> Values;
 };
 
-/// Steps of forward, backward and Adam.
+/// Steps of forward, backward and update.
 class Training
 {
 public:

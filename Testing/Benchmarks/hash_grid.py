@@ -125,8 +125,35 @@ class HashGrid:
         return torch.arange(first, first + count, dtype=torch.int32), matrix
 
 
+def nearly_orthogonal(x):
+    """See Core/Training/NewtonSchulz.h."""
+    tall = x.shape[0] >= x.shape[1]
+    x = (x if tall else x.T) / x.norm()
+    for _ in range(5):
+        gram = x.T @ x
+        polynomial = torch.addmm(gram, gram, gram, beta=-4.7750, alpha=2.0315)
+        x = torch.addmm(x, x, polynomial, beta=3.4445)
+    return x if tall else x.T
+
+
+class OrthogonalisedMomentum:
+    """See Core/Training/Optimiser.h."""
+
+    def __init__(self, matrices, learning_rate):
+        self.matrices, self.learning_rate, self.updates = matrices, learning_rate, 0
+        self.momenta = [torch.zeros_like(matrix) for matrix in matrices]
+
+    @torch.no_grad()
+    def step(self):
+        self.updates += 1
+        rate = self.learning_rate * min(8, 40 / math.sqrt(self.updates))
+        for matrix, momentum in zip(self.matrices, self.momenta):
+            momentum.lerp_(matrix.grad, 0.05)
+            matrix.sub_(nearly_orthogonal(matrix.grad.lerp(momentum, 0.95)), alpha=rate)
+
+
 class Trainer:
-    """Forward, backward and Adam on a fixed batch of `positions` and `targets`.
+    """Forward, backward and our update on a fixed batch of `positions` and `targets`.
 
     The batch goes through in chunks that stay in cache; each adds its share of the table's gradient
     in place, in one compiled loop."""
@@ -136,8 +163,10 @@ class Trainer:
         for parameter in (*grid.matrices, grid.table):
             parameter.requires_grad_()
             parameter.grad = torch.zeros_like(parameter)
+        *hidden, last = grid.matrices
+        self.momentum = OrthogonalisedMomentum(hidden, learning_rate)
         self.adam = torch.optim.Adam(
-            [{"params": grid.matrices, "weight_decay": 1e-6}, {"params": [grid.table]}],
+            [{"params": [last], "weight_decay": 1e-6}, {"params": [grid.table]}],
             lr=learning_rate, betas=(0.9, 0.99), eps=1e-15, fused=True)
         # One thread: several would add to one place at a time, by a loop around compare and swap.
         self.add_gradient = torch.compile(self.add_gradient_eager, dynamic=False,
@@ -147,13 +176,21 @@ class Trainer:
         shares = weights.view(-1, 8, 1) * gradient.view(-1, 1, self.grid.features)
         target.index_put_((entries.view(-1, 8).long(),), shares, accumulate=True)
 
+    def clear_gradients(self):
+        for parameter in (*self.grid.matrices, self.grid.table):
+            parameter.grad.zero_()
+
+    def update(self):
+        self.momentum.step()
+        self.adam.step()
+
     def step(self, positions, targets):
         """The mean squared error before the update."""
-        self.adam.zero_grad(set_to_none=False)
+        self.clear_gradients()
         loss = 0.0
         for some, wanted in zip(positions.split(self.chunk), targets.split(self.chunk)):
             loss += self.accumulate(some, wanted, len(positions))
-        self.adam.step()
+        self.update()
         return loss
 
     def accumulate(self, positions, targets, total):
@@ -170,9 +207,9 @@ class Trainer:
 
     def step_plain(self, positions, targets):
         """The same in eager mode, all by PyTorch's own gradients."""
-        self.adam.zero_grad(set_to_none=False)
+        self.clear_gradients()
         outputs = self.grid.network(self.grid.encode_plain(positions))
         loss = (outputs - targets).square().mean()
         loss.backward()
-        self.adam.step()
+        self.update()
         return loss.item()

@@ -3,6 +3,7 @@
 // A training's kernels against Core's: gradients, updates, losses, samples.
 #include "Testing/CUDA/Places.h"
 #include "Testing/CUDA/TrainSetup.h"
+#include "Testing/Core/Training/MatrixTruth.h"
 
 namespace {
 
@@ -139,40 +140,92 @@ TEST_P(Training, NoSumOverflows)
   }
 }
 
+/// An update of parameters by Adam, from what moments tell of the gradient.
+void ExpectAdam(const TrainState& before, const TrainState& after, std::size_t p,
+                const inr::AdamStep& step, float rate)
+{
+  const double gradient = (double(after.first[p]) - 0.9f * double(before.first[p])) / 0.1;
+  const double second =
+      step.beta2 * double(before.second[p]) + (1.0 - step.beta2) * gradient * gradient;
+  ASSERT_NEAR(after.second[p], second, 1e-3 * second + 1e-5 * before.second[p]) << p;
+  const float move =
+      rate * step.rate * after.first[p] / (std::sqrt(after.second[p]) + inr::AdamEpsilon);
+  ASSERT_NEAR(after.values[p], before.values[p] - move, 1e-6f) << p;
+}
+
+/// An update of a layer by orthogonalised momentum, from what that tells of the gradient.
+void ExpectOrthogonalised(const TrainState& before, const TrainState& after,
+                          const inr::LayerShape& layer, double rate)
+{
+  Matrix direction(layer.rows, layer.columns);
+  for (std::size_t k = 0; k < direction.values.size(); ++k) {
+    const std::size_t p = layer.offset + k;
+    const double momentum = after.first[p];
+    direction.values[k] = momentum - 0.95 * double(before.first[p]) + 0.95 * momentum;
+  }
+  const Matrix expected = NearlyOrthogonal(direction);
+  for (std::size_t k = 0; k < direction.values.size(); ++k) {
+    const std::size_t p = layer.offset + k;
+    ASSERT_NEAR(after.values[p], before.values[p] - rate * expected.values[k], 1e-5) << p;
+    ASSERT_EQ(after.second[p], before.second[p]) << p;
+  }
+}
+
 /// From the same gradients the same parameters, moments and counts, whatever they were before.
 TEST_P(Training, UpdatesAreCoresOwn)
 {
   GivenBatches batches(300);
+  const inr::Layout layout(SmallDescription());
+  const std::size_t lastLayer = layout.layers.back().offset;
   TrainPair pair(SmallDescription(), *accelerator(), batches);
+  const std::vector<inr::AdamStep> steps = inr::AdamUpdates();
   for (int k = 0; k < 12; ++k) {
     const TrainState before = pair.ofDevice();
     pair.stepOnDevice(batches);
     const TrainState after = pair.ofDevice();
-    const std::vector<inr::AdamStep> steps = inr::AdamUpdates();
     const float rate = inr::LearningRate().at(pair.Steps - 1, TrainPair::Planned);
+    const double orthogonal = rate * inr::OrthogonalRate(pair.Steps);
+    ExpectOrthogonalised(before, after, layout.layers[0], orthogonal);
+    ExpectOrthogonalised(before, after, layout.layers[1], orthogonal);
+    for (std::size_t p = lastLayer; p < layout.gridOffset; ++p) {
+      ExpectAdam(before, after, p, steps[pair.Steps], rate);
+    }
     long moved = 0;
-    for (std::size_t p = 0; p < after.values.size(); ++p) {
-      const bool isWeight = p < pair.Core.weightCount();
-      const std::size_t g = isWeight ? 0 : p - pair.Core.weightCount();
-      const std::uint64_t count = isWeight ? pair.Steps : after.updates[g];
-      if (!isWeight && after.updates[g] == before.updates[g]) {
-        ASSERT_EQ(after.values[p], before.values[p]);
-        ASSERT_EQ(after.first[p], before.first[p]);
-        ASSERT_EQ(after.second[p], before.second[p]);
+    for (std::size_t p = layout.gridOffset; p < after.values.size(); ++p) {
+      const std::size_t g = p - layout.gridOffset;
+      if (after.updates[g] != before.updates[g]) {
+        ++moved;
+        ExpectAdam(before, after, p, steps[after.updates[g]], rate);
         continue;
       }
-      ++moved;
-      const inr::AdamStep& step = steps[count];
-      // The gradient is what the first moment tells.
-      const double gradient = (double(after.first[p]) - 0.9f * double(before.first[p])) / 0.1;
-      const double second =
-          step.beta2 * double(before.second[p]) + (1.0 - step.beta2) * gradient * gradient;
-      ASSERT_NEAR(after.second[p], second, 1e-3 * second + 1e-5 * before.second[p]) << p;
-      const float move =
-          rate * step.rate * after.first[p] / (std::sqrt(after.second[p]) + inr::AdamEpsilon);
-      ASSERT_NEAR(after.values[p], before.values[p] - move, 1e-6f) << p;
+      ASSERT_EQ(after.values[p], before.values[p]);
+      ASSERT_EQ(after.first[p], before.first[p]);
+      ASSERT_EQ(after.second[p], before.second[p]);
     }
     EXPECT_GT(moved, 1000);
+  }
+}
+
+/// Layers of every shape, the widest too, by a few steps of their own.
+TEST_P(Training, OrthogonalisesLayersOfEveryShape)
+{
+  GivenBatches batches(300);
+  for (const int neurons : {1, 7, 16, 33, 100, 128}) {
+    SCOPED_TRACE(neurons);
+    inr::Description description = SmallDescription();
+    description.network.neurons = neurons;
+    description.network.activation = inr::Activation::LeakyReLU;
+    const inr::Layout layout(description);
+    TrainPair pair(description, *accelerator(), batches, 0.2f);
+    for (int k = 0; k < 3; ++k) {
+      const TrainState before = pair.ofDevice();
+      pair.stepOnDevice(batches);
+      const double rate = inr::LearningRate().at(pair.Steps - 1, TrainPair::Planned) *
+                          inr::OrthogonalRate(pair.Steps);
+      for (std::size_t l = 0; l + 1 < layout.layers.size(); ++l) {
+        ExpectOrthogonalised(before, pair.ofDevice(), layout.layers[l], rate);
+      }
+    }
   }
 }
 

@@ -31,12 +31,13 @@ INR_HOST_DEVICE inline void UpdateParameter(const AdamPlace& place, float gradie
   place.second = second;
 }
 
-/// All weights of the network, a thread each.
+/// Weights of the network, a thread each.
 struct TrainUpdateWeights
 {
   static constexpr int Threads = 128;
 
-  AdamRun run; ///< `gradients`: `count` of each shard, one after the other
+  AdamRun run;        ///< `gradients`: `count` of each shard, one after the other
+  std::int64_t first; ///< weight that is updated, and so are all behind it
   std::int64_t count;
   std::int64_t shards;
   AdamStep step;
@@ -45,8 +46,8 @@ struct TrainUpdateWeights
   {
     block.threads([&](int thread) {
       const std::int64_t stride = std::int64_t{block.count()} * Threads;
-      for (std::int64_t k = std::int64_t{block.index()} * Threads + thread; k < this->count;
-           k += stride) {
+      const std::int64_t begin = this->first + std::int64_t{block.index()} * Threads + thread;
+      for (std::int64_t k = begin; k < this->count; k += stride) {
         float gradient = 0.0f;
         for (std::int64_t shard = 0; shard < this->shards; ++shard) {
           gradient += this->run.gradients[shard * this->count + k];

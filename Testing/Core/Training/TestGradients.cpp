@@ -6,9 +6,11 @@
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
+#include "Testing/Core/Training/MatrixTruth.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -187,31 +189,89 @@ TEST(GradientDescent, AStoppedStepChangesNothing)
   EXPECT_EQ(stopped.parameters(), expected.parameters());
 }
 
-/// Every parameter of the network by the number of steps, against float64.
-TEST(GradientDescent, UpdatesTheNetworkAsAdamDoes)
+/// Of a step in training.
+struct StepTaken
 {
-  constexpr std::size_t some = 200;
-  constexpr double decay = 1e-6;
+  std::vector<float> before, gradient, after;
+};
+
+std::vector<StepTaken> TakeSteps(const inr::Description& description, int count)
+{
   const Field<float> field = Waves();
   const inr::InMemorySource source(field.data(), -1, 1);
   inr::StratifiedBatches batches(source);
   const inr::Arena threads(2);
-  inr::GradientDescent descent(SmallDescription(), 1, inr::ChooseInstructionSet(""), threads);
-  const std::vector<inr::AdamStep> updates = inr::AdamUpdates();
-  std::vector<double> first(some);
-  std::vector<double> second(some);
-  for (std::size_t t = 1; t <= 120; ++t) {
+  inr::GradientDescent descent(description, 1, inr::ChooseInstructionSet(""), threads);
+  std::vector<StepTaken> steps;
+  for (int k = 0; k < count; ++k) {
     const std::vector<float> before = descent.parameters();
-    ASSERT_TRUE(descent.step(batches));
-    for (std::size_t k = 0; k < some; ++k) {
-      const double gradient = descent.gradient()[k] + decay * before[k];
+    EXPECT_TRUE(descent.step(batches));
+    steps.push_back({before, descent.gradient(), descent.parameters()});
+  }
+  return steps;
+}
+
+/// Weights from `first` on, by the number of the step, against float64.
+void ExpectAdam(const std::vector<StepTaken>& steps, std::size_t first, std::size_t count)
+{
+  constexpr double decay = 1e-6;
+  const std::vector<inr::AdamStep> updates = inr::AdamUpdates();
+  std::vector<double> firstMoment(count);
+  std::vector<double> secondMoment(count);
+  for (std::size_t t = 1; t <= steps.size(); ++t) {
+    const StepTaken& step = steps[t - 1];
+    for (std::size_t k = 0; k < count; ++k) {
+      const double before = step.before[first + k];
+      const double gradient = step.gradient[first + k] + decay * before;
       const double kept = updates[t].beta2;
-      first[k] = 0.9 * first[k] + 0.1 * gradient;
-      second[k] = kept * second[k] + (1 - kept) * gradient * gradient;
-      const double step = 0.01 * updates[t].rate * first[k] / std::sqrt(second[k]);
-      ASSERT_NEAR(descent.parameters()[k], before[k] - step, 1e-5) << k << " in step " << t;
+      firstMoment[k] = 0.9 * firstMoment[k] + 0.1 * gradient;
+      secondMoment[k] = kept * secondMoment[k] + (1 - kept) * gradient * gradient;
+      const double moved = 0.01 * updates[t].rate * firstMoment[k] / std::sqrt(secondMoment[k]);
+      ASSERT_NEAR(step.after[first + k], before - moved, 1e-5) << k << " in step " << t;
     }
   }
+}
+
+/// All weights of a layer, against float64.
+void ExpectOrthogonalised(const std::vector<StepTaken>& steps, const inr::LayerShape& layer)
+{
+  Matrix momentum(layer.rows, layer.columns);
+  for (std::size_t t = 1; t <= steps.size(); ++t) {
+    const StepTaken& step = steps[t - 1];
+    const double rate = 0.01 * (t <= 25 ? 8.0 : 40.0 / std::sqrt(t));
+    Matrix direction(layer.rows, layer.columns);
+    for (std::size_t k = 0; k < direction.values.size(); ++k) {
+      const double gradient = step.gradient[layer.offset + k];
+      momentum.values[k] = 0.95 * momentum.values[k] + 0.05 * gradient;
+      direction.values[k] = 0.95 * momentum.values[k] + 0.05 * gradient;
+    }
+    const Matrix expected = NearlyOrthogonal(direction);
+    for (std::size_t k = 0; k < expected.values.size(); ++k) {
+      const double moved = rate * expected.values[k];
+      ASSERT_NEAR(step.after[layer.offset + k], step.before[layer.offset + k] - moved, 1e-5) << k;
+    }
+  }
+}
+
+TEST(GradientDescent, UpdatesHiddenLayersByOrthogonalisedMomentumAndTheLastByAdam)
+{
+  inr::Description description = SmallDescription();
+  description.network.neurons = 24;
+  const inr::Layout layout(description);
+  const std::vector<StepTaken> steps = TakeSteps(description, 120);
+  ExpectOrthogonalised(steps, layout.layers[0]);
+  ExpectOrthogonalised(steps, layout.layers[1]);
+  ExpectAdam(steps, layout.layers[2].offset, layout.gridOffset - layout.layers[2].offset);
+}
+
+TEST(GradientDescent, UpdatesAWideNetworkAsAdamDoes)
+{
+  inr::Description description = SmallDescription();
+  description.network.hiddenLayers = 1;
+  description.network.neurons = 128;
+  ExpectOrthogonalised(TakeSteps(description, 2), inr::Layout(description).layers[0]);
+  description.network.neurons = 129;
+  ExpectAdam(TakeSteps(description, 40), 0, 200);
 }
 
 TEST(LearningRate, IsConstantThenFallsInALine)

@@ -176,7 +176,8 @@ TEST(PieceBatches, AreTogetherTheSamplesOfOneProcess)
   }
 }
 
-/// d loss / d parameter of the first step, by Adam's first moments; the same in all processes.
+/// What the first moments hold of d loss / d parameter after the first step; the same in all
+/// processes.
 std::vector<float> FirstGradient(const std::vector<Piece>& pieces)
 {
   const auto size = static_cast<int>(pieces.size());
@@ -267,8 +268,8 @@ TEST(ParallelTraining, GivesAllTheSameModelEveryTime)
   const Field<float> field = Whole();
   for (const int count : {1, 2, 4}) {
     SCOPED_TRACE(count);
-    const std::vector<Outcome> first = Train(Cut(field, count), Options(30));
-    const std::vector<Outcome> again = Train(Cut(field, count), Options(30));
+    const std::vector<Outcome> first = Train(Cut(field, count), Options(60));
+    const std::vector<Outcome> again = Train(Cut(field, count), Options(60));
     ASSERT_TRUE(first[0].model);
     for (std::size_t rank = 0; rank < first.size(); ++rank) {
       EXPECT_EQ(first[rank].model->parameters, first[0].model->parameters);
@@ -279,7 +280,7 @@ TEST(ParallelTraining, GivesAllTheSameModelEveryTime)
       EXPECT_EQ(record.waitingSeconds > 0, count > 1);
       EXPECT_LE(record.waitingSeconds + record.exchangeSeconds, record.seconds);
     }
-    const inr::ModelPointer one = Train(OnOne(field, count), Options(30))[0].model;
+    const inr::ModelPointer one = Train(OnOne(field, count), Options(60))[0].model;
     EXPECT_NEAR(first[0].model->quality->psnr, one->quality->psnr, 0.5);
     EXPECT_GT(first[0].model->quality->psnr, 16);
   }
