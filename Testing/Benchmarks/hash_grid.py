@@ -17,6 +17,8 @@ inductor's frozen and tuned linear layers instead of plain products (0.5 to 0.98
 rate), index_add and scatter_add (0.1 to 0.3), everything compiled (0.3 to 0.5), gradients of the
 table in a fresh array instead of added in place (0.7 to 0.9), and added by two threads (0.5).
 """
+import math
+
 import torch
 from torch.nn.functional import embedding_bag
 
