@@ -24,9 +24,10 @@ namespace cuda {
 
 /// A training on a machine (CUDA/Device/Machine.h).
 ///
-/// A step is eight launches, and two more for each further piece of a batch whose layers would take
-/// more than 256 MiB: draw or copy the samples, encode them, then through the network and back,
-/// weights' gradients, grid's gradients, update. The host waits for it once, for the loss.
+/// A step is eight launches, seven where Adam updates all, and two more for each further piece of a
+/// batch whose layers would take more than 256 MiB: draw or copy the samples, encode them, then
+/// through the network and back, weights' gradients, grid's gradients, update. The host waits for
+/// it once, for the loss.
 template <class Machine> class MachineTraining : public AcceleratedTraining
 {
 public:

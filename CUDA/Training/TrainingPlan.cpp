@@ -51,7 +51,7 @@ std::int64_t LargestUpdate(const Layout& layout, int layers)
   std::int64_t floats = 0;
   for (int l = 0; l < layers; ++l) {
     const LayerShape& layer = layout.layers[static_cast<std::size_t>(l)];
-    floats = std::max(floats, TallMatrix(layer.rows, layer.columns).workspace());
+    floats = std::max(floats, TallLayer(layer.rows, layer.columns).workspace());
   }
   return floats;
 }

@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -142,7 +143,8 @@ std::optional<double> AcceleratedDescent::compareStep(BatchSource& batches, cons
 }
 
 /// Whether the parameters that have arrived are the host's but for some hundredth, whose gradients
-/// may be nothing but rounding: Adam goes as far with these.
+/// may be nothing but rounding: Adam goes as far with these. A tenth of a usual step is near
+/// enough: of Adam's the learning rate, of a layer's its share of what is nearly orthogonal.
 bool AcceleratedDescent::agrees() const
 {
   const StateArrays expected = this->Host.state();
@@ -152,9 +154,7 @@ bool AcceleratedDescent::agrees() const
     std::memcpy(&value, static_cast<const char*>(from) + k * sizeof(float), sizeof(float));
     return value;
   };
-  const float tolerance = 0.1f * LearningRate().at(this->Steps, this->PlannedSteps);
-  const std::size_t weights = this->Host.weightCount();
-  for (const auto& [begin, end] : {std::pair{std::size_t{0}, weights}, std::pair{weights, count}}) {
+  const auto differs = [&](std::size_t begin, std::size_t end, float tolerance) {
     std::size_t moved = 0;
     std::size_t others = 0;
     for (std::size_t k = begin; k < end; ++k) {
@@ -162,11 +162,20 @@ bool AcceleratedDescent::agrees() const
       others += IsNear(value, valueOf(expected[0].data, k), tolerance) ? 0 : 1;
       moved += valueOf(expected[1].data, k) != 0.0f ? 1 : 0;
     }
-    if (others > moved / 100 + 8) {
+    return others > moved / 100 + 8;
+  };
+  const float near = 0.1f * LearningRate().at(this->Steps, this->PlannedSteps);
+  for (const LayerShape& layer : this->Host.orthogonalisedLayers()) {
+    const auto size =
+        static_cast<std::size_t>(layer.rows) * static_cast<std::size_t>(layer.columns);
+    const float share = 1.0f / std::sqrt(static_cast<float>(std::max(layer.rows, layer.columns)));
+    if (differs(layer.offset, layer.offset + size,
+                near * OrthogonalRate(this->Steps + 1) * share)) {
       return false;
     }
   }
-  return true;
+  const std::size_t weights = this->Host.weightCount();
+  return !differs(this->Host.firstOtherWeight(), weights, near) && !differs(weights, count, near);
 }
 
 /// Samples for a step that the device draws none for; false when `check` stopped it.

@@ -106,6 +106,17 @@ void GradientDescent::share(const TrainingGroup& group)
   }
 }
 
+std::vector<LayerShape> GradientDescent::orthogonalisedLayers() const
+{
+  const auto first = this->Shape.layers.begin();
+  return {first, first + static_cast<std::ptrdiff_t>(this->Orthogonalised)};
+}
+
+std::size_t GradientDescent::firstOtherWeight() const
+{
+  return this->Shape.layers[this->Orthogonalised].offset;
+}
+
 std::uint64_t GradientDescent::stream() const
 {
   return StreamSeed(this->Seed, RandomStream::Batches);
@@ -281,7 +292,7 @@ void GradientDescent::updateLayers(float learningRate)
 
 void GradientDescent::updateOtherLayers(float learningRate)
 {
-  const std::uint64_t first = this->Shape.layers[this->Orthogonalised].offset;
+  const std::size_t first = this->firstOtherWeight();
   const AdamRun run{&this->Parameters[first],
                     &this->Gradient[first],
                     &this->FirstMoments[first],

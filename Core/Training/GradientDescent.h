@@ -66,7 +66,9 @@ public:
   const ModelView& view() override { return this->Views.view(); }
   std::vector<float>& parameters() override { return this->Parameters; }
   std::size_t weightCount() const { return this->Shape.gridOffset; } ///< parameters before the grid
-  std::uint64_t stream() const; ///< of the random numbers of mini-batches
+  std::vector<LayerShape> orthogonalisedLayers() const;              ///< see Optimiser.h
+  std::size_t firstOtherWeight() const; ///< of the layers behind them, which Adam updates
+  std::uint64_t stream() const;         ///< of the random numbers of mini-batches
   const std::vector<float>& gradient() const { return this->Gradient; }
 
 private:

@@ -42,17 +42,21 @@ inline std::int64_t OrthogonalWorkspace(int rows, int columns)
 }
 
 /// Enters the gradient into the momentum; to[...] = where the step goes, as far as both of them.
-inline void MoveMomentum(const OrthogonalRun& run, const TallMatrix& shape, float* to)
+/// False: there is no gradient.
+inline bool MoveMomentum(const OrthogonalRun& run, const TallMatrix& shape, float* to)
 {
   std::memset(to, 0, static_cast<std::size_t>(shape.size()) * sizeof(float));
+  bool any = false;
   for (int row = 0; row < run.rows; ++row) {
     for (int column = 0; column < run.columns; ++column) {
       const std::int64_t k = std::int64_t{row} * run.columns + column;
+      any |= run.gradients[k] != 0.0f;
       const float added = (1.0f - run.kept) * run.gradients[k];
       run.momentum[k] = run.kept * run.momentum[k] + added;
       to[shape.at(row, column)] = run.kept * run.momentum[k] + added;
     }
   }
+  return any;
 }
 
 inline Floats Magnitude(Floats value) { return (Floats)((UInts)value & SpreadInt(0x7fffffffu)); }
@@ -113,8 +117,7 @@ inline void UpdateOrthogonally(const OrthogonalRun& run, float* workspace)
   float* next = x + shape.size();
   float* const gram = next + shape.size();
   float* const polynomial = gram + shape.squareSize();
-  MoveMomentum(run, shape, x);
-  if (!Normalise(x, shape.size())) {
+  if (!MoveMomentum(run, shape, x) || !Normalise(x, shape.size())) {
     return;
   }
   for (int round = 0; round < NewtonSchulzRounds; ++round) {

@@ -15,8 +15,9 @@ struct StreamBudget
   std::int64_t poolSamples = 0;
 };
 
-/// Bytes that training a model takes beyond the volume: its parameters, what Adam keeps of them,
-/// and a mini-batch on its way. `accelerated`: with a second copy of what comes from the device.
+/// Bytes that training a model takes beyond the volume: its parameters, what the optimiser keeps of
+/// them, and a mini-batch on its way. `accelerated`: with a second copy of what comes from the
+/// device.
 std::int64_t TrainingBytes(const Description& description, bool accelerated = false);
 
 /// The model is the one that the options ask for, or else the default one, made as much smaller as

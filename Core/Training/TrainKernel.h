@@ -94,8 +94,8 @@ struct TrainKernel
   void (*adamSparse)(const AdamRun& run, std::int64_t count, std::uint8_t* touched,
                      float learningRate, std::uint16_t* counts, const AdamSchedule& schedule);
   std::int64_t (*orthogonalWorkspace)(int rows, int columns); ///< floats
-  /// Where gradient and momentum are zero nothing moves; where an element is not finite, no weight
-  /// of the layer is afterwards.
+  /// Where the whole gradient is zero the layer stays: the step would be as long as ever, however
+  /// small the momentum has become. Where an element is not finite, no weight is afterwards.
   void (*orthogonal)(const OrthogonalRun& run, float* workspace);
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Orthogonalised momentum for layers of the network: what Core's OrthogonalUpdate.h does, to
-// rounding. A block for a layer, whose warps share the tiles of each product: layers are so few and
-// small that launches of their own would take longer than what stands still here.
+// rounding. A block for a layer, whose warps share the tiles of each product: layers are few and
+// small, and products that depend on each other would be some fifteen launches.
 #pragma once
 
 #include "CUDA/Training/Kernels/TrainNetwork.h"
@@ -16,9 +16,9 @@ namespace inr {
 namespace cuda {
 
 /// A layer's matrix in memory, with its shorter side across.
-struct TallMatrix
+struct TallLayer
 {
-  INR_HOST_DEVICE TallMatrix(int rows, int columns)
+  INR_HOST_DEVICE TallLayer(int rows, int columns)
       : transposed(rows < columns), height(transposed ? columns : rows),
         width(transposed ? rows : columns)
   {}
@@ -66,12 +66,11 @@ private:
   template <class Block>
   INR_HOST_DEVICE void update(Block& block, const TrainLayer& layer, float* x) const
   {
-    const TallMatrix shape(layer.rows, layer.columns);
+    const TallLayer shape(layer.rows, layer.columns);
     float* next = x + shape.size();
     float* const gram = next + shape.size();
     float* const polynomial = gram + std::int64_t{shape.width} * shape.width;
-    this->moveMomentum(block, layer, x);
-    if (!normalise(block, x, shape.size())) {
+    if (!this->moveMomentum(block, layer, x) || !normalise(block, x, shape.size())) {
       return;
     }
     for (int round = 0; round < NewtonSchulzRounds; ++round) {
@@ -87,23 +86,38 @@ private:
     });
   }
 
-  /// Enters the gradient into the momentum; x = where the step goes.
+  /// Enters the gradient into the momentum; x = where the step goes. False, to all threads: there
+  /// is no gradient.
   template <class Block>
-  INR_HOST_DEVICE void moveMomentum(Block& block, const TrainLayer& layer, float* x) const
+  INR_HOST_DEVICE bool moveMomentum(Block& block, const TrainLayer& layer, float* x) const
   {
-    const TallMatrix shape(layer.rows, layer.columns);
+    const TallLayer shape(layer.rows, layer.columns);
+    auto* const shared = reinterpret_cast<std::uint32_t*>(block.shared());
     block.threads([&](int thread) {
+      std::uint32_t any = 0;
       for (std::int64_t k = thread; k < shape.size(); k += Threads) {
         float gradient = 0.0f;
         for (std::int64_t shard = 0; shard < this->shards; ++shard) {
           gradient += this->gradients[shard * this->weightCount + layer.firstWeight + k];
         }
+        any |= MagnitudeBits(gradient);
         const float added = (1.0f - this->kept) * gradient;
         float& moved = this->momentum[layer.firstWeight + k];
         moved = this->kept * moved + added;
         x[shape.at(k, layer.columns)] = this->kept * moved + added;
       }
+      shared[thread] = any;
     });
+    std::uint32_t* const ofAll = shared + Threads; // apart from what threads write next
+    block.threads([&](int thread) {
+      if (thread == 0) {
+        *ofAll = 0;
+        for (int k = 0; k < Threads; ++k) {
+          *ofAll |= shared[k];
+        }
+      }
+    });
+    return *ofAll != 0;
   }
 
   /// Divides by the largest element, then by the square root of the sum of squares. False, to all
@@ -180,7 +194,7 @@ private:
 
   /// next = X (aI + bA + cA^2), A = X^T X.
   template <class Block>
-  INR_HOST_DEVICE static void multiply(Block& block, const TallMatrix& shape, const float* x,
+  INR_HOST_DEVICE static void multiply(Block& block, const TallLayer& shape, const float* x,
                                        float* gram, float* polynomial, float* next)
   {
     const std::int64_t width = shape.width;

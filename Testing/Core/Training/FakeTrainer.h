@@ -46,6 +46,7 @@ struct FakeTrainingDevice
   float wrongLoss = 0;         ///< what is added to it
   std::size_t wrongBegin = 0;  ///< parameters from here on
   std::size_t wrongEnd = 0;    ///< to there are told wrong
+  std::size_t stays = 0;       ///< so many parameters do not move
   int calls = 0;               ///< so far
   int gets = 0;                ///< of them
   int steps = 0;
@@ -79,6 +80,7 @@ public:
     this->Device.call();
     std::this_thread::sleep_for(std::chrono::duration<double>(this->Device.slowStart));
     copy(state, this->Core.state());
+    this->Begin = this->Core.parameters();
   }
 
   /// One that fails leaves half of them wrong, as a copy that broke off might.
@@ -94,6 +96,7 @@ public:
     for (std::size_t k = this->Device.wrongBegin; k < this->Device.wrongEnd; ++k) {
       values[k] += 0.02f;
     }
+    std::copy_n(this->Begin.begin(), this->Device.stays, values);
   }
 
   Samples samples(int buffer) override
@@ -168,6 +171,7 @@ private:
   }
 
   FakeTrainingDevice& Device;
+  std::vector<float> Begin; ///< what was put
   inr::TrainingTask Task;
   inr::Arena Threads;
   inr::GradientDescent Core;

@@ -210,6 +210,23 @@ TEST_P(FirstStep, AfterOthersIsTakenOnce)
   EXPECT_NE(few.Told[0].find("after 301 steps"), std::string::npos) << few.Told[0];
 }
 
+/// Steps of layers have become small by then.
+TEST(AcceleratedDescent, NoticesLateThatALayerStays)
+{
+  constexpr std::uint64_t planned = 100000;
+  for (const bool stays : {false, true}) {
+    FakeTrainingDevice device;
+    device.stays = stays ? inr::Layout(TinyDescription()).layers[1].offset : 0;
+    device.planned = planned;
+    FewSteps few(device);
+    few.Descent.plan(planned);
+    device.planned = planned;
+    few.Descent.goOnAfter(50000);
+    few.Descent.step(few.Batches);
+    EXPECT_EQ(few.Descent.isAccelerated(), !stays);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Faults, FirstStep, testing::ValuesIn(Faults),
                          [](const testing::TestParamInfo<Fault>& info) {
                            return std::string(info.param.name);

@@ -257,11 +257,13 @@ TEST(GradientDescent, UpdatesHiddenLayersByOrthogonalisedMomentumAndTheLastByAda
 {
   inr::Description description = SmallDescription();
   description.network.neurons = 24;
+  description.network.hiddenLayers = 3;
   const inr::Layout layout(description);
   const std::vector<StepTaken> steps = TakeSteps(description, 120);
-  ExpectOrthogonalised(steps, layout.layers[0]);
-  ExpectOrthogonalised(steps, layout.layers[1]);
-  ExpectAdam(steps, layout.layers[2].offset, layout.gridOffset - layout.layers[2].offset);
+  for (int layer = 0; layer < 3; ++layer) {
+    ExpectOrthogonalised(steps, layout.layers[static_cast<std::size_t>(layer)]);
+  }
+  ExpectAdam(steps, layout.layers[3].offset, layout.gridOffset - layout.layers[3].offset);
 }
 
 TEST(GradientDescent, UpdatesAWideNetworkAsAdamDoes)

@@ -143,14 +143,36 @@ TEST(OrthogonalUpdate, DoesNotDependOnTheGradientsSize)
   }
 }
 
+/// However long it goes on: momentum that is left would make steps of full length for ever.
 TEST(OrthogonalUpdate, MovesNothingWithoutAGradient)
 {
   for (const std::string& kernel : UsableKernels()) {
-    Layer before(24, 40, 0.0f);
+    Layer before(24, 40);
+    std::fill(before.gradients.begin(), before.gradients.end(), 0.0f);
     before.gradients[5] = -0.0f;
     Layer after = before;
+    for (int k = 0; k < 3000; ++k) {
+      after.update(kernel);
+    }
+    EXPECT_EQ(after.parameters, before.parameters);
+    EXPECT_LT(*std::max_element(after.momentum.begin(), after.momentum.end()), 1e-40f);
+    std::fill(after.momentum.begin(), after.momentum.end(), 0.0f);
+    after.gradients[5] = 1e-45f; // of which nothing is left in the momentum
     after.update(kernel);
     EXPECT_EQ(after.parameters, before.parameters);
+  }
+}
+
+TEST(OrthogonalUpdate, FindsASingleElement)
+{
+  for (const std::string& kernel : UsableKernels()) {
+    for (const std::size_t place : {0, 1, 17, 38, 39, 920, 959}) {
+      Layer before(24, 40, 0.0f);
+      before.gradients[place] = -1e-3f;
+      Layer after = before;
+      after.update(kernel);
+      ExpectEqual(after.stepFrom(before), NearlyOrthogonal(DirectionOf(before)), 1e-5);
+    }
   }
 }
 
@@ -159,7 +181,9 @@ TEST(OrthogonalUpdate, LeavesRowsAndColumnsWithoutAGradient)
 {
   constexpr int rows = 24;
   constexpr int columns = 40;
-  const auto isOff = [](std::size_t k) { return k / columns == 7 || k % columns == 30; };
+  const auto isOff = [](std::size_t k) {
+    return k / columns == 7 || k / columns == rows - 1 || k % columns == 30;
+  };
   for (const std::string& kernel : UsableKernels()) {
     for (const float momentum : {0.0f, 1e-25f}) {
       Layer before(rows, columns);
