@@ -97,8 +97,9 @@ def main():
         curves = curves_of(results_in(folder, topic))
         if curves:
             draw(folder, curves)
-    if results_in(folder, "tradeoff"):
-        tradeoff_plots.draw(folder, results_in(folder, "tradeoff"))
+    tradeoff = results_in(folder, "tradeoff")
+    if any(result.get("part") == "knobs" for result in tradeoff):
+        tradeoff_plots.draw(folder, tradeoff)
 
 
 if __name__ == "__main__":
