@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CUDA/Device/LaunchDefinition.cuh"
 #include "CUDA/Training/Kernels/TrainDraw.h"
 #include "CUDA/Training/Kernels/TrainLayers.h"
 #include "CUDA/Training/Kernels/TrainNetwork.h"
 #include "CUDA/Training/Kernels/TrainUpdate.h"
+#include "CUDA/Device/LaunchDefinition.cuh"
 
 namespace inr {
 namespace cuda {
