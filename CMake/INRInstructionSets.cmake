@@ -18,14 +18,18 @@ function (inr_add_bfloat16_kernels target)
   endif ()
 endfunction ()
 
-# inr_add_tile_kernels(TARGET SOURCES...): and once more, for processors with tile registers for such
-# numbers (AMX). INR_TILES is the header of the tile unit. Nothing in there throws; what would clean up
-# behind exceptions refers to a symbol that builds would share.
+# inr_add_tile_kernels(TARGET SOURCES...): and twice more, for processors with tile registers for such
+# numbers (AMX): of these as they are, and, with INR_SPLIT, of sums of two. INR_TILES is the header of
+# the tile unit. Nothing in there throws; what would clean up behind exceptions refers to a symbol
+# that builds would share.
 function (inr_add_tile_kernels target)
   if (INR_X86)
-    inr_add_build(${target} amx
-      "${INR_AVX512_FLAGS};-mavx512bf16;-mamx-tile;-mamx-bf16;-fno-exceptions" ${ARGN})
-    target_compile_definitions(${target}_amx PRIVATE INR_TILES="Core/Inference/ProcessorTiles.h")
+    foreach (isa amx amxsplit)
+      inr_add_build(${target} ${isa}
+        "${INR_AVX512_FLAGS};-mavx512bf16;-mamx-tile;-mamx-bf16;-fno-exceptions" ${ARGN})
+      target_compile_definitions(${target}_${isa} PRIVATE INR_TILES="Core/Inference/ProcessorTiles.h")
+    endforeach ()
+    target_compile_definitions(${target}_amxsplit PRIVATE INR_SPLIT)
   endif ()
 endfunction ()
 

@@ -37,6 +37,9 @@ extern const EvaluateKernel Evaluate;
 namespace amx {
 extern const EvaluateKernel Evaluate;
 }
+namespace amxsplit {
+extern const EvaluateKernel Evaluate;
+}
 #ifdef INR_ISA // whatever the build at hand is called
 namespace INR_ISA {
 extern const EvaluateKernel Evaluate;

@@ -43,18 +43,20 @@ public:
   /// Points that a call should have where there are as many: a device is far away. 0: any number.
   virtual std::int64_t pointsAtOnce() const { return 0; }
 
-  /// The instruction set in use: "avx512", "avx2" or "baseline"; "avx512 bfloat16" or "amx
-  /// bfloat16" (tile registers) where products are made of that.
+  /// The instruction set in use: "avx512", "avx2" or "baseline"; "avx512 bfloat16", "amx
+  /// bfloat16" (tile registers) or "amx split bfloat16" where products are made of that.
   virtual std::string kernel() const = 0;
 };
 
 /// With BFloat16, weights and what goes into a layer are off by up to 2^-8 of themselves, which
 /// adds at most (2^-7 + 2^-16) of the sum of the products' magnitudes to what a sum loses, and
-/// numbers below 2^-126 count as zero, which loses at most 2^-30 of y. Where the kernel cannot do
-/// that here, or the model's numbers might leave float's range, it is Float32.
+/// numbers below 2^-126 count as zero, which loses at most 2^-30 of y. With SplitBFloat16 it is
+/// 2^-16 of themselves and (3 * 2^-16 + 2^-32) of that sum, which is of three products for each.
+/// Where the kernel cannot do that here, or the model's numbers might leave float's range, it is
+/// Float32.
 ///
 /// The fastest kernel that this processor runs; `kernel` asks for one by name ("avx512", "avx2",
-/// "baseline", or "amx" for bfloat16 by tile registers; for tests) and Error(Unsupported) says that
+/// "baseline", or "amx" for tile registers; for tests) and Error(Unsupported) says that
 /// it is not to be had here. Kernels for bfloat16 sum up in different orders, each within the
 /// bound; the fastest one is the same throughout a process. Throws Error(InvalidModel) when the
 /// parameter count does not fit the description or a parameter is NaN or infinite.

@@ -41,6 +41,9 @@ extern const GridKernel Grid;
 namespace amx {
 extern const GridKernel Grid;
 }
+namespace amxsplit {
+extern const GridKernel Grid;
+}
 #ifdef INR_ISA // whatever the build at hand is called
 namespace INR_ISA {
 extern const GridKernel Grid;

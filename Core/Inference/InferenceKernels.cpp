@@ -44,6 +44,11 @@ InferenceKernels TileKernels()
   return {"amx bfloat16", &amx::Evaluate, &amx::Grid, WeightLayout::Tiles};
 }
 
+InferenceKernels SplitTileKernels()
+{
+  return {"amx split bfloat16", &amxsplit::Evaluate, &amxsplit::Grid, WeightLayout::SplitTiles};
+}
+
 bool IsTileKernelUsable(bool (*mayUseTiles)(), const InferenceKernels& kernels)
 {
   return IsUsable(InferencePrecision::BFloat16, InstructionSet::Avx512) && mayUseTiles() &&
@@ -62,9 +67,10 @@ InferenceKernels ChooseKernels(const std::string& kernel, InferencePrecision pre
   const bool named = kernel == Tiles;
   const InstructionSet set = named ? InstructionSet::Avx512 : ChooseInstructionSet(kernel);
   const bool rounds = precision == InferencePrecision::BFloat16 && IsUsable(precision, set);
-  const bool tiled = named || (rounds && kernel.empty());
+  const bool splits = precision == InferencePrecision::SplitBFloat16;
+  const bool tiled = named || ((rounds || splits) && kernel.empty());
   if (tiled && tiles()) {
-    return rounds ? TileKernels() : FloatKernels(set);
+    return rounds ? TileKernels() : splits ? SplitTileKernels() : FloatKernels(set);
   }
   if (named) {
     RefuseTiles();

@@ -26,6 +26,8 @@ InferenceKernels FloatKernels(InstructionSet set);
 InferenceKernels PairKernels();
 /// bfloat16 by tile registers (AMX); IsTileKernelUsable() says whether it may be used.
 InferenceKernels TileKernels();
+/// Sums of two bfloat16 numbers by the same.
+InferenceKernels SplitTileKernels();
 #endif
 
 /// Whether this process may use tile registers and what they give is what AVX512-BF16 gives. Asked

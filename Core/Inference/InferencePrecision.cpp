@@ -65,8 +65,8 @@ struct Magnitudes
 Magnitudes SumsOf(const LayerView& layer, const Magnitudes& in)
 {
   const double sum = LargestSum(layer);
-  // Inputs, weights, and sums: up to two for each column.
-  const double lost = sum * (in.lost + Smallest) + layer.columns * Smallest * (in.largest + 2.0);
+  // Inputs, weights, and sums: up to two for each column and product.
+  const double lost = sum * (in.lost + Smallest) + layer.columns * Smallest * (in.largest + 6.0);
   return {sum < Largest ? sum * in.largest : sum, lost};
 }
 
@@ -92,7 +92,8 @@ bool IsUsable(InferencePrecision precision, InstructionSet set)
     return true;
   }
 #ifdef INR_X86_KERNELS
-  return set == InstructionSet::Avx512 && IsUsable(set) && __builtin_cpu_supports("avx512bf16");
+  return precision == InferencePrecision::BFloat16 && set == InstructionSet::Avx512 &&
+         IsUsable(set) && __builtin_cpu_supports("avx512bf16");
 #else
   return false;
 #endif

@@ -10,11 +10,13 @@ struct ModelView;
 enum class InferencePrecision {
   Float32,
   /// Weights and what goes into a layer are rounded to 8 bits, sums are float32.
-  BFloat16
+  BFloat16,
+  /// The same of sums of two such numbers, which are 16 bits: three products for one.
+  SplitBFloat16
 };
 
 /// Whether this build has kernels for `set` that compute so, and this processor runs them. Float32
-/// always is.
+/// always is; SplitBFloat16 pays with tile registers only, which are no instruction set's.
 bool IsUsable(InferencePrecision precision, InstructionSet set);
 
 /// Whether no number that the network computes can come near either end of float's range, wherever

@@ -76,13 +76,28 @@ std::uint32_t BFloat16BitsOf(float value)
   return (bits + 0x7fffu + (bits >> 16 & 1u)) >> 16;
 }
 
+/// What a number that is rounded `part` times, each time what the last one left, is then.
+std::uint32_t BFloat16BitsOf(float value, std::size_t part)
+{
+  std::uint32_t bits = BFloat16BitsOf(value);
+  for (; part > 0; --part) {
+    const std::uint32_t rounded = bits << 16;
+    float subtracted;
+    std::memcpy(&subtracted, &rounded, sizeof(subtracted));
+    value -= subtracted;
+    bits = BFloat16BitsOf(value);
+  }
+  return bits;
+}
+
 /// Weights of a row's columns 2 * pair and the next.
-std::uint32_t PairOf(const LayerView& layer, std::size_t row, std::size_t pair)
+std::uint32_t PairOf(const LayerView& layer, std::size_t row, std::size_t pair,
+                     std::size_t part = 0)
 {
   const auto columns = static_cast<std::size_t>(layer.columns);
   const float* const weights = layer.weights + row * columns + 2 * pair;
   const float second = 2 * pair + 1 < columns ? weights[1] : 0.0f;
-  return BFloat16BitsOf(weights[0]) | BFloat16BitsOf(second) << 16;
+  return BFloat16BitsOf(weights[0], part) | BFloat16BitsOf(second, part) << 16;
 }
 
 std::size_t PairCount(const LayerView& layer)
@@ -129,16 +144,18 @@ ModelViewStorage::ModelViewStorage(const Description& description, const Layout&
   this->View.inputWidth = layout.inputWidth;
 }
 
-std::vector<PackedNetwork::Line> PackedNetwork::TilesOf(const LayerView& layer)
+std::vector<PackedNetwork::Line> PackedNetwork::TilesOf(const LayerView& layer, std::size_t parts)
 {
   constexpr std::size_t size = TileSize;
   const auto rows = static_cast<std::size_t>(layer.rows);
   const std::size_t tiles = (PairCount(layer) + size - 1) / size;
-  std::vector<Line> lines((rows + size - 1) / size * tiles * size);
+  std::vector<Line> lines((rows + size - 1) / size * tiles * parts * size);
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t pair = 0; pair < PairCount(layer); ++pair) {
-      const std::size_t tile = row / size * tiles + pair / size;
-      lines[tile * size + row % size].pairs[pair % size] = PairOf(layer, row, pair);
+      for (std::size_t part = 0; part < parts; ++part) {
+        const std::size_t tile = (row / size * tiles + pair / size) * parts + part;
+        lines[tile * size + row % size].pairs[pair % size] = PairOf(layer, row, pair, part);
+      }
     }
   }
   return lines;
@@ -158,7 +175,8 @@ PackedNetwork::PackedNetwork(const ModelView& model, WeightLayout layout)
       layer.pairs = this->Pairs.back().data();
       break;
     case WeightLayout::Tiles:
-      this->Tiles.push_back(TilesOf(layer));
+    case WeightLayout::SplitTiles:
+      this->Tiles.push_back(TilesOf(layer, layout == WeightLayout::SplitTiles ? 2 : 1));
       layer.pairs = this->Tiles.back().data()->pairs;
       break;
     }

@@ -34,7 +34,7 @@ struct LevelView
 constexpr int PanelRows = 8;
 
 /// In which order and as what kernels read weights; see PackedNetwork.
-enum class WeightLayout { Panels, Pairs, Tiles };
+enum class WeightLayout { Panels, Pairs, Tiles, SplitTiles };
 
 struct LayerView
 {
@@ -94,6 +94,7 @@ private:
 /// Tiles: pair c of row r is element (r % TileSize) * TileSize + c % TileSize of a tile, and the
 /// tile is number (r / TileSize) * tiles + c / TileSize, of `tiles` to a row. A tile's row fills a
 /// cache line.
+/// SplitTiles: of each tile two, one behind the other: the weights rounded, and what that leaves.
 class PackedNetwork
 {
 public:
@@ -112,7 +113,7 @@ private:
     std::uint32_t pairs[16];
   };
 
-  static std::vector<Line> TilesOf(const LayerView& layer);
+  static std::vector<Line> TilesOf(const LayerView& layer, std::size_t parts);
 
   std::vector<std::vector<float>> Panels;
   std::vector<std::vector<std::uint32_t>> Pairs;

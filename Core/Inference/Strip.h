@@ -14,11 +14,12 @@ namespace INR_ISA {
 /// Registers hold a tile of results: rows of a layer by groups of LaneCount samples.
 #ifdef INR_TILES
 constexpr int StripRows = 32;
+constexpr int StripGroups = 4;
 #else
 constexpr int StripRows = LaneCount == 16 ? PanelRows : 4;
 static_assert(PanelRows % StripRows == 0, "a tile lies within a panel");
-#endif
 constexpr int StripGroups = LaneCount == 8 ? 3 : 2; // see RunStrip
+#endif
 constexpr int StripSize = StripGroups * LaneCount;
 
 template <int Rows, int Groups> inline void SetZero(Floats (&sums)[Rows][Groups])

@@ -57,7 +57,7 @@ ModelPointer ExactModel(const Description& description)
 
 std::vector<float> ValuesAtPoints(const Evaluator& evaluator)
 {
-  constexpr std::int64_t count = 201; // the last ones are less than half a strip
+  constexpr std::int64_t count = 217; // the last ones are less than half a strip
   std::vector<glm::vec3> positions(count);
   for (std::size_t k = 0; k < positions.size(); ++k) {
     positions[k] = {RandomUnit(3, 3 * k), RandomUnit(3, 3 * k + 1), RandomUnit(3, 3 * k + 2)};

@@ -21,7 +21,7 @@
 namespace inr {
 namespace INR_ISA {
 
-static_assert(StripRows == 2 * TileSize && StripSize == 2 * LaneCount && LaneCount == TileSize,
+static_assert(StripRows == 2 * TileSize && StripGroups % 2 == 0 && LaneCount == TileSize,
               "two by two tiles of sums");
 
 /// Tiles are configured as long as this lives: for a batch. While they are, the system saves 8 KiB
@@ -48,13 +48,55 @@ inline void ActivateAll(Activation activation, float* values, std::int64_t count
   ConfigureTiles(WholeTiles);
 }
 
-/// Pairs up to a whole tile are zero from pair `count` on; the strip's count is that of tiles.
-template <int Groups> inline void FillTile(int count, Strip& strip)
+/// What a tile of columns is made of: with INR_SPLIT numbers are sums of two bfloat16 numbers, a
+/// rounded one and what that leaves. Of their products the one of both rests is left out, which is
+/// no larger than what the rests' own rounding loses.
+#ifdef INR_SPLIT
+constexpr int Parts = 2;
+#else
+constexpr int Parts = 1;
+#endif
+
+/// Numbers of two columns as pairs, part by part.
+struct PairParts
 {
-  strip.count = (count + TileSize - 1) / TileSize;
-  for (int k = count; k < strip.count * TileSize; ++k) {
-    for (int at = 0; at < Groups * LaneCount; at += LaneCount) {
-      Store(strip.values + k * StripSize + at, Floats{});
+  __m512i parts[Parts];
+};
+
+inline PairParts PartsOf(Floats first, Floats second)
+{
+  PairParts pair;
+  pair.parts[0] = PairOf(first, second);
+  if constexpr (Parts == 2) {
+    const auto bits = (UInts)pair.parts[0];
+    pair.parts[1] = PairOf(first - (Floats)(bits << 16), second - (Floats)(bits & 0xffff0000u));
+  }
+  return pair;
+}
+
+/// Where a part of the k-th tile of inputs begins.
+inline float* InputsOf(const Strip& strip, int tile, int part)
+{
+  return strip.values + (tile * Parts + part) * TileSize * StripSize;
+}
+
+/// Makes a tile of inputs of `count` rows, which may lie in it or behind.
+template <int Groups> inline void PackTile(const float* rows, int count, float* tile)
+{
+  PairParts pairs[TileSize][Groups];
+  for (int k = 0; k < TileSize; ++k) {
+    for (int g = 0; g < Groups; ++g) {
+      const float* const first = rows + 2 * k * StripSize + g * LaneCount;
+      pairs[k][g] = PartsOf(2 * k < count ? Load(first) : Floats{},
+                            2 * k + 1 < count ? Load(first + StripSize) : Floats{});
+    }
+  }
+  for (int part = 0; part < Parts; ++part) {
+    for (int k = 0; k < TileSize; ++k) {
+      float* const to = tile + (part * TileSize + k) * StripSize;
+      for (int g = 0; g < Groups; ++g) {
+        std::memcpy(to + g * LaneCount, &pairs[k][g].parts[part], sizeof(__m512i));
+      }
     }
   }
 }
@@ -63,16 +105,18 @@ template <int Groups> inline void FillTile(int count, Strip& strip)
 /// on.
 template <int Groups> inline void BeginStrip(int width, Strip& strip)
 {
-  FillTile<Groups>(PairRows<Groups>(width, strip), strip);
+  strip.count = (width + TileColumns - 1) / TileColumns; // of tiles
+  for (int k = 0; k < strip.count; ++k) {
+    const int first = k * TileColumns;
+    PackTile<Groups>(strip.values + first * StripSize, width - first, InputsOf(strip, k, 0));
+  }
 }
 
-/// Sums in tiles 0 to 3: tile 2 * t + g is of the t-th tile of rows and the g-th group of samples.
-/// Weights are in tiles 4 and 5, inputs in 6 and 7.
-template <int RowTiles, int Groups>
-inline void MultiplyTiles(const std::uint32_t* weights, std::int64_t weightsOfRows, const Strip& in)
+// Sums are in tiles 0 to 3: tile 2 * t + g is of the t-th tile of rows and the g-th group of
+// samples. Weights are in tiles 4 and 5, inputs in 6 and 7.
+
+template <int RowTiles, int Groups> inline void ZeroSums()
 {
-  constexpr std::int64_t row = TileSize * sizeof(float);
-  constexpr std::int64_t stripRow = StripSize * sizeof(float);
   ZeroTile<0>();
   if constexpr (Groups == 2) {
     ZeroTile<1>();
@@ -83,44 +127,97 @@ inline void MultiplyTiles(const std::uint32_t* weights, std::int64_t weightsOfRo
   if constexpr (RowTiles == 2 && Groups == 2) {
     ZeroTile<3>();
   }
+}
+
+template <int RowTiles>
+inline void LoadWeights(const std::uint32_t* weights, std::int64_t weightsOfRows)
+{
+  constexpr std::int64_t row = TileSize * sizeof(float);
+  LoadTile<4>(weights, row);
+  if constexpr (RowTiles == 2) {
+    LoadTile<5>(weights + weightsOfRows, row);
+  }
+}
+
+template <int Groups> inline void LoadInputs(const float* inputs)
+{
+  constexpr std::int64_t row = StripSize * sizeof(float);
+  LoadTile<6>(inputs, row);
+  if constexpr (Groups == 2) {
+    LoadTile<7>(inputs + LaneCount, row);
+  }
+}
+
+template <int RowTiles, int Groups> inline void AddProducts()
+{
+  MultiplyAddTiles<0, 4, 6>();
+  if constexpr (Groups == 2) {
+    MultiplyAddTiles<1, 4, 7>();
+  }
+  if constexpr (RowTiles == 2) {
+    MultiplyAddTiles<2, 5, 6>();
+  }
+  if constexpr (RowTiles == 2 && Groups == 2) {
+    MultiplyAddTiles<3, 5, 7>();
+  }
+}
+
+/// Of the groups from the `first` on.
+template <int RowTiles, int Groups>
+inline void MultiplyTiles(const std::uint32_t* weights, std::int64_t weightsOfRows, const Strip& in,
+                          int first)
+{
+  constexpr int tile = TileSize * TileSize;
+  ZeroSums<RowTiles, Groups>();
   for (int k = 0; k < in.count; ++k) {
-    const float* const inputs = in.values + k * TileSize * StripSize;
-    LoadTile<4>(weights + k * TileSize * TileSize, row);
-    LoadTile<6>(inputs, stripRow);
-    MultiplyAddTiles<0, 4, 6>();
-    if constexpr (Groups == 2) {
-      LoadTile<7>(inputs + LaneCount, stripRow);
-      MultiplyAddTiles<1, 4, 7>();
+    const std::uint32_t* const column = weights + k * Parts * tile;
+    LoadWeights<RowTiles>(column, weightsOfRows);
+    if constexpr (Parts == 2) {
+      LoadInputs<Groups>(InputsOf(in, k, 1) + first * LaneCount);
+      AddProducts<RowTiles, Groups>();
     }
-    if constexpr (RowTiles == 2) {
-      LoadTile<5>(weights + weightsOfRows + k * TileSize * TileSize, row);
-      MultiplyAddTiles<2, 5, 6>();
-    }
-    if constexpr (RowTiles == 2 && Groups == 2) {
-      MultiplyAddTiles<3, 5, 7>();
+    LoadInputs<Groups>(InputsOf(in, k, 0) + first * LaneCount);
+    AddProducts<RowTiles, Groups>();
+    if constexpr (Parts == 2) {
+      LoadWeights<RowTiles>(column + tile, weightsOfRows);
+      AddProducts<RowTiles, Groups>();
     }
   }
 }
 
-/// Writes what MultiplyTiles has summed up: row r, group g to sums[r][g].
-template <int RowTiles, int Groups> inline void StoreSums(Floats (*sums)[Groups])
+/// Writes what MultiplyTiles has summed up: row r, group g to sums[r][first + g].
+template <int RowTiles, int Groups, int All> inline void StoreSums(Floats (*sums)[All], int first)
 {
   constexpr std::int64_t row = sizeof(*sums);
-  StoreTile<0>(&sums[0][0], row);
+  StoreTile<0>(&sums[0][first], row);
   if constexpr (Groups == 2) {
-    StoreTile<1>(&sums[0][1], row);
+    StoreTile<1>(&sums[0][first + 1], row);
   }
   if constexpr (RowTiles == 2) {
-    StoreTile<2>(&sums[TileSize][0], row);
+    StoreTile<2>(&sums[TileSize][first], row);
   }
   if constexpr (RowTiles == 2 && Groups == 2) {
-    StoreTile<3>(&sums[TileSize][1], row);
+    StoreTile<3>(&sums[TileSize][first + 1], row);
+  }
+}
+
+/// Two groups at a time. While the sums of some are made, what becomes of the others' is on its way
+/// through memory.
+template <int RowTiles, int Groups>
+inline void SumGroups(const std::uint32_t* weights, std::int64_t weightsOfRows, const Strip& in,
+                      Floats (*sums)[Groups])
+{
+  constexpr int atOnce = Groups == 1 ? 1 : 2;
+  for (int first = 0; first < Groups; first += atOnce) {
+    MultiplyTiles<RowTiles, atOnce>(weights, weightsOfRows, in, first);
+    StoreSums<RowTiles, atOnce>(sums, first);
   }
 }
 
 inline std::int64_t WeightsOfTileRow(const LayerView& layer)
 {
-  return std::int64_t{(layer.columns + TileColumns - 1) / TileColumns} * TileSize * TileSize;
+  const std::int64_t tiles = (layer.columns + TileColumns - 1) / TileColumns;
+  return tiles * Parts * TileSize * TileSize;
 }
 
 /// Rows from `row` on, a multiple of StripRows; those beyond the last tile are zero.
@@ -130,12 +227,10 @@ inline void SumTile(const LayerView& layer, int row, const Strip& in, Floats (&s
   const std::int64_t step = WeightsOfTileRow(layer);
   const std::uint32_t* const weights = layer.pairs + row / TileSize * step;
   if (layer.rows - row > TileSize) {
-    MultiplyTiles<2, Groups>(weights, step, in);
-    StoreSums<2, Groups>(sums);
+    SumGroups<2>(weights, step, in, sums);
     return;
   }
-  MultiplyTiles<1, Groups>(weights, step, in);
-  StoreSums<1, Groups>(sums);
+  SumGroups<1>(weights, step, in, sums);
   std::memset(sums + TileSize, 0, TileSize * sizeof(sums[0]));
 }
 
@@ -143,9 +238,8 @@ inline void SumTile(const LayerView& layer, int row, const Strip& in, Floats (&s
 template <int Groups>
 inline void SumRow(const LayerView& layer, const Strip& in, Floats (&sums)[Groups])
 {
-  MultiplyTiles<1, Groups>(layer.pairs, 0, in);
   Floats all[TileSize][Groups];
-  StoreSums<1, Groups>(all);
+  SumGroups<1>(layer.pairs, 0, in, all);
   std::memcpy(sums, all[0], sizeof(sums));
 }
 
@@ -162,12 +256,14 @@ inline void AppendTile(Activation activation, Floats (&sums)[Rows][Groups], int,
     std::memcpy(sums, values, sizeof(values));
   }
   const Floats lowest = Spread(activation == Activation::ReLU ? 0.0f : -__builtin_inff());
-  float* const to = out.values + out.count * TileSize * StripSize;
   for (int r = 0; r < Rows; r += 2) {
-#pragma GCC unroll 2
+#pragma GCC unroll 4
     for (int g = 0; g < Groups; ++g) {
-      const __m512i pair = PairOf(Maximum(lowest, sums[r][g]), Maximum(lowest, sums[r + 1][g]));
-      std::memcpy(to + r / 2 * StripSize + g * LaneCount, &pair, sizeof(pair));
+      const PairParts pair = PartsOf(Maximum(lowest, sums[r][g]), Maximum(lowest, sums[r + 1][g]));
+      for (int part = 0; part < Parts; ++part) {
+        float* const to = InputsOf(out, out.count, part) + r / 2 * StripSize + g * LaneCount;
+        std::memcpy(to, &pair.parts[part], sizeof(__m512i));
+      }
     }
   }
   ++out.count;

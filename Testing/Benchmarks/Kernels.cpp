@@ -23,6 +23,7 @@
 namespace {
 
 const std::string Rounding = " bfloat16"; ///< behind the name of a kernel
+const std::string Splitting = " split bfloat16";
 
 /// Those of UsableKernels, and such that multiply rounded numbers.
 std::vector<std::string> InferenceKernels()
@@ -35,16 +36,19 @@ std::vector<std::string> InferenceKernels()
   }
   if (inr::IsTileKernelUsable()) {
     names.push_back("amx" + Rounding);
+    names.push_back("amx" + Splitting);
   }
   return names;
 }
 
 std::shared_ptr<const inr::Evaluator> EvaluatorOf(inr::ModelPointer model, const std::string& name)
 {
-  const std::size_t end = name.find(Rounding);
-  return inr::MakeEvaluator(std::move(model), name.substr(0, end),
-                            end == std::string::npos ? inr::InferencePrecision::Float32
-                                                     : inr::InferencePrecision::BFloat16);
+  const bool splits = name.find(Splitting) != std::string::npos;
+  const bool rounds = name.find(Rounding) != std::string::npos;
+  return inr::MakeEvaluator(std::move(model), name.substr(0, name.find(' ')),
+                            splits   ? inr::InferencePrecision::SplitBFloat16
+                            : rounds ? inr::InferencePrecision::BFloat16
+                                     : inr::InferencePrecision::Float32);
 }
 
 /// A random model, all of its features times `scale`.

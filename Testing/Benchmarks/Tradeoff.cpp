@@ -62,12 +62,13 @@ void CompareVolumes(const inr::ModelPointer& pointer, const inr::VolumeData& vox
   record.print();
 }
 
-/// The model's voxels from rounded numbers, against those by default.
-void CompareInference(const inr::ModelPointer& model, const std::string& name)
+/// The model's voxels from rounded numbers, against those in float32.
+void CompareInference(const inr::ModelPointer& model, const std::string& name,
+                      const Rounded& numbers)
 {
   const inr::Arena arena(Threads);
   const std::vector<float> exact = Decoded(model, arena);
-  const std::vector<float> rounded = Decoded(model, arena, inr::InferencePrecision::BFloat16);
+  const std::vector<float> rounded = Decoded(model, arena, numbers.precision);
   double squares = 0;
   double largest = 0;
   for (std::size_t k = 0; k < exact.size(); ++k) {
@@ -76,7 +77,7 @@ void CompareInference(const inr::ModelPointer& model, const std::string& name)
     largest = std::max(largest, error);
   }
   const double mean = squares / static_cast<double>(exact.size());
-  Record record(name + ", voxels in bfloat16");
+  Record record(name + ", voxels in " + numbers.name);
   record.add("psnr_float", std::min(EqualPictures, -10 * std::log10(mean)));
   record.add("max", largest);
   record.print();
@@ -157,7 +158,9 @@ void Run(char* const* arguments, const std::string& mode, const std::string& vie
   const inr::ModelPointer usual = usualModel != nullptr ? inr::ReadModel(usualModel) : model;
   const Subject subject = SubjectOf(model, usual, volume.data());
   if (mode == "inference") {
-    CompareInference(model, name);
+    for (const Rounded& numbers : RoundedNumbers()) {
+      CompareInference(model, name, numbers);
+    }
   }
   for (const Scene& scene : Scenes(subject.model->volume, name, view)) {
     if (mode == "model") {

@@ -5,6 +5,7 @@
 
 #include "Core/Image/Flip.h"
 #include "Core/Image/Metrics.h"
+#include "Core/Inference/InferenceKernels.h"
 #include "Testing/Benchmarks/FrameScenes.h"
 
 #include <algorithm>
@@ -145,16 +146,33 @@ inline std::vector<Point> PictureKnobs(const inr::Frame& frame)
   return knobs.points;
 }
 
+/// Rounded numbers that the network may compute with here.
+struct Rounded
+{
+  std::string name;
+  inr::InferencePrecision precision;
+};
+inline std::vector<Rounded> RoundedNumbers()
+{
+  std::vector<Rounded> all = {{"bfloat16", inr::InferencePrecision::BFloat16}};
+  if (inr::IsTileKernelUsable()) {
+    all.push_back({"split bfloat16", inr::InferencePrecision::SplitBFloat16});
+  }
+  return all;
+}
+
 /// What the network computes with, where it fills the cache and where it is asked for each sample.
 inline std::vector<Point> InferenceKnob(const inr::Frame& frame)
 {
   SingleKnobs knobs(frame);
-  for (const bool cached : {true, false}) {
-    knobs.add("InferencePrecision", cached ? "bfloat16" : "bfloat16, network only", cached,
-              [&](Point& point) {
-                point.options.inference = inr::InferencePrecision::BFloat16;
-                point.options.cached = cached;
-              });
+  for (const Rounded& numbers : RoundedNumbers()) {
+    for (const bool cached : {true, false}) {
+      knobs.add("InferencePrecision", numbers.name + (cached ? "" : ", network only"), cached,
+                [&](Point& point) {
+                  point.options.inference = numbers.precision;
+                  point.options.cached = cached;
+                });
+    }
   }
   return knobs.points;
 }

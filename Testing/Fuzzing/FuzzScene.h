@@ -208,8 +208,15 @@ inline FuzzScene MakeFuzzScene(const inr::VolumeInfo& volume, SceneBytes& bytes)
   }
   frame.seed = bytes.next();
   frame.errorTolerance = fuzz_scene::Tolerance(bytes);
-  if (bytes.below(4) == 1) {
+  switch (bytes.below(4)) {
+  case 1:
     scene.options.inference = inr::InferencePrecision::BFloat16;
+    break;
+  case 2:
+    scene.options.inference = inr::InferencePrecision::SplitBFloat16;
+    break;
+  default:
+    break;
   }
   scene.quick =
       frame.sampleDistance <= 1e6 && fuzz_scene::MostSamples(volume, frame) <= 2 * mostSteps;

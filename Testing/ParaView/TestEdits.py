@@ -21,7 +21,7 @@ SETTINGS = {
     "LevelOfDetailScale": [0, 0.5, 1, 2, 4],
     "SampleDistance": [0.5, 1, 2],
     "CacheSize": [4, 8, 64],
-    "InferencePrecision": ["Float", "Float", "bfloat16"],
+    "InferencePrecision": ["Automatic", "Float", "bfloat16"],
     "CachePrecision": ["Float", "16 bit", "8 bit"],
     "BrickSize": [12, 24, 40],
     "MaximumRequests": [1, 40],

@@ -20,13 +20,19 @@ struct Bounded
   long double error = 0;
 };
 
+/// How kernels multiply that round weights and what goes into a layer and take the smallest numbers
+/// for zero.
+struct RoundedProducts
+{
+  long double error = 0; ///< by how much of itself a product is off at most; 0: nothing is rounded
+  int count = 1;         ///< of those that stand for one
+};
+
 class LongDoubleTruth
 {
 public:
-  /// `rounding`: by how much of itself weights and what goes into a layer are rounded at most, in
-  /// kernels that take the smallest numbers for zero.
-  explicit LongDoubleTruth(const inr::Model& model, long double rounding = 0)
-      : Source(model), Shape(model.description), OfProducts(2 * rounding + rounding * rounding)
+  explicit LongDoubleTruth(const inr::Model& model, const RoundedProducts& products = {})
+      : Source(model), Shape(model.description), Products(products)
   {}
 
   Bounded operator()(const glm::vec3& position) const
@@ -40,7 +46,7 @@ public:
         value = Activated(last ? network.outputActivation : network.activation, value);
       }
     }
-    values[0].error += this->OfProducts > 0 ? 0x1p-30L : 0;
+    values[0].error += this->Products.error > 0 ? 0x1p-30L : 0;
     return values[0];
   }
 
@@ -124,8 +130,8 @@ private:
         out[row].error += std::abs(weight) * in[column].error;
         magnitudes += std::abs(weight) * (std::abs(in[column].value) + in[column].error);
       }
-      const auto count = static_cast<long double>(in.size());
-      out[row].error += (this->OfProducts + (count + 2) * Ulp) * magnitudes + count * Tiny;
+      const auto count = static_cast<long double>(in.size()) * this->Products.count;
+      out[row].error += (this->Products.error + (count + 2) * Ulp) * magnitudes + count * Tiny;
     }
     return out;
   }
@@ -183,5 +189,5 @@ private:
 
   const inr::Model& Source;
   inr::Layout Shape;
-  long double OfProducts; ///< by how much of itself a product is off for its factors' rounding
+  RoundedProducts Products;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Inference/InferenceKernels.h"
+#include "Testing/Core/Inference/LongDoubleTruth.h"
 #ifdef __x86_64__
 #include "Testing/Core/Inference/TileImitation.h"
 #include "Testing/Core/Inference/TileTraps.h"
@@ -10,9 +11,18 @@
 #include <memory>
 #include <vector>
 
-/// All that compute with bfloat16 numbers on this machine: with AVX512-BF16, with tiles built for
-/// an imitation of them and, as long as this lives, with those built for the processor, whose
-/// instructions are imitated where it lacks them. One where it has them but may not use them.
+/// The bounds that Evaluator.h states.
+inline RoundedProducts ProductsOf(const inr::InferenceKernels& kernels)
+{
+  return kernels.layout == inr::WeightLayout::SplitTiles
+             ? RoundedProducts{3 * 0x1p-16L + 0x1p-32L, 3}
+             : RoundedProducts{0x1p-7L + 0x1p-16L, 1};
+}
+
+/// All that compute with bfloat16 numbers, or sums of two, on this machine: with AVX512-BF16, with
+/// tiles built for an imitation of them and, as long as this lives, with those built for the
+/// processor, whose instructions are imitated where it lacks them. One where it has them but may
+/// not use them.
 class RoundingKernels
 {
 public:
@@ -22,9 +32,10 @@ public:
     if (!inr::IsUsable(inr::InferencePrecision::BFloat16, inr::InstructionSet::Avx512)) {
       return;
     }
-    this->All = {inr::PairKernels(), ImitatedKernels()};
+    this->All = {inr::PairKernels(), ImitatedKernels(), ImitatedSplitKernels()};
     if (inr::IsTileKernelUsable() || !imitation::HasTileInstructions()) {
       this->All.push_back(inr::TileKernels());
+      this->All.push_back(inr::SplitTileKernels());
       this->Traps = std::make_unique<imitation::TileTraps>();
     }
   }

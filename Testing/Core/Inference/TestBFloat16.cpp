@@ -3,7 +3,6 @@
 // Every kernel that computes with bfloat16 numbers against an evaluation in long double.
 #include "Core/Inference/ModelView.h"
 #include "Testing/Core/Inference/EvaluatePoints.h"
-#include "Testing/Core/Inference/LongDoubleTruth.h"
 #include "Testing/Core/Inference/RoundingKernels.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
@@ -16,8 +15,6 @@
 #include <vector>
 
 namespace {
-
-constexpr long double Rounding = 0x1p-8L;
 
 inr::Description Shape(int levels, int features, int neurons, int hiddenLayers,
                        inr::Activation activation = inr::Activation::ReLU)
@@ -87,11 +84,11 @@ TEST_F(BFloat16, IsOffByNoMoreThanItsRounding)
   const std::vector<glm::vec3> positions = RandomPositions(500);
   for (const inr::Description& description : Descriptions()) {
     const inr::ModelPointer model = CalmModel(description);
-    const LongDoubleTruth truth(*model, Rounding);
-    std::vector<Bounded> exact(positions.size());
-    std::transform(positions.begin(), positions.end(), exact.begin(), truth);
     const std::vector<float> unrounded = Evaluate(*inr::MakeEvaluator(model), positions);
     for (const inr::InferenceKernels& kernels : this->Kernels) {
+      std::vector<Bounded> exact(positions.size());
+      const LongDoubleTruth truth(*model, ProductsOf(kernels));
+      std::transform(positions.begin(), positions.end(), exact.begin(), truth);
       const std::vector<float> values = Evaluate(*inr::MakeEvaluator(model, kernels), positions);
       int others = 0;
       for (std::size_t k = 0; k < values.size(); ++k) {
@@ -114,9 +111,9 @@ TEST_F(BFloat16, IsTheSameOnLatticesButForRounding)
   }
   for (const inr::Description& description : Descriptions()) {
     const inr::ModelPointer model = CalmModel(description);
-    const LongDoubleTruth truth(*model, Rounding);
     std::vector<float> values(axes[0].size() * axes[1].size() * axes[2].size());
     for (const inr::InferenceKernels& kernels : this->Kernels) {
+      const LongDoubleTruth truth(*model, ProductsOf(kernels));
       inr::MakeEvaluator(model, kernels)->evaluateGrid(axes, values.data());
       for (std::size_t k = 0; k < values.size(); k += 29) {
         const glm::vec3 at(axes[0][k % axes[0].size()],

@@ -162,9 +162,10 @@ bool OnAFace(const inr::Model& model, const glm::vec3& position)
 /// Points of a model with their true values.
 struct Truth
 {
-  Truth(const inr::Model& model, const std::vector<glm::vec3>& points, long double rounding = 0)
+  Truth(const inr::Model& model, const std::vector<glm::vec3>& points,
+        const RoundedProducts& products = {})
   {
-    const LongDoubleTruth truth(model, rounding);
+    const LongDoubleTruth truth(model, products);
     for (const glm::vec3& point : points) {
       this->Values.push_back(truth(point));
       this->Usable.push_back(!OnAFace(model, point));
@@ -323,9 +324,9 @@ TEST_P(BadNumbers, AreWithinTheBoundOfBFloat16)
     }
     ++rounded;
     const std::vector<glm::vec3> points = Positions(inr::Layout(model->description));
-    const Truth truth(*model, points, 0x1p-8L);
-    const Truth latticeTruth(*model, lattice, 0x1p-8L);
     for (const inr::InferenceKernels& kernels : rounding) {
+      const Truth truth(*model, points, ProductsOf(kernels));
+      const Truth latticeTruth(*model, lattice, ProductsOf(kernels));
       const auto evaluator = inr::MakeEvaluator(model, kernels);
       std::vector<float> values(points.size());
       evaluator->evaluate(points.data(), static_cast<std::int64_t>(points.size()), values.data());

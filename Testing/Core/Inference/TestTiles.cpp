@@ -144,6 +144,19 @@ TEST_F(Tiles, AreTheFastestForBFloat16)
   EXPECT_EQ(nameOf("avx2", InferencePrecision::BFloat16, Yes), "avx2");
 }
 
+/// Three products for one pay there only.
+TEST_F(Tiles, AreWhatSplitNumbersAreFor)
+{
+  const auto nameOf = [](const char* kernel, bool (*tiles)()) {
+    return inr::ChooseKernels(kernel, inr::InferencePrecision::SplitBFloat16, tiles).name;
+  };
+  EXPECT_EQ(nameOf("", Yes), "amx split bfloat16");
+  EXPECT_EQ(nameOf("amx", Yes), "amx split bfloat16");
+  EXPECT_EQ(nameOf("", No), "avx512");
+  EXPECT_EQ(nameOf("avx512", Yes), "avx512");
+  EXPECT_EQ(nameOf("avx2", Yes), "avx2");
+}
+
 TEST(TileKernels, AreRefusedByNameWhereThereAreNone)
 {
   for (const auto precision :
@@ -198,6 +211,8 @@ TEST_F(Tiles, GiveTheSameAsImitatedOnes)
   const auto model = RandomModel(SmallDescription());
   EXPECT_EQ(Evaluate(*inr::MakeEvaluator(model, inr::TileKernels()), positions),
             Evaluate(*inr::MakeEvaluator(model, ImitatedKernels()), positions));
+  EXPECT_EQ(Evaluate(*inr::MakeEvaluator(model, inr::SplitTileKernels()), positions),
+            Evaluate(*inr::MakeEvaluator(model, ImitatedSplitKernels()), positions));
   EXPECT_TRUE(inr::GiveTheSame(inr::TileKernels(), inr::PairKernels()));
   EXPECT_EQ(imitation::TileTraps::count() > before + 1000, !own);
   EXPECT_FALSE(imitation::IsConfigured());
@@ -239,37 +254,72 @@ TEST_F(Tiles, AreNotConfiguredWhereTheLibraryIsCalled)
   description.network.activation = inr::Activation::Tanh; // 2 layers of a tile each
   const int before = imitation::Configurations();
   EvaluateBoth(description);
-  const int strips = (100 + 31) / 32 + 2;
+  const int strips = (100 + 63) / 64 + 2;
   EXPECT_EQ(imitation::Configurations(), before + 2 + strips * 2);
+}
+
+constexpr int Rows = 19;
+constexpr int Columns = 35;
+
+/// Of a layer of Rows by Columns, a part of the numbers in a tile of 16 rows and 32 columns; tiles
+/// have that many parts.
+float InTile(const inr::PackedNetwork& network, int row, int column, int part = 0, int parts = 1)
+{
+  const int tile = (row / 16 * 2 + column / 32) * parts + part;
+  const std::uint32_t pair =
+      network.view().layers[0].pairs[tile * 256 + row % 16 * 16 + column % 32 / 2];
+  const std::uint32_t bits = column % 2 == 0 ? pair << 16 : pair & 0xffff0000u;
+  float value;
+  std::memcpy(&value, &bits, sizeof(value));
+  return value;
+}
+
+inr::PackedNetwork Packed(const std::vector<float>& weights, inr::WeightLayout layout)
+{
+  const inr::LayerView layer{weights.data(), Rows, Columns, nullptr, nullptr};
+  inr::ModelView model{};
+  model.layers = &layer;
+  model.layerCount = 1;
+  return inr::PackedNetwork(model, layout);
 }
 
 TEST(TileKernels, HaveWeightsInTiles)
 {
-  constexpr int rows = 19;
-  constexpr int columns = 35;
-  std::vector<float> weights(rows * columns);
+  std::vector<float> weights(Rows * Columns);
   for (std::size_t k = 0; k < weights.size(); ++k) {
     weights[k] = static_cast<float>(k % 251 + 1); // all are bfloat16 numbers
   }
-  const inr::LayerView layer{weights.data(), rows, columns, nullptr, nullptr};
-  inr::ModelView model{};
-  model.layers = &layer;
-  model.layerCount = 1;
-  const inr::PackedNetwork network(model, inr::WeightLayout::Tiles);
-  const std::uint32_t* const pairs = network.view().layers[0].pairs;
-  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pairs) % 64, 0u);
+  const inr::PackedNetwork network = Packed(weights, inr::WeightLayout::Tiles);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(network.view().layers[0].pairs) % 64, 0u);
   for (int row = 0; row < 32; ++row) {
     for (int column = 0; column < 64; ++column) {
-      const int tile = row / 16 * 2 + column / 32;
-      const std::uint32_t pair = pairs[tile * 256 + row % 16 * 16 + column % 32 / 2];
-      const std::uint32_t bits = (column % 2 == 0 ? pair << 16 : pair & 0xffff0000u);
-      float value;
-      std::memcpy(&value, &bits, sizeof(value));
-      const bool inside = row < rows && column < columns;
-      ASSERT_EQ(value, inside ? weights[static_cast<std::size_t>(row * columns + column)] : 0.0f)
-          << row << " " << column;
+      const bool inside = row < Rows && column < Columns;
+      const float weight = inside ? weights[static_cast<std::size_t>(row * Columns + column)] : 0;
+      ASSERT_EQ(InTile(network, row, column), weight) << row << " " << column;
     }
   }
+}
+
+TEST(TileKernels, HaveWeightsInTilesOfTwoParts)
+{
+  std::vector<float> weights(Rows * Columns);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    weights[k] = (inr::RandomUnit(1, k) - 0.5f) * 8;
+  }
+  const inr::PackedNetwork network = Packed(weights, inr::WeightLayout::SplitTiles);
+  int rests = 0;
+  for (int row = 0; row < 32; ++row) {
+    for (int column = 0; column < 64; ++column) {
+      const bool inside = row < Rows && column < Columns;
+      const float weight = inside ? weights[static_cast<std::size_t>(row * Columns + column)] : 0;
+      const float rounded = InTile(network, row, column, 0, 2);
+      const float rest = InTile(network, row, column, 1, 2);
+      ASSERT_LE(std::abs(rounded - weight), 0x1p-8f * std::abs(weight)) << row << " " << column;
+      ASSERT_LE(std::abs(rounded + rest - weight), 0x1p-16f * std::abs(weight));
+      rests += rest != 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(rests, Rows * Columns * 9 / 10);
 }
 
 } // namespace

@@ -42,6 +42,10 @@ namespace imitatedtiles {
 extern const EvaluateKernel Evaluate;
 extern const GridKernel Grid;
 } // namespace imitatedtiles
+namespace imitatedsplit {
+extern const EvaluateKernel Evaluate;
+extern const GridKernel Grid;
+} // namespace imitatedsplit
 } // namespace inr
 
 /// Those of tiles on an imitation of them; they need AVX512-BF16.
@@ -49,4 +53,10 @@ inline inr::InferenceKernels ImitatedKernels()
 {
   return {"imitated tiles", &inr::imitatedtiles::Evaluate, &inr::imitatedtiles::Grid,
           inr::WeightLayout::Tiles};
+}
+/// The same of sums of two numbers.
+inline inr::InferenceKernels ImitatedSplitKernels()
+{
+  return {"imitated tiles, split", &inr::imitatedsplit::Evaluate, &inr::imitatedsplit::Grid,
+          inr::WeightLayout::SplitTiles};
 }

@@ -1,21 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pictures from a network that computes with rounded numbers.
-#include "Core/Inference/InstructionSet.h"
+#include "Core/Inference/InferenceKernels.h"
 #include "Testing/Core/Render/AcceleratedScene.h"
 
 namespace {
 
-bool CanRound()
+/// Numbers to compute with, whether that is to be had here, and by what pictures are the same.
+struct Rounding
 {
+  inr::InferencePrecision precision;
+  bool usable;
+  double psnr;
+};
+
+std::vector<Rounding> Roundings()
+{
+  using inr::InferencePrecision;
   const inr::InstructionSet best = inr::ChooseInstructionSet("");
-  return inr::IsUsable(inr::InferencePrecision::BFloat16, best);
+  return {{InferencePrecision::BFloat16, inr::IsUsable(InferencePrecision::BFloat16, best), 35},
+          {InferencePrecision::SplitBFloat16, inr::IsTileKernelUsable(), 80}};
 }
 
-inr::Renderer Rounded(const inr::ModelPointer& model, Way way)
+inr::Renderer Rounded(const inr::ModelPointer& model, Way way, inr::InferencePrecision precision)
 {
   inr::RendererOptions options = OptionsFor(way, nullptr);
-  options.inference = inr::InferencePrecision::BFloat16;
+  options.inference = precision;
   inr::Renderer renderer(model, options);
   renderer.setTransferFunction(Visible());
   return renderer;
@@ -24,18 +34,20 @@ inr::Renderer Rounded(const inr::ModelPointer& model, Way way)
 TEST(InferencePrecision, ShowsInPicturesThatShareNoBricks)
 {
   const inr::ModelPointer model = SomeModel();
-  for (const Way way : {Way::Still, Way::Network, Way::Paths}) {
-    const inr::Frame frame = FrameFor(way);
-    inr::Renderer exact = RendererFor(model, way, nullptr);
-    const inr::Image truth = Finish(exact, frame);
-    const std::int64_t bytes = exact.cacheBytes();
-    inr::Renderer rounded = Rounded(model, way);
-    const inr::Image picture = Finish(rounded, frame);
-    EXPECT_EQ(picture.pixels == truth.pixels, !CanRound());
-    EXPECT_GT(inr::ImagePsnr(picture, truth), 35);
-    EXPECT_EQ(exact.cacheBytes() > bytes, CanRound() && IsCached(way));
-    EXPECT_EQ(Finish(exact, frame).pixels, truth.pixels);
-    EXPECT_EQ(rounded.kernel().find("bfloat16") != std::string::npos, CanRound());
+  for (const Rounding& rounding : Roundings()) {
+    for (const Way way : {Way::Still, Way::Network, Way::Paths}) {
+      const inr::Frame frame = FrameFor(way);
+      inr::Renderer exact = RendererFor(model, way, nullptr);
+      const inr::Image truth = Finish(exact, frame);
+      const std::int64_t bytes = exact.cacheBytes();
+      inr::Renderer rounded = Rounded(model, way, rounding.precision);
+      const inr::Image picture = Finish(rounded, frame);
+      EXPECT_EQ(picture.pixels == truth.pixels, !rounding.usable);
+      EXPECT_GT(inr::ImagePsnr(picture, truth), rounding.psnr);
+      EXPECT_EQ(exact.cacheBytes() > bytes, rounding.usable && IsCached(way));
+      EXPECT_EQ(Finish(exact, frame).pixels, truth.pixels);
+      EXPECT_EQ(rounded.kernel().find("bfloat16") != std::string::npos, rounding.usable);
+    }
   }
 }
 

@@ -85,6 +85,7 @@ TEST(Backends, ComputeTheSamePicture)
   for (const int mode : {vtkINRVolumeMapper::CACHE_AND_NETWORK, vtkINRVolumeMapper::NETWORK_ONLY}) {
     OneBackend cpu(std::make_shared<FakeDevice>());
     cpu.mapper->SetBackend(vtkINRVolumeMapper::CPU);
+    cpu.mapper->SetInferencePrecision(vtkINRVolumeMapper::SINGLE); // as beside a device
     cpu.mapper->SetCacheMode(mode);
     const inr::Image truth = cpu.scene.capture();
     EXPECT_EQ(cpu.own->searches, 0);

@@ -2,6 +2,7 @@
 // What happens around a frame: what it reads, what it tells, what it leaves behind.
 #include "Core/Image/Exr.h"
 #include "Core/Image/Metrics.h"
+#include "Core/Inference/InferenceKernels.h"
 #include "OneVolume.h"
 
 #include <vtkActor2D.h>
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <string>
 
 namespace {
@@ -27,6 +29,27 @@ TEST(Frames, SayWhatTheyTook)
   EXPECT_GT(one.mapper->GetNumberOfSamples(), 10000);
   EXPECT_EQ(one.mapper->GetImageReduction(), 1);
   EXPECT_EQ(std::string(one.mapper->GetBackendInUse()).substr(0, 4), "CPU ");
+}
+
+/// Whether the network computes with sums of two bfloat16 numbers by default.
+bool Splits(const std::function<void(vtkINRVolumeMapper&)>& change)
+{
+  OneVolume one;
+  change(*one.mapper);
+  one.scene.capture();
+  return std::string(one.mapper->GetBackendInUse()).find("split") != std::string::npos;
+}
+
+TEST(Frames, RoundNoMoreThanTheCacheUnlessAsked)
+{
+  const bool tiles = inr::IsTileKernelUsable();
+  EXPECT_EQ(Splits([](auto&) {}), tiles);
+  EXPECT_EQ(Splits([](auto& mapper) { mapper.SetCachePrecision(mapper.BITS8); }), tiles);
+  EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetCachePrecision(mapper.FLOAT32); }));
+  EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetCacheMode(mapper.NETWORK_ONLY); }));
+  EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetErrorTolerance(1); }));
+  EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetInferencePrecision(mapper.SINGLE); }));
+  EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetInferencePrecision(mapper.BFLOAT16); }));
 }
 
 TEST(Frames, ReadDepthOnlyWhenSomethingOpaqueIsVisible)
