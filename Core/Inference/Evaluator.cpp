@@ -61,6 +61,19 @@ LatticeAxis ViewOf(const std::vector<float>& axis)
   return {axis.data(), static_cast<std::int64_t>(axis.size())};
 }
 
+/// Of points [begin, end) along an axis.
+std::vector<float> CoordinatesOf(const Lattice& lattice, int axis, std::int64_t begin,
+                                 std::int64_t end)
+{
+  std::vector<float> coordinates;
+  coordinates.reserve(static_cast<std::size_t>(end - begin));
+  for (std::int64_t k = begin; k < end; ++k) {
+    coordinates.push_back(
+        static_cast<float>(lattice.first[axis] + static_cast<double>(k) * lattice.step[axis]));
+  }
+  return coordinates;
+}
+
 class KernelEvaluator : public Evaluator
 {
 public:
@@ -203,14 +216,23 @@ void EvaluateLattice(const Evaluator& evaluator, const Arena& arena, const Latti
                      float* values)
 {
   const glm::i64vec3 points = lattice.points;
-  const std::int64_t total = points.x * points.y * points.z;
-  arena.forEachBlock(total, TaskSize, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<glm::vec3> positions(static_cast<std::size_t>(end - begin));
-    for (std::int64_t k = begin; k < end; ++k) {
-      const glm::dvec3 index(k % points.x, k / points.x % points.y, k / (points.x * points.y));
-      positions[static_cast<std::size_t>(k - begin)] = lattice.first + index * lattice.step;
-    }
-    evaluator.evaluate(positions.data(), end - begin, values + begin);
+  if (points.x * points.y * points.z == 0) {
+    return;
+  }
+  // Tasks are boxes of whole rows, which lie in `values` as evaluateGrid writes them.
+  const std::int64_t rows = std::clamp<std::int64_t>(TaskSize / points.x, 1, points.y);
+  const std::int64_t layers =
+      rows < points.y ? 1 : std::clamp<std::int64_t>(TaskSize / (points.x * rows), 1, points.z);
+  const std::int64_t bands = (points.y + rows - 1) / rows; // to a layer
+  const std::int64_t slabs = (points.z + layers - 1) / layers;
+  const std::vector<float> x = CoordinatesOf(lattice, 0, 0, points.x);
+  arena.forEachBlock(bands * slabs, 1, [&](std::int64_t task, std::int64_t) {
+    const std::int64_t j = task % bands * rows;
+    const std::int64_t k = task / bands * layers;
+    const std::vector<float> axes[3] = {
+        x, CoordinatesOf(lattice, 1, j, std::min(j + rows, points.y)),
+        CoordinatesOf(lattice, 2, k, std::min(k + layers, points.z))};
+    evaluator.evaluateGrid(axes, values + (k * points.y + j) * points.x);
   });
 }
 

@@ -73,7 +73,8 @@ void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm:
                       std::int64_t count, float* values);
 
 /// Values at the points of a regular lattice: point (i, j, k) of `points` sits at
-/// u = first + (i, j, k) * step; x fastest in `values`.
+/// u = first + (i, j, k) * step, which are in [0, 1]; x fastest in `values`. A value is that of
+/// evaluateGrid, whatever the lattice around it.
 struct Lattice
 {
   glm::dvec3 first{0.0};

@@ -14,7 +14,7 @@ display = simple.Show(reader, view)
 look_at(view)
 LINES = re.compile(
     r"(\w+): levels? (\d+)(?: to (\d+))?, (\d+) % there(?:, (\d+) of (\d+) paths)?( \.\.\.)?\n"
-    r"cache (\d+) MiB, CPU \w+, \d+ threads?, \d+ ms$"
+    r"cache (\d+) MiB, CPU [\w ]+, \d+ threads?, \d+ ms$"
 )
 
 

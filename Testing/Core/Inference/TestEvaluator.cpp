@@ -49,6 +49,32 @@ TEST(Evaluator, LatticeSitsAtVoxelCentres)
   EXPECT_NEAR(block[1 + 2 * (2 + 3 * 2)], Evaluate(*evaluator, {centre})[0], 1e-5);
 }
 
+/// Rows longer than a task, layers that take several, several layers to a task, and nothing.
+TEST(Evaluator, LatticesAreTheSameHoweverTheyAreShared)
+{
+  const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
+  for (const glm::i64vec3& points :
+       {glm::i64vec3(5000, 3, 2), {101, 90, 3}, {3, 5, 600}, {1, 1, 9}, {0, 4, 4}}) {
+    const inr::Lattice lattice{glm::dvec3(0.01, 0.02, 0.03), 0.9 / glm::dvec3(points), points};
+    std::vector<float> axes[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      for (std::int64_t k = 0; k < points[axis]; ++k) {
+        axes[axis].push_back(
+            static_cast<float>(lattice.first[axis] + static_cast<double>(k) * lattice.step[axis]));
+      }
+    }
+    std::vector<float> whole(axes[0].size() * axes[1].size() * axes[2].size());
+    if (!whole.empty()) {
+      evaluator->evaluateGrid(axes, whole.data());
+    }
+    for (const int threads : {1, 3}) {
+      std::vector<float> values(whole.size());
+      inr::EvaluateLattice(*evaluator, inr::Arena(threads), lattice, values.data());
+      EXPECT_EQ(values, whole) << points.x << " " << threads;
+    }
+  }
+}
+
 TEST(Evaluator, PositionsOutsideAreClamped)
 {
   const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
