@@ -47,8 +47,11 @@ def unit_of(name):
     return "M voxels/s" if name.startswith("brick of") or "trained" in name else "M samples/s"
 
 
-def plain(rate):
-    return [results_file.result(name, round(value, 3), unit_of(name), "higher", "best of 3 runs")
+def plain(rate, model=None):
+    """`model`: the file of the trained one."""
+    trained = f"; {os.path.basename(model)}" if model else ""
+    return [results_file.result(name, round(value, 3), unit_of(name), "higher",
+                                "best of 3 runs" + (trained if "trained" in name else ""))
             for name, value in rate.items()]
 
 
@@ -93,6 +96,14 @@ def with_tiles(rate, rounded):
            "", "brick AMX", "by processor time")
     yield ("brick AMX vs AVX512 bfloat16", rate[tiles] / rate[rounded], "",
            "brick AVX512 bfloat16", "")
+    split = f"{MODEL}, amx split bfloat16, 1 thread"
+    yield ("brick AMX split bfloat16", rate[split], "M voxels/s", None,
+           "random parameters; one core")
+    for name, model in (("", MODEL), (", trained model", "brick, trained model")):
+        if f"{model}, avx512, 1 thread" in rate:
+            yield (f"brick AMX split bfloat16 vs float32{name}",
+                   rate[f"{model}, amx split bfloat16, 1 thread"] / rate[f"{model}, avx512, 1 thread"],
+                   "", f"{model}, avx512, 1 thread", "")
 
 
 def main():
@@ -100,11 +111,12 @@ def main():
     if "--training" in sys.argv:
         results_file.write("training", plain(rates(program, "^training")))
         return
-    rate = rates(program, "-^training", rest[0] if rest else None)
+    model = rest[0] if rest else None
+    rate = rates(program, "-^training", model)
     results = [results_file.result(name, round(value, 3), unit, "higher", note,
                                    **({"target": TARGETS[name]} if name in TARGETS else {}),
                                    **({"baseline": baseline} if baseline else {}))
-               for name, value, unit, baseline, note in derived(rate)] + plain(rate)
+               for name, value, unit, baseline, note in derived(rate)] + plain(rate, model)
     for result in results:
         print(f"{result['name']}: {result['value']} {result['unit']}")
     results_file.write("kernels", results)
