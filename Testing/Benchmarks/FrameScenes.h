@@ -97,11 +97,21 @@ inline std::string Target(double target, const std::string& baseline = "")
   return text.str();
 }
 
+/// As ParaView has it by default.
 inline inr::RendererOptions Cached()
 {
   inr::RendererOptions options;
   options.threads = Threads;
+  options.inference = inr::InferencePrecision::SplitBFloat16; // where there are tile registers
   options.cache.bytes = std::int64_t{4} << 30;
+  return options;
+}
+
+/// With nothing rounded that the network computes with, as with an ErrorTolerance.
+inline inr::RendererOptions Unrounded()
+{
+  inr::RendererOptions options = Cached();
+  options.inference = inr::InferencePrecision::Float32;
   return options;
 }
 

@@ -90,13 +90,13 @@ class Scene
 {
 public:
   Scene(const inr::ModelPointer& model, const Look& look, std::string name, int pixels)
-      : Name(std::move(name)), Model(model), Function(look.function), Renderer(model, Cached()),
+      : Name(std::move(name)), Model(model), Function(look.function), Renderer(model, Unrounded()),
         Picture(View(model->volume))
   {
     this->Picture.width = this->Picture.height = pixels;
     this->Picture.sampleDistance = inr::Frame{}.sampleDistance;
     this->Renderer.setTransferFunction(look.function);
-    inr::RendererOptions exact = Cached();
+    inr::RendererOptions exact = Unrounded();
     exact.cache.precision = inr::CachePrecision::Float32;
     inr::Renderer reference(model, exact);
     reference.setTransferFunction(look.function);
@@ -145,7 +145,7 @@ private:
   /// With nothing decoded or measured before: of a model of its own, whose bricks nobody keeps.
   void reportFirst(double tolerance)
   {
-    inr::Renderer renderer(std::make_shared<inr::Model>(*this->Model), Cached());
+    inr::Renderer renderer(std::make_shared<inr::Model>(*this->Model), Unrounded());
     renderer.setTransferFunction(this->Function);
     inr::Frame frame = this->Picture;
     frame.errorTolerance = tolerance;

@@ -64,7 +64,7 @@ void CompareVolumes(const inr::ModelPointer& pointer, const inr::VolumeData& vox
 
 /// The model's voxels from rounded numbers, against those in float32.
 void CompareInference(const inr::ModelPointer& model, const std::string& name,
-                      const Rounded& numbers)
+                      const Numbers& numbers)
 {
   const inr::Arena arena(Threads);
   const std::vector<float> exact = Decoded(model, arena);
@@ -158,8 +158,9 @@ void Run(char* const* arguments, const std::string& mode, const std::string& vie
   const inr::ModelPointer usual = usualModel != nullptr ? inr::ReadModel(usualModel) : model;
   const Subject subject = SubjectOf(model, usual, volume.data());
   if (mode == "inference") {
-    for (const Rounded& numbers : RoundedNumbers()) {
-      CompareInference(model, name, numbers);
+    CompareInference(model, name, {"bfloat16", inr::InferencePrecision::BFloat16});
+    if (inr::IsTileKernelUsable()) {
+      CompareInference(model, name, {"split bfloat16", inr::InferencePrecision::SplitBFloat16});
     }
   }
   for (const Scene& scene : Scenes(subject.model->volume, name, view)) {

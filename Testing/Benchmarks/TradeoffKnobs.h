@@ -146,17 +146,18 @@ inline std::vector<Point> PictureKnobs(const inr::Frame& frame)
   return knobs.points;
 }
 
-/// Rounded numbers that the network may compute with here.
-struct Rounded
+/// What the network may compute with.
+struct Numbers
 {
   std::string name;
   inr::InferencePrecision precision;
 };
-inline std::vector<Rounded> RoundedNumbers()
+/// Other than by default, which differs where there are tile registers.
+inline std::vector<Numbers> OtherNumbers()
 {
-  std::vector<Rounded> all = {{"bfloat16", inr::InferencePrecision::BFloat16}};
+  std::vector<Numbers> all = {{"bfloat16", inr::InferencePrecision::BFloat16}};
   if (inr::IsTileKernelUsable()) {
-    all.push_back({"split bfloat16", inr::InferencePrecision::SplitBFloat16});
+    all.push_back({"float32", inr::InferencePrecision::Float32});
   }
   return all;
 }
@@ -165,7 +166,7 @@ inline std::vector<Rounded> RoundedNumbers()
 inline std::vector<Point> InferenceKnob(const inr::Frame& frame)
 {
   SingleKnobs knobs(frame);
-  for (const Rounded& numbers : RoundedNumbers()) {
+  for (const Numbers& numbers : OtherNumbers()) {
     for (const bool cached : {true, false}) {
       knobs.add("InferencePrecision", numbers.name + (cached ? "" : ", network only"), cached,
                 [&](Point& point) {
@@ -183,8 +184,10 @@ inline std::vector<Point> ToleranceKnob(const inr::Frame& frame)
 {
   SingleKnobs knobs(frame);
   for (const double tolerance : {0.0, 1.0, 4.0, 16.0}) {
-    knobs.add("ErrorTolerance", Text(tolerance), true,
-              [&](Point& point) { point.frame.errorTolerance = tolerance; });
+    knobs.add("ErrorTolerance", Text(tolerance), true, [&](Point& point) {
+      point.options = Unrounded();
+      point.frame.errorTolerance = tolerance;
+    });
   }
   return knobs.points;
 }

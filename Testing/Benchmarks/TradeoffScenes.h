@@ -152,14 +152,14 @@ inline inr::Image Picture(inr::Renderer renderer, const Scene& scene, const inr:
 
 inline inr::RendererOptions Exact()
 {
-  inr::RendererOptions options = Cached();
+  inr::RendererOptions options = Unrounded();
   options.cache.precision = inr::CachePrecision::Float32;
   return options;
 }
 
 inline inr::RendererOptions Uncached()
 {
-  inr::RendererOptions options = Cached();
+  inr::RendererOptions options = Unrounded();
   options.cached = false;
   return options;
 }
