@@ -284,9 +284,9 @@ public:
   /**
    * What the CPU's network computes with, one of InferencePrecisions. BFLOAT16 rounds weights and
    * what goes into a layer to 8 bits: decoding is up to 1.7 times as fast, with tile registers
-   * (AMX) up to 4.5 times, and off by up to 0.01 of the value range. AUTOMATIC, the default,
+   * (AMX) up to 4.6 times, and off by up to 0.01 of the value range. AUTOMATIC, the default,
    * rounds to 16 bits where there are tile registers and the cache has 16 bits or less for a value:
-   * up to 2.5 times as fast as SINGLE, and off by less than what the cache rounds. Both count where
+   * up to 2.7 times as fast as SINGLE, and off by less than what the cache rounds. Both count where
    * no GPU decodes; else, and with an ErrorTolerance, all is as with SINGLE, as AUTOMATIC is
    * elsewhere. A change empties the cache.
    */
