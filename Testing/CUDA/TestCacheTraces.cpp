@@ -117,7 +117,12 @@ TEST_P(CacheTrace, IsThatOfASimpleCache)
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, CacheTrace,
-                         testing::Combine(testing::ValuesIn(AllPrecisions), testing::Range(0, 4)));
+                         testing::Combine(testing::ValuesIn(AllPrecisions), testing::Range(0, 4)),
+                         [](const auto& info) {
+                           const std::int64_t bytes = BytesPerVoxel(std::get<0>(info.param));
+                           return std::to_string(8 * bytes) + "Bits" +
+                                  std::to_string(std::get<1>(info.param));
+                         });
 
 /// Whether what infers beside the frames does so as late as can be, or at once.
 class CacheBesideFrames : public testing::TestWithParam<std::tuple<bool, int>>
@@ -202,6 +207,10 @@ TEST_P(CacheBesideFrames, IsThatOfASimpleCache)
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, CacheBesideFrames,
-                         testing::Combine(testing::Bool(), testing::Range(0, 4)));
+                         testing::Combine(testing::Bool(), testing::Range(0, 4)),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param) ? "Late" : "AtOnce") +
+                                  std::to_string(std::get<1>(info.param));
+                         });
 
 } // namespace

@@ -222,6 +222,12 @@ TEST_P(DeviceCacheOfModel, HoldsWhatItGives)
 INSTANTIATE_TEST_SUITE_P(Kernels, DeviceCacheOfModel,
                          testing::Combine(testing::Values(inr::cuda::Precision::Half,
                                                           inr::cuda::Precision::Float32),
-                                          testing::Bool()));
+                                          testing::Bool()),
+                         [](const auto& info) {
+                           const bool half = std::get<0>(info.param) == inr::cuda::Precision::Half;
+                           const bool overflows = std::get<1>(info.param);
+                           return std::string(half ? "Half" : "Float32") +
+                                  (overflows ? "ThatOverflows" : "");
+                         });
 
 } // namespace

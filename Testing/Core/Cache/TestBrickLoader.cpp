@@ -88,7 +88,8 @@ class BrickLoaderTest : public testing::TestWithParam<int>
 protected:
   std::shared_ptr<CountingSource> Source = std::make_shared<CountingSource>();
 };
-INSTANTIATE_TEST_SUITE_P(Threads, BrickLoaderTest, testing::Values(0, 1, 3));
+INSTANTIATE_TEST_SUITE_P(Threads, BrickLoaderTest, testing::Values(0, 1, 3),
+                         testing::PrintToStringParamName());
 
 /// Whether it comes true within a time that even a busy machine keeps.
 template <typename Condition> bool Soon(const Condition& condition)

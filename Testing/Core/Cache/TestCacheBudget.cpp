@@ -220,7 +220,8 @@ protected:
   std::map<inr::BrickKey, std::uint64_t> Uses[3]; ///< of what is mapped
   std::uint64_t Counter = 0;
 };
-INSTANTIATE_TEST_SUITE_P(Seeds, CacheBudgetTrace, testing::Values(1, 2, 3, 4, 5));
+INSTANTIATE_TEST_SUITE_P(Seeds, CacheBudgetTrace, testing::Values(1, 2, 3, 4, 5),
+                         testing::PrintToStringParamName());
 
 TEST_P(CacheBudgetTrace, TheLeastRecentlyUsedBricksOfAllStoresGo)
 {

@@ -120,6 +120,7 @@ TEST_P(Mutations, OfLengths)
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(PlainAndCompact, Mutations, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(PlainAndCompact, Mutations, testing::Bool(),
+                         testing::PrintToStringParamName());
 
 } // namespace

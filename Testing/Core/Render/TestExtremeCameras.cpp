@@ -144,6 +144,8 @@ glm::dvec2 Truth(const View& view, double sigma, int x, int y)
   return {value * (1 - passes) + slope * ((1 - passes) / sigma - length * passes), 1 - passes};
 }
 
+void PrintTo(const View& view, std::ostream* stream) { *stream << view.name; }
+
 class ExtremeCameras : public testing::TestWithParam<View>
 {
 protected:

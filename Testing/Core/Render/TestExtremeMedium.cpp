@@ -19,6 +19,12 @@ constexpr double Last = 32.5 / 33;
 
 enum class Way { Network, Cache, ShadedNetwork, ShadedCache };
 
+void PrintTo(Way way, std::ostream* stream)
+{
+  const char* const names[] = {"Network", "Cache", "ShadedNetwork", "ShadedCache"};
+  *stream << names[static_cast<int>(way)];
+}
+
 class ExtremeMedium : public testing::TestWithParam<Way>
 {
 protected:
@@ -191,6 +197,7 @@ TEST_P(ExtremeMedium, DoesNotDependOnTheStep)
 
 INSTANTIATE_TEST_SUITE_P(Ways, ExtremeMedium,
                          testing::Values(Way::Network, Way::Cache, Way::ShadedNetwork,
-                                         Way::ShadedCache));
+                                         Way::ShadedCache),
+                         testing::PrintToStringParamName());
 
 } // namespace

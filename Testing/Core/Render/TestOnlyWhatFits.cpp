@@ -156,6 +156,10 @@ TEST_P(OnlyWhatFits, TakesWhatAnotherViewLeaves)
 
 INSTANTIATE_TEST_SUITE_P(Modes, OnlyWhatFits,
                          testing::Values(inr::RenderMode::RayMarching,
-                                         inr::RenderMode::PathTracing));
+                                         inr::RenderMode::PathTracing),
+                         [](const auto& info) {
+                           const bool marches = info.param == inr::RenderMode::RayMarching;
+                           return std::string(marches ? "RayMarching" : "PathTracing");
+                         });
 
 } // namespace

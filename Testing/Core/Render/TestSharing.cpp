@@ -8,8 +8,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 
 namespace {
@@ -182,7 +184,12 @@ protected:
     }
   }
 };
-INSTANTIATE_TEST_SUITE_P(TimeLimits, SharingInTurns, testing::Values(0, 1e-9, 0.002));
+INSTANTIATE_TEST_SUITE_P(TimeLimits, SharingInTurns, testing::Values(0, 1e-9, 0.002),
+                         [](const auto& info) {
+                           return info.param > 0
+                                      ? std::to_string(std::lround(info.param * 1e9)) + "ns"
+                                      : std::string("None");
+                         });
 
 TEST_P(SharingInTurns, EachHasItsPictureWhereBothFit) { this->alternate({}, Enough); }
 

@@ -137,6 +137,8 @@ struct Fault
   std::function<void(FakeTrainingDevice&)> bring;
 };
 
+void PrintTo(const Fault& fault, std::ostream* stream) { *stream << fault.name; }
+
 void TellWrong(FakeTrainingDevice& device, std::size_t begin, std::size_t end)
 {
   device.wrongBegin = begin;

@@ -15,6 +15,11 @@ struct Case
   std::int64_t mostVoxels;
 };
 
+void PrintTo(const Case& shape, std::ostream* stream)
+{
+  *stream << shape.dims.x << "x" << shape.dims.y << "x" << shape.dims.z;
+}
+
 class Blocks : public testing::TestWithParam<Case>
 {
 public:
@@ -59,11 +64,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Blocks,
                          testing::Values(Case{{64, 64, 64}, 20000}, Case{{37, 23, 11}, 1500},
                                          Case{{1, 301, 1}, 40}, Case{{1031, 1, 1}, 100},
                                          Case{{5, 3, 2}, 1000}, Case{{129, 65, 33}, 9000}),
-                         [](const auto& info) {
-                           const glm::i64vec3 d = info.param.dims;
-                           return std::to_string(d.x) + "x" + std::to_string(d.y) + "x" +
-                                  std::to_string(d.z);
-                         });
+                         testing::PrintToStringParamName());
 
 // What lies together in a file is read together, and little is read twice.
 TEST(BlockGrid, KeepsRowsWhole)
