@@ -61,6 +61,33 @@ inline void Activate(Activation activation, float* values, std::int64_t count)
   }
 }
 
+/// values <- activation(sums). Any but the first two goes through memory as a whole: were sums live
+/// across its calls, they would be in memory all the time, also while they are summed up.
+template <int Rows, int Groups>
+inline void ActivateTile(Activation activation, const Floats (&sums)[Rows][Groups],
+                         Floats (&values)[Rows][Groups])
+{
+  constexpr int size = Rows * Groups;
+  if (activation == Activation::ReLU || activation == Activation::None) {
+    const Floats lowest = Spread(activation == Activation::ReLU ? 0.0f : -__builtin_inff());
+#pragma GCC unroll 16
+    for (int k = 0; k < size; ++k) { // a NaN stays one
+      values[k / Groups][k % Groups] = Maximum(lowest, sums[k / Groups][k % Groups]);
+    }
+    return;
+  }
+  float activated[size * LaneCount];
+#pragma GCC unroll 16
+  for (int k = 0; k < size; ++k) {
+    Store(activated + k * LaneCount, sums[k / Groups][k % Groups]);
+  }
+  Activate(activation, activated, size * LaneCount);
+#pragma GCC unroll 16
+  for (int k = 0; k < size; ++k) {
+    values[k / Groups][k % Groups] = Load(activated + k * LaneCount);
+  }
+}
+
 /// Derivative at x, where the activation gave h.
 inline float ActivationSlope(Activation activation, float x, float h)
 {

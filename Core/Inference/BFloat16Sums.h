@@ -72,32 +72,13 @@ inline void AppendPairs(const Floats (&values)[Rows][Groups], int row, int rows,
   }
 }
 
-/// The same after an activation. Any but the first two goes through memory as a whole: were sums
-/// live across its calls, they would be in memory all the time.
+/// The same after an activation.
 template <int Rows, int Groups>
 inline void AppendTile(Activation activation, const Floats (&sums)[Rows][Groups], int row, int rows,
                        Strip& out)
 {
-  constexpr int size = Rows * Groups;
   Floats values[Rows][Groups];
-  if (activation == Activation::ReLU || activation == Activation::None) {
-    const Floats lowest = Spread(activation == Activation::ReLU ? 0.0f : -__builtin_inff());
-#pragma GCC unroll 16
-    for (int k = 0; k < size; ++k) {
-      values[k / Groups][k % Groups] = Maximum(lowest, sums[k / Groups][k % Groups]);
-    }
-  } else {
-    float activated[size * LaneCount];
-#pragma GCC unroll 16
-    for (int k = 0; k < size; ++k) {
-      Store(activated + k * LaneCount, sums[k / Groups][k % Groups]);
-    }
-    Activate(activation, activated, size * LaneCount);
-#pragma GCC unroll 16
-    for (int k = 0; k < size; ++k) {
-      values[k / Groups][k % Groups] = Load(activated + k * LaneCount);
-    }
-  }
+  ActivateTile(activation, sums, values);
   AppendPairs(values, row, rows, out);
 }
 

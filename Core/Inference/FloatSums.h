@@ -47,37 +47,31 @@ inline void SumTile(const LayerView& layer, int row, const Strip& in, Floats (&s
   }
 }
 
-/// Activates one row of results and appends it to `out`, unless it is zero.
-template <int Groups>
-inline void AppendRow(Activation activation, const Floats (&sums)[Groups], int row, Strip& out)
+/// Appends a row of inputs to `out`, unless it is zero.
+template <int Groups> inline void AppendRow(const Floats (&values)[Groups], int row, Strip& out)
 {
-  float* const values = out.values + out.count * StripSize;
+  float* const to = out.values + out.count * StripSize;
   UInts bits{};
 #pragma GCC unroll 4
   for (int g = 0; g < Groups; ++g) {
-    // A NaN stays one.
-    const Floats kept = activation == Activation::ReLU ? Maximum(Floats{}, sums[g]) : sums[g];
-    Store(values + g * LaneCount, kept);
-    bits |= (UInts)kept;
-  }
-  bool zero = IsZero(bits);
-  if (activation != Activation::ReLU && activation != Activation::None) {
-    Activate(activation, values, Groups * LaneCount);
-    zero = false;
+    Store(to + g * LaneCount, values[g]);
+    bits |= (UInts)values[g];
   }
   out.from[out.count] = row * PanelRows;
-  out.count += zero ? 0 : 1;
+  out.count += IsZero(bits) ? 0 : 1;
 }
 
-/// The same with all rows of a tile, of `rows` of the layer.
+/// The same with all rows of a tile, of `rows` of the layer, after an activation.
 template <int Rows, int Groups>
 inline void AppendTile(Activation activation, const Floats (&sums)[Rows][Groups], int row, int rows,
                        Strip& out)
 {
+  Floats values[Rows][Groups];
+  ActivateTile(activation, sums, values);
 #pragma GCC unroll 8
   for (int r = 0; r < Rows; ++r) {
     if (row + r < rows) {
-      AppendRow<Groups>(activation, sums[r], row + r, out);
+      AppendRow<Groups>(values[r], row + r, out);
     }
   }
 }
