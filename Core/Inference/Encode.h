@@ -84,21 +84,67 @@ inline UInts WrapIndex(const LevelView& level, UInts index)
   return index;
 }
 
-inline UInts CornerIndex(const LevelView& level, UInts x, UInts y, UInts z)
+// A corner's index before it is wrapped is made of a part for each axis: their sum in a lattice
+// that is stored as a whole, else XOR of them (but for RandomHash).
+
+inline bool IsRandom(const LevelView& level) { return level.hashed && level.randomHash; }
+
+inline std::uint32_t FactorOf(const LevelView& level, int axis)
 {
-  if (!level.hashed) {
-    return x * SpreadInt(level.strides[0]) + y * SpreadInt(level.strides[1]) +
-           z * SpreadInt(level.strides[2]);
-  }
-  if (!level.randomHash) {
-    return (x * SpreadInt(level.primes[0])) ^ (y * SpreadInt(level.primes[1])) ^
-           (z * SpreadInt(level.primes[2]));
-  }
-  UInts hash{};
+  return level.hashed ? level.primes[axis] : level.strides[axis];
+}
+
+template <class T> inline T JoinParts(const LevelView& level, T a, T b)
+{
+  return level.hashed ? a ^ b : a + b;
+}
+
+/// RandomHash. Not inlined: it calls what makes the compiler keep everything around in memory.
+__attribute__((noinline)) inline void RandomEntries(const LevelView& level, const std::uint32_t* x,
+                                                    const std::uint32_t* y, const std::uint32_t* z,
+                                                    std::uint32_t* entries)
+{
   for (int k = 0; k < LaneCount; ++k) {
-    hash[k] = RandomHashOfCorner(x[k], y[k], z[k]);
+    entries[k] = RandomHashOfCorner(x[k], y[k], z[k]) % level.entries;
   }
-  return hash;
+}
+
+inline UInts RandomEntriesOf(const LevelView& level, UInts x, UInts y, UInts z)
+{
+  std::uint32_t at[3][LaneCount];
+  std::memcpy(at[0], &x, sizeof(x));
+  std::memcpy(at[1], &y, sizeof(y));
+  std::memcpy(at[2], &z, sizeof(z));
+  std::uint32_t entries[LaneCount];
+  RandomEntries(level, at[0], at[1], at[2], entries);
+  UInts all;
+  std::memcpy(&all, entries, sizeof(all));
+  return all;
+}
+
+/// Table entries of the eight corners from the lower one (cells[0], cells[1], cells[2]) on.
+inline void FindEntries(const LevelView& level, const UInts (&cells)[3], Corners& corners)
+{
+  UInts parts[3][2];
+  for (int axis = 0; axis < 3; ++axis) {
+    const UInts factor = SpreadInt(FactorOf(level, axis));
+    parts[axis][0] = cells[axis] * factor;
+    parts[axis][1] = parts[axis][0] + factor;
+  }
+  for (unsigned c = 0; c < 8; ++c) {
+    const UInts inLayer = JoinParts(level, parts[0][c & 1u], parts[1][(c >> 1) & 1u]);
+    const UInts entry = WrapIndex(level, JoinParts(level, inLayer, parts[2][c >> 2]));
+    std::memcpy(corners.entry[c], &entry, sizeof(entry));
+  }
+}
+
+inline void FindRandomEntries(const LevelView& level, const UInts (&cells)[3], Corners& corners)
+{
+  for (unsigned c = 0; c < 8; ++c) {
+    const UInts entry = RandomEntriesOf(level, cells[0] + (c & 1u), cells[1] + ((c >> 1) & 1u),
+                                        cells[2] + (c >> 2));
+    std::memcpy(corners.entry[c], &entry, sizeof(entry));
+  }
 }
 
 inline void FindCorners(const LevelView& level, GridInterpolation interpolation,
@@ -112,11 +158,10 @@ inline void FindCorners(const LevelView& level, GridInterpolation interpolation,
     const Floats weight = ((c & 1u) != 0 ? x.weight : one - x.weight) *
                           ((c & 2u) != 0 ? y.weight : one - y.weight) *
                           ((c & 4u) != 0 ? z.weight : one - z.weight);
-    const UInts entry = WrapIndex(
-        level, CornerIndex(level, x.cell + (c & 1u), y.cell + ((c >> 1) & 1u), z.cell + (c >> 2)));
-    std::memcpy(corners.entry[c], &entry, sizeof(entry));
     Store(corners.weight[c], weight);
   }
+  const UInts cells[3] = {x.cell, y.cell, z.cell};
+  IsRandom(level) ? FindRandomEntries(level, cells, corners) : FindEntries(level, cells, corners);
 }
 
 /// The features of one table entry. (An alias template would silently lose the attribute.)

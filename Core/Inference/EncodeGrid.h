@@ -26,6 +26,7 @@ struct LevelPiece
   std::int32_t lower[PieceWidth]; ///< each sample's lower corner, in `columns`
   float weight[PieceWidth];
   std::uint32_t columns[ColumnCapacity + LaneCount]; ///< x of the corners, rising
+  std::uint32_t parts[ColumnCapacity + LaneCount];   ///< of their indices
   int columnCount;
   std::uint32_t z; ///< lower corner of the layer
   float weightZ;
@@ -84,6 +85,23 @@ inline void LocatePiece(const LevelView& level, GridInterpolation interpolation,
     piece.lower[k] = lower;
     piece.weight[k] = weights[k];
   }
+  for (int k = 0; k < piece.columnCount; ++k) {
+    piece.parts[k] = piece.columns[k] * FactorOf(level, 0);
+  }
+}
+
+/// Table entries of LaneCount of the piece's columns, from the `first` on, at y and z.
+inline UInts EntriesOfColumns(const LevelView& level, const LevelPiece& piece, int first,
+                              std::uint32_t y, std::uint32_t z)
+{
+  UInts x;
+  if (IsRandom(level)) {
+    std::memcpy(&x, piece.columns + first, sizeof(x));
+    return RandomEntriesOf(level, x, SpreadInt(y), SpreadInt(z));
+  }
+  std::memcpy(&x, piece.parts + first, sizeof(x));
+  const std::uint32_t rest = JoinParts(level, y * FactorOf(level, 1), z * FactorOf(level, 2));
+  return WrapIndex(level, JoinParts(level, x, SpreadInt(rest)));
 }
 
 /// Moves a piece to the layer at z, the first coordinate.
@@ -103,12 +121,9 @@ template <int Features>
 inline void FetchCorners(const LevelView& level, const float* table, std::uint32_t y,
                          const LevelPiece& piece, Row<Features>* corners)
 {
-  const UInts spreadY = SpreadInt(y);
   for (int first = 0; first < piece.columnCount; first += LaneCount) {
-    UInts x;
-    std::memcpy(&x, piece.columns + first, sizeof(x));
-    const UInts lower = WrapIndex(level, CornerIndex(level, x, spreadY, SpreadInt(piece.z)));
-    const UInts upper = WrapIndex(level, CornerIndex(level, x, spreadY, SpreadInt(piece.z + 1)));
+    const UInts lower = EntriesOfColumns(level, piece, first, y, piece.z);
+    const UInts upper = EntriesOfColumns(level, piece, first, y, piece.z + 1);
     std::uint32_t entries[2][LaneCount];
     std::memcpy(entries[0], &lower, sizeof(lower));
     std::memcpy(entries[1], &upper, sizeof(upper));

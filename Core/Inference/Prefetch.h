@@ -103,12 +103,9 @@ inline void PrefetchRows(const ModelView& model, int level, const Coordinates& y
     }
     done = at;
     for (int first = 0; first < piece.columnCount; first += LaneCount) {
-      UInts x;
-      std::memcpy(&x, piece.columns + first, sizeof(x));
       for (std::uint32_t z = piece.z; z <= piece.z + 1; ++z) {
         PrefetchEntries(model.grid + view.offset, model.features,
-                        WrapIndex(view, CornerIndex(view, x, SpreadInt(at), SpreadInt(z))),
-                        piece.columnCount - first);
+                        EntriesOfColumns(view, piece, first, at, z), piece.columnCount - first);
       }
     }
   }
