@@ -6,6 +6,7 @@
 #include "Core/Inference/InferenceKernels.h"
 #include "Core/Inference/OverflowWatch.h"
 #include "Core/Inference/WideEvaluation.h"
+#include "Core/Random.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,17 +62,56 @@ LatticeAxis ViewOf(const std::vector<float>& axis)
   return {axis.data(), static_cast<std::int64_t>(axis.size())};
 }
 
-/// Of points [begin, end) along an axis.
+/// Whether values are off, in the root of the mean square, by no more than what they are when they
+/// are rounded to 16 bits of [0, 1].
+bool RoundsLessThan16Bits(const Evaluator& rounded, const Evaluator& exact)
+{
+  constexpr std::size_t count = 2048;
+  constexpr double step = 1.0 / 65535;
+  std::vector<glm::vec3> positions(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    positions[k] = {RandomUnit(1, 3 * k), RandomUnit(1, 3 * k + 1), RandomUnit(1, 3 * k + 2)};
+  }
+  std::vector<float> values[2] = {std::vector<float>(count), std::vector<float>(count)};
+  rounded.evaluate(positions.data(), count, values[0].data());
+  exact.evaluate(positions.data(), count, values[1].data());
+  double squares = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double error = static_cast<double>(values[0][k]) - static_cast<double>(values[1][k]);
+    squares += error * error;
+  }
+  return squares / count <= step * step / 12.0;
+}
+
+/// Of points [begin, end) along an axis, clamped to [0, 1]; a NaN is 0.
 std::vector<float> CoordinatesOf(const Lattice& lattice, int axis, std::int64_t begin,
                                  std::int64_t end)
 {
   std::vector<float> coordinates;
   coordinates.reserve(static_cast<std::size_t>(end - begin));
   for (std::int64_t k = begin; k < end; ++k) {
-    coordinates.push_back(
-        static_cast<float>(lattice.first[axis] + static_cast<double>(k) * lattice.step[axis]));
+    const double u = lattice.first[axis] + static_cast<double>(k) * lattice.step[axis];
+    coordinates.push_back(static_cast<float>(u > 0 ? std::min(u, 1.0) : 0.0));
   }
   return coordinates;
+}
+
+/// Of a part of a lattice, from `begin` up to `end`, into the lattice's `values`.
+void EvaluatePart(const Evaluator& evaluator, const Lattice& lattice, const glm::i64vec3& begin,
+                  const glm::i64vec3& end, float* values)
+{
+  const glm::i64vec3 size = end - begin;
+  const std::vector<float> axes[3] = {CoordinatesOf(lattice, 0, begin.x, end.x),
+                                      CoordinatesOf(lattice, 1, begin.y, end.y),
+                                      CoordinatesOf(lattice, 2, begin.z, end.z)};
+  std::vector<float> part(static_cast<std::size_t>(size.x * size.y * size.z));
+  evaluator.evaluateGrid(axes, part.data());
+  for (std::int64_t row = 0; row < size.y * size.z; ++row) {
+    const std::int64_t y = begin.y + row % size.y;
+    const std::int64_t z = begin.z + row / size.y;
+    std::copy_n(part.data() + row * size.x, size.x,
+                values + (z * lattice.points.y + y) * lattice.points.x + begin.x);
+  }
 }
 
 class KernelEvaluator : public Evaluator
@@ -117,6 +157,7 @@ public:
   }
 
   std::string kernel() const override { return this->Kernels.name; }
+  bool splits() const { return this->Kernels.layout == WeightLayout::SplitTiles; }
 
 private:
   /// Values of `count` positions some of which overflow: halves them until it is known which do, so
@@ -192,10 +233,18 @@ void Evaluator::evaluateGrid(const std::vector<float> (&axes)[3], float* values)
 std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const std::string& kernel,
                                                InferencePrecision precision)
 {
-  return std::make_shared<KernelEvaluator>(std::move(model), [&](const ModelView& view) {
-    const bool can = precision == InferencePrecision::Float32 || StaysInRange(view);
-    return ChooseKernels(kernel, can ? precision : InferencePrecision::Float32);
-  });
+  const auto make = [&](InferencePrecision wanted) {
+    return std::make_shared<const KernelEvaluator>(model, [&](const ModelView& view) {
+      const bool can = wanted == InferencePrecision::Float32 || StaysInRange(view);
+      return ChooseKernels(kernel, can ? wanted : InferencePrecision::Float32);
+    });
+  };
+  auto evaluator = make(precision);
+  if (precision != InferencePrecision::SplitBFloat16 || !evaluator->splits()) {
+    return evaluator;
+  }
+  auto exact = make(InferencePrecision::Float32);
+  return RoundsLessThan16Bits(*evaluator, *exact) ? evaluator : exact;
 }
 
 std::shared_ptr<const Evaluator> MakeEvaluator(ModelPointer model, const InferenceKernels& kernels)
@@ -215,24 +264,20 @@ void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm:
 void EvaluateLattice(const Evaluator& evaluator, const Arena& arena, const Lattice& lattice,
                      float* values)
 {
+  constexpr std::int64_t longest = 512; // of a row: some more beside it share its corners
   const glm::i64vec3 points = lattice.points;
   if (points.x * points.y * points.z == 0) {
     return;
   }
-  // Tasks are boxes of whole rows, which lie in `values` as evaluateGrid writes them.
-  const std::int64_t rows = std::clamp<std::int64_t>(TaskSize / points.x, 1, points.y);
-  const std::int64_t layers =
-      rows < points.y ? 1 : std::clamp<std::int64_t>(TaskSize / (points.x * rows), 1, points.z);
-  const std::int64_t bands = (points.y + rows - 1) / rows; // to a layer
-  const std::int64_t slabs = (points.z + layers - 1) / layers;
-  const std::vector<float> x = CoordinatesOf(lattice, 0, 0, points.x);
-  arena.forEachBlock(bands * slabs, 1, [&](std::int64_t task, std::int64_t) {
-    const std::int64_t j = task % bands * rows;
-    const std::int64_t k = task / bands * layers;
-    const std::vector<float> axes[3] = {
-        x, CoordinatesOf(lattice, 1, j, std::min(j + rows, points.y)),
-        CoordinatesOf(lattice, 2, k, std::min(k + layers, points.z))};
-    evaluator.evaluateGrid(axes, values + (k * points.y + j) * points.x);
+  glm::i64vec3 size;
+  size.x = std::min(points.x, longest);
+  size.y = std::clamp<std::int64_t>(TaskSize / size.x, 1, points.y);
+  size.z = std::clamp<std::int64_t>(TaskSize / (size.x * size.y), 1, points.z);
+  const glm::i64vec3 parts = (points + size - std::int64_t{1}) / size;
+  arena.forEachBlock(parts.x * parts.y * parts.z, 1, [&](std::int64_t task, std::int64_t) {
+    const glm::i64vec3 part(task % parts.x, task / parts.x % parts.y, task / (parts.x * parts.y));
+    const glm::i64vec3 begin = part * size;
+    EvaluatePart(evaluator, lattice, begin, glm::min(begin + size, points), values);
   });
 }
 

@@ -50,10 +50,12 @@ public:
 
 /// With BFloat16, weights and what goes into a layer are off by up to 2^-8 of themselves, which
 /// adds at most (2^-7 + 2^-16) of the sum of the products' magnitudes to what a sum loses, and
-/// numbers below 2^-126 count as zero, which loses at most 2^-30 of y. With SplitBFloat16 it is
-/// 2^-16 of themselves and (3 * 2^-16 + 2^-32) of that sum, which is of three products for each.
-/// Where the kernel cannot do that here, or the model's numbers might leave float's range, it is
-/// Float32.
+/// numbers below 2^-126 count as zero, which loses at most 2^-30 of y. With SplitBFloat16 they are
+/// off by up to 2^-16 of themselves, which adds at most (3 * 2^-16 + 2^-32) of the products'
+/// magnitudes, and each product becomes three: 3n of them in the bound above. Where the kernel
+/// cannot do that here, or the model's numbers might leave float's range, it is Float32; so it is
+/// instead of SplitBFloat16 where that is off, in the root of the mean square at 2048 points, by
+/// more than what values are when they are rounded to 16 bits.
 ///
 /// The fastest kernel that this processor runs; `kernel` asks for one by name ("avx512", "avx2",
 /// "baseline", or "amx" for tile registers; for tests) and Error(Unsupported) says that
@@ -73,8 +75,9 @@ void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm:
                       std::int64_t count, float* values);
 
 /// Values at the points of a regular lattice: point (i, j, k) of `points` sits at
-/// u = first + (i, j, k) * step, which are in [0, 1]; x fastest in `values`. A value is that of
-/// evaluateGrid, whatever the lattice around it.
+/// u = first + (i, j, k) * step, clamped to [0, 1], and steps are not negative; x fastest in
+/// `values`. A value is that of evaluateGrid, whatever the lattice around it. Fewer than eight
+/// points along x cost as much as eight.
 struct Lattice
 {
   glm::dvec3 first{0.0};

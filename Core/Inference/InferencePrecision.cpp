@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Inference/InferencePrecision.h"
 
+#include "Core/Inference/InferenceKernels.h"
 #include "Core/Inference/InstructionSet.h"
 #include "Core/Inference/ModelView.h"
 
@@ -92,8 +93,9 @@ bool IsUsable(InferencePrecision precision, InstructionSet set)
     return true;
   }
 #ifdef INR_X86_KERNELS
-  return precision == InferencePrecision::BFloat16 && set == InstructionSet::Avx512 &&
-         IsUsable(set) && __builtin_cpu_supports("avx512bf16");
+  const bool multiplies =
+      set == InstructionSet::Avx512 && IsUsable(set) && __builtin_cpu_supports("avx512bf16");
+  return multiplies && (precision == InferencePrecision::BFloat16 || IsTileKernelUsable());
 #else
   return false;
 #endif

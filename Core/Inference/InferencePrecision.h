@@ -16,7 +16,7 @@ enum class InferencePrecision {
 };
 
 /// Whether this build has kernels for `set` that compute so, and this processor runs them. Float32
-/// always is; SplitBFloat16 pays with tile registers only, which are no instruction set's.
+/// always is; SplitBFloat16 pays with tile registers only, which go with AVX-512.
 bool IsUsable(InferencePrecision precision, InstructionSet set);
 
 /// Whether no number that the network computes can come near either end of float's range, wherever

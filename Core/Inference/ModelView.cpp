@@ -76,28 +76,23 @@ std::uint32_t BFloat16BitsOf(float value)
   return (bits + 0x7fffu + (bits >> 16 & 1u)) >> 16;
 }
 
-/// What a number that is rounded `part` times, each time what the last one left, is then.
-std::uint32_t BFloat16BitsOf(float value, std::size_t part)
+/// What rounding to bfloat16 takes from a number.
+float RestOf(float value)
 {
-  std::uint32_t bits = BFloat16BitsOf(value);
-  for (; part > 0; --part) {
-    const std::uint32_t rounded = bits << 16;
-    float subtracted;
-    std::memcpy(&subtracted, &rounded, sizeof(subtracted));
-    value -= subtracted;
-    bits = BFloat16BitsOf(value);
-  }
-  return bits;
+  const std::uint32_t bits = BFloat16BitsOf(value) << 16;
+  float rounded;
+  std::memcpy(&rounded, &bits, sizeof(rounded));
+  return value - rounded;
 }
 
-/// Weights of a row's columns 2 * pair and the next.
-std::uint32_t PairOf(const LayerView& layer, std::size_t row, std::size_t pair,
-                     std::size_t part = 0)
+/// Weights of a row's columns 2 * pair and the next, or what rounding takes from them.
+std::uint32_t PairOf(const LayerView& layer, std::size_t row, std::size_t pair, bool rests = false)
 {
   const auto columns = static_cast<std::size_t>(layer.columns);
   const float* const weights = layer.weights + row * columns + 2 * pair;
   const float second = 2 * pair + 1 < columns ? weights[1] : 0.0f;
-  return BFloat16BitsOf(weights[0], part) | BFloat16BitsOf(second, part) << 16;
+  return rests ? BFloat16BitsOf(RestOf(weights[0])) | BFloat16BitsOf(RestOf(second)) << 16
+               : BFloat16BitsOf(weights[0]) | BFloat16BitsOf(second) << 16;
 }
 
 std::size_t PairCount(const LayerView& layer)
@@ -154,7 +149,7 @@ std::vector<PackedNetwork::Line> PackedNetwork::TilesOf(const LayerView& layer, 
     for (std::size_t pair = 0; pair < PairCount(layer); ++pair) {
       for (std::size_t part = 0; part < parts; ++part) {
         const std::size_t tile = (row / size * tiles + pair / size) * parts + part;
-        lines[tile * size + row % size].pairs[pair % size] = PairOf(layer, row, pair, part);
+        lines[tile * size + row % size].pairs[pair % size] = PairOf(layer, row, pair, part == 1);
       }
     }
   }

@@ -94,6 +94,8 @@ inline void RunStrip(const ModelView& model, StripPair& strips, int samples, flo
     RunGroups<1>(model, strips.in, strips.out, y, between);
   } else if (StripGroups == 2 || samples <= 2 * LaneCount) {
     RunGroups<2>(model, strips.in, strips.out, y, between);
+  } else if (StripGroups == 3 || samples <= 3 * LaneCount) {
+    RunGroups<3>(model, strips.in, strips.out, y, between);
   } else {
     RunGroups<StripGroups>(model, strips.in, strips.out, y, between);
   }

@@ -14,7 +14,7 @@ namespace INR_ISA {
 /// Registers hold a tile of results: rows of a layer by groups of LaneCount samples.
 #ifdef INR_TILES
 constexpr int StripRows = 32;
-constexpr int StripGroups = 4;
+constexpr int StripGroups = 4; // two register tiles in turn: see SumGroups
 #else
 constexpr int StripRows = LaneCount == 16 ? PanelRows : 4;
 static_assert(PanelRows % StripRows == 0, "a tile lies within a panel");

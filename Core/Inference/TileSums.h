@@ -207,10 +207,13 @@ template <int RowTiles, int Groups>
 inline void SumGroups(const std::uint32_t* weights, std::int64_t weightsOfRows, const Strip& in,
                       Floats (*sums)[Groups])
 {
-  constexpr int atOnce = Groups == 1 ? 1 : 2;
-  for (int first = 0; first < Groups; first += atOnce) {
-    MultiplyTiles<RowTiles, atOnce>(weights, weightsOfRows, in, first);
-    StoreSums<RowTiles, atOnce>(sums, first);
+  for (int first = 0; first + 2 <= Groups; first += 2) {
+    MultiplyTiles<RowTiles, 2>(weights, weightsOfRows, in, first);
+    StoreSums<RowTiles, 2>(sums, first);
+  }
+  if constexpr (Groups % 2 == 1) {
+    MultiplyTiles<RowTiles, 1>(weights, weightsOfRows, in, Groups - 1);
+    StoreSums<RowTiles, 1>(sums, Groups - 1);
   }
 }
 

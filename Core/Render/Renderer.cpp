@@ -31,12 +31,19 @@ Frame AsItIsDrawn(Frame frame, bool cached)
   return frame;
 }
 
+InferencePrecision PrecisionOf(const RendererOptions& options)
+{
+  if (options.accelerator) { // what that gives is compared with this, and may be replaced by it
+    return InferencePrecision::Float32;
+  }
+  const bool rounds = options.cached && options.cache.precision != CachePrecision::Float32;
+  return options.inference.value_or(rounds ? InferencePrecision::SplitBFloat16
+                                           : InferencePrecision::Float32);
+}
+
 std::shared_ptr<const Evaluator> FieldOf(const ModelPointer& model, const RendererOptions& options)
 {
-  // What an accelerator gives is compared with this, and may be replaced by it.
-  const bool alone = options.accelerator == nullptr;
-  return MakeEvaluator(model, options.kernel,
-                       alone ? options.inference : InferencePrecision::Float32);
+  return MakeEvaluator(model, options.kernel, PrecisionOf(options));
 }
 
 } // namespace

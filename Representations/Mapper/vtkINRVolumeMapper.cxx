@@ -25,23 +25,21 @@
 #include <cstdint>
 #include <exception>
 #include <new>
+#include <optional>
 
 vtkStandardNewMacro(vtkINRVolumeMapper);
 
 namespace {
 
-inr::InferencePrecision InferenceFor(int wanted, const inr::RendererOptions& options)
+std::optional<inr::InferencePrecision> InferenceFor(double tolerance, int wanted)
 {
-  const bool rounds =
-      options.cached && options.cache.precision != inr::CachePrecision::Float32; // more than that
-  switch (wanted) {
-  case vtkINRVolumeMapper::BFLOAT16:
-    return inr::InferencePrecision::BFloat16;
-  case vtkINRVolumeMapper::AUTOMATIC:
-    return rounds ? inr::InferencePrecision::SplitBFloat16 : inr::InferencePrecision::Float32;
-  default:
+  if (!(tolerance < 0) || wanted == vtkINRVolumeMapper::SINGLE) {
     return inr::InferencePrecision::Float32;
   }
+  if (wanted == vtkINRVolumeMapper::BFLOAT16) {
+    return inr::InferencePrecision::BFloat16;
+  }
+  return std::nullopt;
 }
 
 } // namespace
@@ -338,6 +336,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   inr::RendererOptions& renderer = settings.renderer;
   renderer.threads = this->NumberOfThreads;
   renderer.deterministic = this->Deterministic;
+  renderer.inference = InferenceFor(this->ErrorTolerance, this->InferencePrecision);
   renderer.cached = this->CacheMode != NETWORK_ONLY;
   renderer.cache.bytes = std::int64_t{this->CacheSize} << 20;
   renderer.cache.precision = static_cast<inr::CachePrecision>(this->CachePrecision);
@@ -346,9 +345,6 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   renderer.cache.ranking = this->PriorityRanking;
   renderer.cache.onlyWhatFits = this->CacheMode == CACHE_ONLY;
   renderer.cache.preloading = this->Preloading;
-  if (this->ErrorTolerance < 0) {
-    renderer.inference = InferenceFor(this->InferencePrecision, renderer);
-  }
   return settings;
 }
 

@@ -102,7 +102,7 @@ inline inr::RendererOptions Cached()
 {
   inr::RendererOptions options;
   options.threads = Threads;
-  options.inference = inr::InferencePrecision::SplitBFloat16; // where there are tile registers
+  options.inference.reset();
   options.cache.bytes = std::int64_t{4} << 30;
   return options;
 }

@@ -175,6 +175,6 @@ private:
   inr::Image UsualPicture;
   double UsualFilling = 0;
   std::int64_t Wanted = 0;
-  using Kind = std::tuple<bool, inr::CachePrecision, inr::InferencePrecision>;
+  using Kind = std::tuple<bool, inr::CachePrecision, std::optional<inr::InferencePrecision>>;
   std::map<Kind, inr::Renderer> Sharing;
 };

@@ -2,6 +2,7 @@
 //
 // Every kernel that computes with bfloat16 numbers against an evaluation in long double.
 #include "Core/Inference/ModelView.h"
+#include "Core/Inference/OverflowWatch.h"
 #include "Testing/Core/Inference/EvaluatePoints.h"
 #include "Testing/Core/Inference/RoundingKernels.h"
 #include "Testing/Core/Kernels.h"
@@ -54,7 +55,7 @@ std::vector<inr::Description> Descriptions()
 }
 
 /// Its sums stay about as large as its features.
-inr::ModelPointer CalmModel(const inr::Description& description)
+std::shared_ptr<inr::Model> CalmModel(const inr::Description& description)
 {
   auto model = RandomModel(description);
   const inr::Layout layout(description);
@@ -195,6 +196,23 @@ std::vector<float> ValuesAfter(unsigned char garbage, const inr::InferenceKernel
   return values;
 }
 
+/// An overflow of numbers that belong to no sample would have samples done again.
+TEST_F(BFloat16, NothingIsMadeOfWhatWasInMemory)
+{
+  constexpr unsigned char large = 0x71; // 1e30
+  for (const inr::Activation activation :
+       {inr::Activation::Exponential, inr::Activation::Squareplus}) {
+    const inr::ModelPointer model = CalmModel(Shape(4, 2, 40, 2, activation));
+    for (const std::int64_t count : {1, 16, 17, 32, 33, 40, 48, 49, 100}) {
+      for (const inr::InferenceKernels& kernels : this->Kernels) {
+        const inr::OverflowWatch watch;
+        ValuesAfter(large, kernels, *model, RandomPositions(count));
+        EXPECT_FALSE(watch.overflowed()) << kernels.name << " " << count;
+      }
+    }
+  }
+}
+
 TEST_F(BFloat16, ValuesDoNotDependOnWhatWasInMemory)
 {
   const std::vector<glm::vec3> positions = RandomPositions(39);
@@ -210,19 +228,34 @@ TEST_F(BFloat16, ValuesDoNotDependOnWhatWasInMemory)
 
 TEST_F(BFloat16, IsForModelsWhoseNumbersCannotOverflow)
 {
-  const auto rounded = [](const inr::ModelPointer& model) {
-    return inr::MakeEvaluator(model, "", inr::InferencePrecision::BFloat16);
-  };
-  EXPECT_EQ(rounded(RandomModel(SmallDescription()))->kernel(),
-            inr::IsTileKernelUsable() ? "amx bfloat16" : "avx512 bfloat16");
+  const bool tiles = inr::IsTileKernelUsable();
+  const std::pair<inr::InferencePrecision, std::string> kernels[] = {
+      {inr::InferencePrecision::BFloat16, tiles ? "amx bfloat16" : "avx512 bfloat16"},
+      {inr::InferencePrecision::SplitBFloat16, tiles ? "amx split bfloat16" : "avx512"}};
   auto huge = RandomModel(SmallDescription());
   for (float& parameter : huge->parameters) {
     parameter *= 1e12f;
   }
-  const auto evaluator = rounded(huge);
-  EXPECT_EQ(evaluator->kernel(), "avx512");
   const std::vector<glm::vec3> positions = RandomPositions(50);
-  EXPECT_EQ(Evaluate(*evaluator, positions), Evaluate(*inr::MakeEvaluator(huge), positions));
+  for (const auto& [precision, kernel] : kernels) {
+    const auto calm = CalmModel(SmallDescription());
+    EXPECT_EQ(inr::MakeEvaluator(calm, "", precision)->kernel(), kernel);
+    const auto evaluator = inr::MakeEvaluator(huge, "", precision);
+    EXPECT_EQ(evaluator->kernel(), "avx512");
+    EXPECT_EQ(Evaluate(*evaluator, positions), Evaluate(*inr::MakeEvaluator(huge), positions));
+  }
+}
+
+/// Of values of a thousand the same digits are off by more.
+TEST_F(BFloat16, OfTwoPartsIsForModelsThatItRoundsLittle)
+{
+  auto model = CalmModel(SmallDescription());
+  for (std::size_t k = inr::Layout(model->description).gridOffset; k < model->parameters.size();
+       ++k) {
+    model->parameters[k] *= 1000;
+  }
+  const auto evaluator = inr::MakeEvaluator(model, "", inr::InferencePrecision::SplitBFloat16);
+  EXPECT_EQ(evaluator->kernel(), "avx512");
 }
 
 TEST(InferencePrecision, IsFloatWhereTheKernelHasNoOther)

@@ -49,7 +49,7 @@ TEST(Evaluator, LatticeSitsAtVoxelCentres)
   EXPECT_NEAR(block[1 + 2 * (2 + 3 * 2)], Evaluate(*evaluator, {centre})[0], 1e-5);
 }
 
-/// Rows longer than a task, layers that take several, several layers to a task, and nothing.
+/// Rows that are cut, layers that take several tasks, several layers to a task, and nothing.
 TEST(Evaluator, LatticesAreTheSameHoweverTheyAreShared)
 {
   const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
@@ -71,6 +71,22 @@ TEST(Evaluator, LatticesAreTheSameHoweverTheyAreShared)
       std::vector<float> values(whole.size());
       inr::EvaluateLattice(*evaluator, inr::Arena(threads), lattice, values.data());
       EXPECT_EQ(values, whole) << points.x << " " << threads;
+    }
+  }
+}
+
+TEST(Evaluator, LatticesOutsideAreClamped)
+{
+  const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [first, step] : {std::pair{-3.0, 0.0}, {-0.5, 0.3}, {0.9, 5.0}, {nan, 0.1}}) {
+    std::vector<float> values(4);
+    inr::EvaluateLattice(*evaluator, inr::Arena(1), {{first, 0.5, 0.5}, {step, 0, 0}, {4, 1, 1}},
+                         values.data());
+    for (int k = 0; k < 4; ++k) {
+      const auto u = static_cast<float>(first + k * step);
+      const float expected = Evaluate(*evaluator, {{u, 0.5f, 0.5f}})[0];
+      EXPECT_NEAR(values[static_cast<std::size_t>(k)], expected, 1e-6) << first << " " << k;
     }
   }
 }

@@ -47,6 +47,7 @@ TEST(Frames, RoundNoMoreThanTheCacheUnlessAsked)
   EXPECT_EQ(Splits([](auto& mapper) { mapper.SetCachePrecision(mapper.BITS8); }), tiles);
   EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetCachePrecision(mapper.FLOAT32); }));
   EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetCacheMode(mapper.NETWORK_ONLY); }));
+  EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetErrorTolerance(0); }));
   EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetErrorTolerance(1); }));
   EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetInferencePrecision(mapper.SINGLE); }));
   EXPECT_FALSE(Splits([](auto& mapper) { mapper.SetInferencePrecision(mapper.BFLOAT16); }));
