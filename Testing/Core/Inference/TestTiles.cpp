@@ -261,6 +261,13 @@ TEST_F(Tiles, AreNotConfiguredWhereTheLibraryIsCalled)
 constexpr int Rows = 19;
 constexpr int Columns = 35;
 
+float InMatrix(const std::vector<float>& weights, int row, int column)
+{
+  const bool inside = row < Rows && column < Columns;
+  const std::int64_t place = std::int64_t{row} * Columns + column;
+  return inside ? weights[static_cast<std::size_t>(place)] : 0.0f;
+}
+
 /// Of a layer of Rows by Columns, a part of the numbers in a tile of 16 rows and 32 columns; tiles
 /// have that many parts.
 float InTile(const inr::PackedNetwork& network, int row, int column, int part = 0, int parts = 1)
@@ -293,8 +300,7 @@ TEST(TileKernels, HaveWeightsInTiles)
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(network.view().layers[0].pairs) % 64, 0u);
   for (int row = 0; row < 32; ++row) {
     for (int column = 0; column < 64; ++column) {
-      const bool inside = row < Rows && column < Columns;
-      const float weight = inside ? weights[static_cast<std::size_t>(row * Columns + column)] : 0;
+      const float weight = InMatrix(weights, row, column);
       ASSERT_EQ(InTile(network, row, column), weight) << row << " " << column;
     }
   }
@@ -310,8 +316,7 @@ TEST(TileKernels, HaveWeightsInTilesOfTwoParts)
   int rests = 0;
   for (int row = 0; row < 32; ++row) {
     for (int column = 0; column < 64; ++column) {
-      const bool inside = row < Rows && column < Columns;
-      const float weight = inside ? weights[static_cast<std::size_t>(row * Columns + column)] : 0;
+      const float weight = InMatrix(weights, row, column);
       const float rounded = InTile(network, row, column, 0, 2);
       const float rest = InTile(network, row, column, 1, 2);
       ASSERT_LE(std::abs(rounded - weight), 0x1p-8f * std::abs(weight)) << row << " " << column;
