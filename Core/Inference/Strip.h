@@ -2,7 +2,8 @@
 //
 // Samples that go through the network together; see Lanes.h for what may be in here. A strip is as
 // wide as a tile of results that stays in registers, and all its layers stay in the first-level
-// cache.
+// cache. Tile registers take two in turn: while one's results are on their way through memory, the
+// other's are made (with one alone, bricks of small networks took 1.15 times as long).
 #pragma once
 
 #include "Core/Inference/Lanes.h"
@@ -14,7 +15,7 @@ namespace INR_ISA {
 /// Registers hold a tile of results: rows of a layer by groups of LaneCount samples.
 #ifdef INR_TILES
 constexpr int StripRows = 32;
-constexpr int StripGroups = 4; // two register tiles in turn: see SumGroups
+constexpr int StripGroups = 4;
 #else
 constexpr int StripRows = LaneCount == 16 ? PanelRows : 4;
 static_assert(PanelRows % StripRows == 0, "a tile lies within a panel");
