@@ -31,19 +31,23 @@ Frame AsItIsDrawn(Frame frame, bool cached)
   return frame;
 }
 
-InferencePrecision PrecisionOf(const RendererOptions& options)
+InferencePrecision PrecisionOf(const NetworkDescription& network, const RendererOptions& options)
 {
+  // Float32 leaves out what ReLU made zero: of trained networks, split numbers make bricks of 64
+  // neurons in 0.77 to 0.91 of its time, those of 32 and 48 in 0.94 to 1.04.
+  constexpr int worthSplitting = 64;
   if (options.accelerator) { // what that gives is compared with this, and may be replaced by it
     return InferencePrecision::Float32;
   }
   const bool rounds = options.cached && options.cache.precision != CachePrecision::Float32;
-  return options.inference.value_or(rounds ? InferencePrecision::SplitBFloat16
+  const bool splits = rounds && network.neurons >= worthSplitting;
+  return options.inference.value_or(splits ? InferencePrecision::SplitBFloat16
                                            : InferencePrecision::Float32);
 }
 
 std::shared_ptr<const Evaluator> FieldOf(const ModelPointer& model, const RendererOptions& options)
 {
-  return MakeEvaluator(model, options.kernel, PrecisionOf(options));
+  return MakeEvaluator(model, options.kernel, PrecisionOf(model->description.network, options));
 }
 
 } // namespace

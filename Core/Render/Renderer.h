@@ -22,7 +22,8 @@ struct RendererOptions
   int threads = 0;    ///< 0 = all available cores
   std::string kernel; ///< instruction set, for tests; empty = the fastest
   /// Of what the CPU infers where there is no accelerator, and it and the model allow that. Empty:
-  /// SplitBFloat16 where a cache rounds to 16 bits or less, else Float32.
+  /// SplitBFloat16 where a cache rounds to 16 bits or less and layers have 64 neurons or more, else
+  /// Float32.
   std::optional<InferencePrecision> inference = InferencePrecision::Float32;
   bool cached = true; ///< through a cache of bricks, else straight from the network
   /// Frames with a time limit do a fixed amount of work instead of what there is time for, and

@@ -158,9 +158,8 @@ void Run(char* const* arguments, const std::string& mode, const std::string& vie
   const inr::ModelPointer usual = usualModel != nullptr ? inr::ReadModel(usualModel) : model;
   const Subject subject = SubjectOf(model, usual, volume.data());
   if (mode == "inference") {
-    CompareInference(model, name, {"bfloat16", inr::InferencePrecision::BFloat16});
-    if (inr::IsTileKernelUsable()) {
-      CompareInference(model, name, {"split bfloat16", inr::InferencePrecision::SplitBFloat16});
+    for (const Numbers& numbers : RoundedNumbers()) {
+      CompareInference(model, name, numbers);
     }
   }
   for (const Scene& scene : Scenes(subject.model->volume, name, view)) {

@@ -152,12 +152,12 @@ struct Numbers
   std::string name;
   inr::InferencePrecision precision;
 };
-/// Other than by default, which differs where there are tile registers.
-inline std::vector<Numbers> OtherNumbers()
+/// Those that are rounded, as far as this machine has them.
+inline std::vector<Numbers> RoundedNumbers()
 {
   std::vector<Numbers> all = {{"bfloat16", inr::InferencePrecision::BFloat16}};
   if (inr::IsTileKernelUsable()) {
-    all.push_back({"float32", inr::InferencePrecision::Float32});
+    all.push_back({"split bfloat16", inr::InferencePrecision::SplitBFloat16});
   }
   return all;
 }
@@ -166,7 +166,7 @@ inline std::vector<Numbers> OtherNumbers()
 inline std::vector<Point> InferenceKnob(const inr::Frame& frame)
 {
   SingleKnobs knobs(frame);
-  for (const Numbers& numbers : OtherNumbers()) {
+  for (const Numbers& numbers : RoundedNumbers()) {
     for (const bool cached : {true, false}) {
       knobs.add("InferencePrecision", numbers.name + (cached ? "" : ", network only"), cached,
                 [&](Point& point) {

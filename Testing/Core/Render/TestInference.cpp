@@ -61,6 +61,30 @@ TEST(InferencePrecision, ShowsInPicturesThatShareNoBricks)
   }
 }
 
+TEST(InferencePrecision, IsThatOfTheCacheWhereItPays)
+{
+  const auto splits = [](int neurons, const std::function<void(inr::RendererOptions&)>& change) {
+    inr::Description description = SmallDescription();
+    description.network.neurons = neurons;
+    auto model = RandomModel(description);
+    for (float& parameter : model->parameters) {
+      parameter /= 2; // so that values, and what they are off by, are small
+    }
+    model->volume = VolumeOf(AcceleratedDims);
+    inr::RendererOptions options = OptionsFor(Way::Still, nullptr);
+    options.inference.reset();
+    change(options);
+    return inr::Renderer(model, options).kernel().find("split") != std::string::npos;
+  };
+  EXPECT_EQ(splits(64, [](auto&) {}), inr::IsTileKernelUsable());
+  EXPECT_FALSE(splits(32, [](auto&) {}));
+  EXPECT_FALSE(splits(64, [](auto& options) { options.cached = false; }));
+  EXPECT_FALSE(
+      splits(64, [](auto& options) { options.cache.precision = inr::CachePrecision::Float32; }));
+  EXPECT_FALSE(
+      splits(64, [](auto& options) { options.inference = inr::InferencePrecision::Float32; }));
+}
+
 TEST(InferencePrecision, IsFloatBesideAnAccelerator)
 {
   const inr::ModelPointer model = SomeModel();

@@ -4,6 +4,7 @@
 #include "Core/Image/Metrics.h"
 #include "Core/Inference/InferenceKernels.h"
 #include "OneVolume.h"
+#include "Testing/Core/RandomModel.h"
 
 #include <vtkActor2D.h>
 #include <vtkPlane.h>
@@ -31,10 +32,21 @@ TEST(Frames, SayWhatTheyTook)
   EXPECT_EQ(std::string(one.mapper->GetBackendInUse()).substr(0, 4), "CPU ");
 }
 
-/// Whether the network computes with sums of two bfloat16 numbers by default.
+/// Whether the network computes with sums of two bfloat16 numbers, for a model that is wide enough.
 bool Splits(const std::function<void(vtkINRVolumeMapper&)>& change)
 {
-  OneVolume one;
+  static const std::string file = [] {
+    inr::Description description = SmallDescription();
+    description.network.neurons = 64;
+    const auto model = RandomModel(description);
+    for (float& parameter : model->parameters) {
+      parameter /= 2; // so that values, and what they are off by, are small
+    }
+    model->volume.dims = glm::i64vec3(20);
+    model->volume.high = 1;
+    return test::Write(*model, "wide.inr");
+  }();
+  OneVolume one(test::InrMapper(file));
   change(*one.mapper);
   one.scene.capture();
   return std::string(one.mapper->GetBackendInUse()).find("split") != std::string::npos;
