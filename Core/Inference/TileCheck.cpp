@@ -57,19 +57,21 @@ ModelPointer ExactModel(const Description& description)
 
 std::vector<float> ValuesAtPoints(const Evaluator& evaluator)
 {
-  constexpr std::int64_t count = 217; // the last ones are less than half a strip
-  std::vector<glm::vec3> positions(count);
+  constexpr std::int64_t first = 201; // the last ones are less than a quarter of a strip,
+  constexpr std::int64_t second = 25; // and these less than half
+  std::vector<glm::vec3> positions(first + second);
   for (std::size_t k = 0; k < positions.size(); ++k) {
     positions[k] = {RandomUnit(3, 3 * k), RandomUnit(3, 3 * k + 1), RandomUnit(3, 3 * k + 2)};
   }
   std::vector<float> values(positions.size());
-  evaluator.evaluate(positions.data(), count, values.data());
+  evaluator.evaluate(positions.data(), first, values.data());
+  evaluator.evaluate(positions.data() + first, second, values.data() + first);
   return values;
 }
 
 std::vector<float> ValuesOnLattice(const Evaluator& evaluator)
 {
-  std::vector<float> axes[3] = {std::vector<float>(13), std::vector<float>(9),
+  std::vector<float> axes[3] = {std::vector<float>(13), std::vector<float>(13),
                                 std::vector<float>(2)};
   for (std::uint64_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < axes[axis].size(); ++k) {
