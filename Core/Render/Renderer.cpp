@@ -34,7 +34,7 @@ Frame AsItIsDrawn(Frame frame, bool cached)
 InferencePrecision PrecisionOf(const NetworkDescription& network, const RendererOptions& options)
 {
   // Float32 leaves out what ReLU made zero: of trained networks, split numbers make bricks of 64
-  // neurons in 0.77 to 0.91 of its time, those of 32 and 48 in 0.94 to 1.04.
+  // neurons in 0.77 to 0.96 of its time, those of 32 and 48 in 0.94 to 1.04.
   constexpr int worthSplitting = 64;
   if (options.accelerator) { // what that gives is compared with this, and may be replaced by it
     return InferencePrecision::Float32;

@@ -283,14 +283,14 @@ public:
   ///@{
   /**
    * What the CPU's network computes with, one of InferencePrecisions. BFLOAT16 rounds weights and
-   * what goes into a layer to 8 bits: decoding is up to twice as fast, with tile registers (AMX)
-   * up to 3.3 times, and off by up to 0.01 of the value range. AUTOMATIC, the default, rounds to 16
-   * bits where there are tile registers, the cache has 16 bits or less for a value, and the model
-   * has layers of 64 neurons or more and is off by no more in the mean than what 16 bits of the
-   * value range round: up to 1.8 times as fast as SINGLE. Both count where no GPU decodes; else,
-   * and with an ErrorTolerance, all is as with SINGLE, as AUTOMATIC is elsewhere. Where tile
-   * registers are used, the process has been permitted to: its signal stacks (sigaltstack) must
-   * have room for 8 KiB more. A change empties the cache.
+   * what goes into a layer to 8 bits: values are off by up to 0.01 of their range, and with tile
+   * registers (AMX) decoding is up to 3.3 times as fast as with SINGLE. AUTOMATIC, the default,
+   * rounds to 16 bits where there are such registers, the cache has 16 bits or less for a value,
+   * and the model has layers of 64 neurons or more and is off by no more in the mean than what 16
+   * bits of the value range round: up to 1.3 times as fast, of trained models. Both count where no
+   * GPU decodes; else, and with an ErrorTolerance, all is as with SINGLE, as AUTOMATIC is
+   * elsewhere. A process that uses such registers needs 8 KiB more in its signal stacks
+   * (sigaltstack). A change empties the cache.
    */
   vtkSetClampMacro(InferencePrecision, int, SINGLE, AUTOMATIC);
   vtkGetMacro(InferencePrecision, int);

@@ -4,7 +4,11 @@
 #include "Core/Model/Model.h"
 #include "Core/Random.h"
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <utility>
+#include <vector>
 
 /// A small INR whose parameters are uniform in [-1, 1]: not trained on anything.
 inline std::shared_ptr<inr::Model> RandomModel(const inr::Description& description,
@@ -15,6 +19,19 @@ inline std::shared_ptr<inr::Model> RandomModel(const inr::Description& descripti
   model->parameters.resize(inr::Layout(description).parameterCount);
   for (std::size_t k = 0; k < model->parameters.size(); ++k) {
     model->parameters[k] = 2.0f * inr::RandomUnit(seed, k) - 1.0f;
+  }
+  return model;
+}
+
+/// The same, but sums stay about as large as features.
+inline std::shared_ptr<inr::Model> CalmModel(const inr::Description& description)
+{
+  auto model = RandomModel(description);
+  const inr::Layout layout(description);
+  for (const inr::LayerShape& layer : layout.layers) {
+    const auto begin = model->parameters.begin() + static_cast<std::ptrdiff_t>(layer.offset);
+    std::for_each(begin, begin + std::ptrdiff_t{layer.rows} * layer.columns,
+                  [&](float& weight) { weight *= 2.0f / std::sqrt(float(layer.columns)); });
   }
   return model;
 }

@@ -54,19 +54,6 @@ std::vector<inr::Description> Descriptions()
   return all;
 }
 
-/// Its sums stay about as large as its features.
-std::shared_ptr<inr::Model> CalmModel(const inr::Description& description)
-{
-  auto model = RandomModel(description);
-  const inr::Layout layout(description);
-  for (const inr::LayerShape& layer : layout.layers) {
-    const auto begin = model->parameters.begin() + static_cast<std::ptrdiff_t>(layer.offset);
-    std::for_each(begin, begin + std::ptrdiff_t{layer.rows} * layer.columns,
-                  [&](float& weight) { weight *= 2.0f / std::sqrt(float(layer.columns)); });
-  }
-  return model;
-}
-
 class BFloat16 : public testing::Test
 {
 protected:
