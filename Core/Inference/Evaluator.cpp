@@ -21,7 +21,7 @@ namespace {
 constexpr std::int64_t TaskSize = 4096;
 
 /// By bits, which vectorises: a float without its sign grows with them.
-std::uint32_t LargestMagnitudeBits(const std::vector<float>& values)
+std::uint32_t LargestMagnitudeBits(const AlignedVector<float>& values)
 {
   std::uint32_t largest = 0;
   for (const float& value : values) {
@@ -32,7 +32,7 @@ std::uint32_t LargestMagnitudeBits(const std::vector<float>& values)
   return largest;
 }
 
-void RequireFinite(const std::vector<float>& parameters)
+void RequireFinite(const AlignedVector<float>& parameters)
 {
   constexpr std::uint32_t infinity = 0x7f800000u;
   if (LargestMagnitudeBits(parameters) < infinity) {
@@ -124,7 +124,7 @@ public:
                                         this->Source->parameters.data()),
         Kernels(choose(this->Views.view())), Network(this->Views.view(), this->Kernels.layout)
   {
-    const std::vector<float>& parameters = this->Source->parameters;
+    const AlignedVector<float>& parameters = this->Source->parameters;
     PreferHugePages(parameters.data(), parameters.size() * sizeof(float));
   }
 

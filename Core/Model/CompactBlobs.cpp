@@ -169,13 +169,13 @@ std::string EncodeQuantised(const Model& model)
   return PackedReadably(plain, BoundariesOf(runs));
 }
 
-std::vector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
-                                   std::uint32_t& checksum)
+AlignedVector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
+                                     std::uint32_t& checksum)
 {
   const std::uint64_t count = Layout(header.description).parameterCount;
   const auto plain =
       Decompress(Packed(file, blob, checksum), PlainParameterBytes(count), "parameters");
-  std::vector<float> parameters(count);
+  AlignedVector<float> parameters(count);
   ForEachParameter(
       RunsOf(header.description), [&](std::size_t place, std::uint64_t k, std::size_t group) {
         const auto code = static_cast<std::uint16_t>(plain[place] | plain[count + place] << 8);

@@ -27,8 +27,8 @@ std::int64_t LargestCompactRanges(std::int64_t cells);
 std::string EncodeQuantised(const Model& model);
 
 /// The inverse, for a header with description and (valid) steps.
-std::vector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
-                                   std::uint32_t& checksum);
+AlignedVector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
+                                     std::uint32_t& checksum);
 
 /// Ranges in 8 bits a bound, rounded outwards by up to 1/255; the network's output never leaves
 /// [0, 1], and so what lies outside is cut off.

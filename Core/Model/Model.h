@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/AlignedVector.h"
 #include "Core/Model/Description.h"
 #include "Core/Model/MacroCells.h"
 
@@ -109,7 +110,7 @@ enum class ParameterType {
 struct Model
 {
   Description description;
-  std::vector<float> parameters;
+  AlignedVector<float> parameters;
   ParameterType storedAs = ParameterType::Half; ///< precision of `parameters` in the file
   std::vector<float> steps; ///< of quantised parameters, one for each of their ParameterGroups
   VolumeInfo volume;

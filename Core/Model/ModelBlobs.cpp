@@ -35,7 +35,7 @@ void ForEachChunk(const InputFile& file, const Blob& blob, const Body& body)
 }
 
 template <typename T>
-void AppendFloats(std::vector<float>& values, const std::uint8_t* bytes, std::size_t size)
+void AppendFloats(AlignedVector<float>& values, const std::uint8_t* bytes, std::size_t size)
 {
   for (std::size_t at = 0; at < size; at += sizeof(T)) {
     const T stored = FromBytes<T>(bytes + at);
@@ -124,20 +124,20 @@ std::uint16_t ToHalf(float value, std::size_t index)
   return half;
 }
 
-template <typename T> std::string BytesOf(const std::vector<T>& values)
+template <typename Vector> std::string BytesOf(const Vector& values)
 {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0])};
 }
 
 } // namespace
 
 std::size_t ParameterSize(ParameterType type) { return type == ParameterType::Half ? 2 : 4; }
 
-std::vector<float> DecodeParameters(const InputFile& file, const Blob& blob, ParameterType type,
-                                    std::uint32_t& checksum)
+AlignedVector<float> DecodeParameters(const InputFile& file, const Blob& blob, ParameterType type,
+                                      std::uint32_t& checksum)
 {
   const std::size_t size = ParameterSize(type);
-  std::vector<float> values;
+  AlignedVector<float> values;
   values.reserve(static_cast<std::size_t>(blob.size) / size);
   ForEachChunk(file, blob, [&](const std::uint8_t* bytes, std::int64_t, std::size_t count) {
     checksum = ContinueChecksum(checksum, bytes, count);
@@ -176,7 +176,7 @@ std::vector<ValueRange> DecodeRanges(const InputFile& file, const Blob& blob, Ce
   return ranges;
 }
 
-std::string EncodeParameters(const std::vector<float>& parameters, ParameterType type)
+std::string EncodeParameters(const AlignedVector<float>& parameters, ParameterType type)
 {
   std::vector<std::uint16_t> halves;
   halves.reserve(type == ParameterType::Half ? parameters.size() : 0);

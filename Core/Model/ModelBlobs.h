@@ -27,15 +27,15 @@ enum class CellEncoding {
 
 /// Bytes of a file's blobs as values; `checksum` is continued over the bytes. The blob's size must
 /// be right already. Throw Error(InvalidModel) with the byte for a value that is not finite.
-std::vector<float> DecodeParameters(const InputFile& file, const Blob& blob, ParameterType type,
-                                    std::uint32_t& checksum);
+AlignedVector<float> DecodeParameters(const InputFile& file, const Blob& blob, ParameterType type,
+                                      std::uint32_t& checksum);
 /// Empty when the ranges tell nothing: a file of unknown encoding with nothing but zeros.
 std::vector<ValueRange> DecodeRanges(const InputFile& file, const Blob& blob, CellEncoding encoding,
                                      std::uint32_t& checksum);
 
 /// The inverse. Throw Error(InvalidModel) for a value that is not finite or that half precision
 /// cannot hold. A range is rounded outwards, so that what is read back contains it.
-std::string EncodeParameters(const std::vector<float>& parameters, ParameterType type);
+std::string EncodeParameters(const AlignedVector<float>& parameters, ParameterType type);
 std::string EncodeRanges(const std::vector<ValueRange>& ranges);
 
 /// Throws Error(InvalidModel) unless both ends are finite.

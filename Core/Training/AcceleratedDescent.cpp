@@ -56,7 +56,7 @@ const ModelView& AcceleratedDescent::view()
   return this->Host.view();
 }
 
-std::vector<float>& AcceleratedDescent::parameters()
+AlignedVector<float>& AcceleratedDescent::parameters()
 {
   this->settle();
   return this->Host.parameters();

@@ -39,7 +39,7 @@ public:
   StateArrays state() override;
   void goOnAfter(std::uint64_t steps) override;
   const ModelView& view() override;
-  std::vector<float>& parameters() override;
+  AlignedVector<float>& parameters() override;
   bool isAccelerated() const override { return this->Device != nullptr; }
 
   bool drawsSamples() const { return this->DrawsSamples; }

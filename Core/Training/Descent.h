@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/AlignedVector.h"
 #include "Core/Inference/ModelView.h"
 #include "Core/Training/BatchSource.h"
 #include "Core/Training/StateArray.h"
@@ -42,7 +43,7 @@ public:
 
   /// The same parameters, to look at or to take.
   virtual const ModelView& view() = 0;
-  virtual std::vector<float>& parameters() = 0;
+  virtual AlignedVector<float>& parameters() = 0;
 
   virtual bool isAccelerated() const { return false; }
 };

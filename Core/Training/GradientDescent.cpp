@@ -49,12 +49,12 @@ float InitialBound(const Description& description, const Layout& layout, std::si
 
 } // namespace
 
-std::vector<float> InitialParameters(const Description& description, const Layout& layout,
-                                     std::uint64_t seed)
+AlignedVector<float> InitialParameters(const Description& description, const Layout& layout,
+                                       std::uint64_t seed)
 {
   constexpr float gridBound = 1e-4f;
   const std::uint64_t stream = StreamSeed(seed, RandomStream::InitialParameters);
-  std::vector<float> parameters(layout.parameterCount);
+  AlignedVector<float> parameters(layout.parameterCount);
   const auto fill = [&](std::uint64_t begin, std::uint64_t end, float bound) {
     for (std::uint64_t k = begin; k < end; ++k) {
       parameters[k] = bound * (2.0f * RandomUnit(stream, k) - 1.0f);
@@ -87,14 +87,14 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
       FirstMoments(this->Parameters.size()), SecondMoments(this->Parameters.size()),
       Updates(this->Parameters.size() - this->Shape.gridOffset), Updating(AdamUpdates())
 {
-  for (std::vector<float>* const values :
+  for (AlignedVector<float>* const values :
        {&this->Parameters, &this->Gradient, &this->FirstMoments, &this->SecondMoments}) {
     PreferHugePages(values->data(), values->size() * sizeof(float));
   }
   PreferHugePages(this->Updates.data(), this->Updates.size() * sizeof(std::uint16_t));
 }
 
-void GradientDescent::startFrom(const std::vector<float>& parameters)
+void GradientDescent::startFrom(const AlignedVector<float>& parameters)
 {
   std::copy(parameters.begin(), parameters.end(), this->Parameters.begin());
 }
@@ -232,7 +232,7 @@ void GradientDescent::backpropagateShard(std::int64_t shard, const float* target
     return;
   }
   const ModelView& model = this->Views.view();
-  std::vector<float> workspace(static_cast<std::size_t>(this->Kernel.workspace(model)));
+  AlignedVector<float> workspace(static_cast<std::size_t>(this->Kernel.workspace(model)));
   std::vector<float>& weightGradient = this->ShardGradients[static_cast<std::size_t>(shard)];
   weightGradient.assign(this->Shape.gridOffset, 0.0f);
   const std::int64_t samples = SamplesPerCheck(this->Shape.gridOffset);

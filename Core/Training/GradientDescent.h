@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/AlignedVector.h"
 #include "Core/Inference/ModelView.h"
 #include "Core/Parallel.h"
 #include "Core/Training/BatchSource.h"
@@ -19,8 +20,8 @@ namespace inr {
 
 /// Xavier-uniform MLP weights (SIREN's for sine; Sitzmann et al., NeurIPS 2020) and grid features
 /// uniform in +-1e-4, from `seed`.
-std::vector<float> InitialParameters(const Description& description, const Layout& layout,
-                                     std::uint64_t seed);
+AlignedVector<float> InitialParameters(const Description& description, const Layout& layout,
+                                       std::uint64_t seed);
 
 /// Draws a whole mini-batch, which was prepared: batches.count() positions and targets.
 void DrawBatch(const BatchSource& batches, std::uint64_t stream, std::uint64_t step,
@@ -36,7 +37,7 @@ public:
                   const Arena& arena);
   /// Before the first step: takes these parameters instead of random ones. The learning rate is the
   /// same: half of it gains some tenths of a dB in one time step, and may lose them after several.
-  void startFrom(const std::vector<float>& parameters);
+  void startFrom(const AlignedVector<float>& parameters);
 
   StateArrays state() override;
   void goOnAfter(std::uint64_t steps) override { this->Steps = steps; }
@@ -64,12 +65,12 @@ public:
 
   std::uint64_t steps() const override { return this->Steps; }
   const ModelView& view() override { return this->Views.view(); }
-  std::vector<float>& parameters() override { return this->Parameters; }
+  AlignedVector<float>& parameters() override { return this->Parameters; }
   std::size_t weightCount() const { return this->Shape.gridOffset; } ///< parameters before the grid
   std::vector<LayerShape> orthogonalisedLayers() const;              ///< see Optimiser.h
   std::size_t firstOtherWeight() const; ///< of the layers behind them, which Adam updates
   std::uint64_t stream() const;         ///< of the random numbers of mini-batches
-  const std::vector<float>& gradient() const { return this->Gradient; }
+  const AlignedVector<float>& gradient() const { return this->Gradient; }
 
 private:
   std::optional<double> computeTogether(BatchSource& batches, const StopCheck& check);
@@ -95,17 +96,17 @@ private:
   std::uint64_t Steps = 0;
   std::uint64_t PlannedSteps = std::numeric_limits<std::uint64_t>::max();
   LearningRate Rate;
-  std::vector<float> Parameters;
+  AlignedVector<float> Parameters;
   ModelViewStorage Views;
-  std::vector<float> Gradient;
+  AlignedVector<float> Gradient;
   GridGradient Grid; ///< marks in `Gradient`
-  std::vector<float> FirstMoments;
-  std::vector<float> SecondMoments;
-  std::vector<std::uint16_t> Updates; ///< of each parameter of the grid
-  std::vector<AdamStep> Updating;     ///< by the number of the update
+  AlignedVector<float> FirstMoments;
+  AlignedVector<float> SecondMoments;
+  AlignedVector<std::uint16_t> Updates; ///< of each parameter of the grid
+  std::vector<AdamStep> Updating;       ///< by the number of the update
   std::vector<glm::vec3> Positions;
   std::vector<float> Targets;
-  std::vector<float> Encoded; ///< features of the batch, then their gradients
+  AlignedVector<float> Encoded; ///< features of the batch, then their gradients
   std::vector<std::vector<float>> ShardGradients;
   std::vector<double> ShardLosses;
 };

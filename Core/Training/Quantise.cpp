@@ -33,7 +33,7 @@ double SquaredDifference(const std::vector<float>& a, const std::vector<float>& 
 
 /// Sets to 0 what the padding of a network multiplies: input columns that are 0, and all rows of
 /// the last matrix but the first.
-void ClearPadding(const Layout& layout, std::vector<float>& parameters)
+void ClearPadding(const Layout& layout, AlignedVector<float>& parameters)
 {
   const LayerShape& first = layout.layers.front();
   for (int row = 0; row < first.rows; ++row) {
@@ -173,7 +173,7 @@ private:
   const StopCheck& Check;
   Layout Shape;
   ModelViewStorage Views;
-  std::vector<float> Original;
+  AlignedVector<float> Original;
   std::vector<float> Exact; ///< values of the network as it was
   std::vector<GroupShape> Groups;
   double Scale = 0;

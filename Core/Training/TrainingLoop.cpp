@@ -117,7 +117,7 @@ void TrainingLoop::write(Descent& descent)
 void TrainingLoop::finish(Descent& descent)
 {
   // The last update is not seen in any loss.
-  const std::vector<float>& parameters = descent.parameters();
+  const AlignedVector<float>& parameters = descent.parameters();
   if (descent.steps() == 0) {
     throw Error(ErrorCode::InvalidArgument,
                 "not one step of the training was finished within the TimeLimit of " +

@@ -24,12 +24,12 @@
 
 namespace {
 
-template <typename Value>
-void WriteNumbers(const std::string& path, const std::vector<Value>& values)
+template <typename Values>
+void WriteNumbers(const std::string& path, const Values& values)
 {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(values.data()),
-             static_cast<std::streamsize>(values.size() * sizeof(Value)));
+             static_cast<std::streamsize>(values.size() * sizeof(values[0])));
 }
 
 /// The first coordinate as a field. Remembers the positions of one batch.

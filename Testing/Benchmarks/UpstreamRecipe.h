@@ -36,7 +36,7 @@ public:
     this->update();
   }
 
-  const std::vector<float>& parameters() { return this->Descent.parameters(); }
+  const inr::AlignedVector<float>& parameters() { return this->Descent.parameters(); }
 
 private:
   static constexpr std::int64_t BlockSize = 4096;
@@ -44,7 +44,7 @@ private:
   /// Xavier-uniform weights; features uniform in +-1e-4.
   void initialise()
   {
-    std::vector<float>& parameters = this->Descent.parameters();
+    inr::AlignedVector<float>& parameters = this->Descent.parameters();
     const auto fill = [&](std::uint64_t begin, std::uint64_t end, float bound) {
       for (std::uint64_t k = begin; k < end; ++k) {
         parameters[k] = bound * (2.0f * inr::RandomUnit(1, k) - 1.0f);
@@ -101,7 +101,7 @@ private:
   /// weights are drawn to 0.
   void update()
   {
-    const std::vector<float>& gradient = this->Descent.gradient();
+    const inr::AlignedVector<float>& gradient = this->Descent.gradient();
     const auto updates = static_cast<double>(this->Steps);
     this->Corrections.push_back(std::sqrt(1.0 - std::pow(0.999, updates)) /
                                 (1.0 - std::pow(0.9, updates)));

@@ -55,7 +55,7 @@ public:
     }
     inr::cuda::RequireValid(*this->Source);
     const inr::Layout layout(this->Source->description);
-    const std::vector<float>& parameters = this->Source->parameters;
+    const inr::AlignedVector<float>& parameters = this->Source->parameters;
     this->Features.assign(parameters.begin() + static_cast<std::ptrdiff_t>(layout.gridOffset),
                           parameters.end());
     this->Float = std::make_unique<inr::cuda::FloatTables>(*this->Source, parameters.data(),

@@ -38,7 +38,8 @@ struct TruthCase
     std::ifstream file(INR_TRUTH_DIR "/" + name + ".json");
     const std::string text((std::istreambuf_iterator<char>(file)), {});
     this->Source.description = inr::ParseDescription(text);
-    this->Source.parameters = ReadArray<float>(INR_TRUTH_DIR "/" + name + ".params");
+    const auto parameters = ReadArray<float>(INR_TRUTH_DIR "/" + name + ".params");
+    this->Source.parameters.assign(parameters.begin(), parameters.end());
   }
 
   std::vector<glm::vec3> Positions;

@@ -64,7 +64,7 @@ TEST_F(Frames, OfTheRightSizeAreRead)
   WriteBytes(this->path(),
              this->withParameters(inr::Compress(std::string(this->plainBytes(), '\0'))));
   const inr::ModelPointer read = inr::ReadModel(this->path());
-  EXPECT_EQ(read->parameters, std::vector<float>(read->parameters.size(), 0.0f));
+  EXPECT_EQ(read->parameters, inr::AlignedVector<float>(read->parameters.size(), 0.0f));
   WriteBytes(this->path(),
              this->withParameters(inr::Compress(std::string(this->plainBytes(), '\xff'))));
   EXPECT_EQ(inr::ReadModel(this->path())->parameters[0], -32768 * read->steps[0]);

@@ -30,7 +30,7 @@ TEST_P(UpstreamFiles, Open)
   const inr::ModelPointer model = inr::ReadModel(this->path());
   const nlohmann::json expected = this->expected();
   EXPECT_TRUE(inr::IsModelFile(this->path()));
-  EXPECT_EQ(model->parameters, expected["parameters"].get<std::vector<float>>());
+  EXPECT_EQ(model->parameters, expected["parameters"].get<inr::AlignedVector<float>>());
   EXPECT_EQ(model->storedAs == inr::ParameterType::Half, expected["half"].get<bool>());
   EXPECT_EQ(model->description.network.alignment, expected["alignment"].get<int>());
   EXPECT_EQ(model->description.grid.levels, 3);

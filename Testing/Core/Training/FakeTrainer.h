@@ -171,7 +171,7 @@ private:
   }
 
   FakeTrainingDevice& Device;
-  std::vector<float> Begin; ///< what was put
+  inr::AlignedVector<float> Begin; ///< what was put
   inr::TrainingTask Task;
   inr::Arena Threads;
   inr::GradientDescent Core;

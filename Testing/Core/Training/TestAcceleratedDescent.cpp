@@ -51,7 +51,7 @@ TEST(AcceleratedDescent, GoesOnFromWhateverIsPutThere)
   device.planned = 2000;
   FewSteps few(device);
   few.take(4);
-  const std::vector<float> values = few.Descent.parameters();
+  const inr::AlignedVector<float> values = few.Descent.parameters();
   std::vector<std::vector<char>> before;
   for (const inr::StateArray& array : few.Descent.state()) {
     const auto* from = static_cast<const char*>(array.data);

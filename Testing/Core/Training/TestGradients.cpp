@@ -45,8 +45,8 @@ struct Problem
   double slopeAlong(const std::vector<float>& direction)
   {
     constexpr float step = 2e-3f;
-    std::vector<float>& parameters = this->Descent.parameters();
-    const std::vector<float> here = parameters;
+    inr::AlignedVector<float>& parameters = this->Descent.parameters();
+    const inr::AlignedVector<float> here = parameters;
     double ends[2];
     for (const int side : {0, 1}) {
       for (std::size_t k = 0; k < here.size(); ++k) {
@@ -82,7 +82,7 @@ void ExpectGradient(const inr::Description& description, const std::string& kern
     parameter *= size;
   }
   problem.loss();
-  const std::vector<float> gradient = problem.Descent.gradient();
+  const inr::AlignedVector<float> gradient = problem.Descent.gradient();
   const inr::Layout layout(description);
   // The network alone and the grid alone: an error in one must not hide behind the other.
   const std::pair<std::size_t, std::size_t> parts[] = {{0, layout.gridOffset},
@@ -192,7 +192,7 @@ TEST(GradientDescent, AStoppedStepChangesNothing)
 /// Of a step in training.
 struct StepTaken
 {
-  std::vector<float> before, gradient, after;
+  inr::AlignedVector<float> before, gradient, after;
 };
 
 std::vector<StepTaken> TakeSteps(const inr::Description& description, int count)
@@ -204,7 +204,7 @@ std::vector<StepTaken> TakeSteps(const inr::Description& description, int count)
   inr::GradientDescent descent(description, 1, inr::ChooseInstructionSet(""), threads);
   std::vector<StepTaken> steps;
   for (int k = 0; k < count; ++k) {
-    const std::vector<float> before = descent.parameters();
+    const inr::AlignedVector<float> before = descent.parameters();
     EXPECT_TRUE(descent.step(batches));
     steps.push_back({before, descent.gradient(), descent.parameters()});
   }

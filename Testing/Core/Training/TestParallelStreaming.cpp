@@ -215,7 +215,7 @@ TEST(ParallelStreaming, HeedsTheSmallestMemoryLimitAndTheLargestVoxels)
   const Process small{150 * MiB, 400};
   const Process large{400 * MiB, 400};
   const Process narrow{150 * MiB, 4};
-  const std::vector<float> expected = train(small, small);
+  const inr::AlignedVector<float> expected = train(small, small);
   EXPECT_NE(train(large, large), expected) << "the limit does not matter here";
   EXPECT_EQ(train(small, large), expected);
   EXPECT_EQ(train(large, small), expected);
