@@ -44,6 +44,11 @@ inline AdamSteps CountSteps(std::uint16_t* counts, Ints which, const AdamSchedul
   count = count > last ? last : count;
   const Counts after = __builtin_convertvector(count, Counts);
   std::memcpy(counts, &after, sizeof(after));
+  const Ints same = (Ints)SpreadInt((std::uint32_t)count[0]);
+  if (IsZero((UInts)(count ^ same))) { // as where every mini-batch touches everything
+    const AdamStep& step = schedule.steps[count[0]];
+    return {Spread(step.rate), Spread(step.beta2)};
+  }
   AdamSteps steps;
   for (int lane = 0; lane < LaneCount; ++lane) {
     const AdamStep& step = schedule.steps[count[lane]];
@@ -114,33 +119,70 @@ inline void AdamSparseRest(const AdamRun& run, std::int64_t k, std::int64_t coun
   std::memcpy(counts + k, countLanes, bytes);
 }
 
-/// Says whether a line in [begin, end) is touched, and that none is any more.
-inline bool TakeMarks(std::uint8_t* touched, std::int64_t begin, std::int64_t end)
+/// Parameters that are updated together: whole lines and whole vectors.
+constexpr std::int64_t AdamTurn = LaneCount > GradientLine ? LaneCount : GradientLine;
+
+/// Turns that are looked through for touched ones at a time.
+constexpr int AdamTurns = 256;
+
+/// Writes which of the turns from parameter `first` on have a touched line, and takes the marks
+/// away. Returns how many.
+inline int TakeTouched(std::uint8_t* touched, std::int64_t first, std::int64_t count,
+                       std::int64_t (&turns)[AdamTurns])
 {
-  std::uint8_t any = 0;
-  for (std::int64_t line = begin; line < end; ++line) {
-    any |= touched[line];
-    touched[line] = 0;
+  constexpr std::int64_t linesPerTurn = AdamTurn / GradientLine;
+  const std::int64_t lines = (count + GradientLine - 1) / GradientLine;
+  int found = 0;
+  for (int turn = 0; turn < AdamTurns && first < count; ++turn, first += AdamTurn) {
+    const std::int64_t begin = first / GradientLine;
+    const std::int64_t end = begin + linesPerTurn < lines ? begin + linesPerTurn : lines;
+    std::uint8_t any = 0;
+    for (std::int64_t line = begin; line < end; ++line) {
+      any |= touched[line];
+      touched[line] = 0;
+    }
+    turns[found] = first; // without a branch, which could not be foretold
+    found += any != 0 ? 1 : 0;
   }
-  return any != 0;
+  return found;
+}
+
+/// What a processor does not foresee where turns are left out.
+inline void PrefetchTurn(const AdamRun& run, const std::uint16_t* counts, std::int64_t k)
+{
+  __builtin_prefetch(run.parameters + k, 1);
+  __builtin_prefetch(run.gradients + k, 1);
+  __builtin_prefetch(run.firstMoments + k, 1);
+  __builtin_prefetch(run.secondMoments + k, 1);
+  __builtin_prefetch(counts + k, 1);
+}
+
+/// Parameters [first, end), a turn or what is left of it.
+inline void UpdateTurn(const AdamRun& run, std::int64_t first, std::int64_t end, float learningRate,
+                       std::uint16_t* counts, const AdamSchedule& schedule)
+{
+  for (std::int64_t k = first; k < end; k += LaneCount) {
+    if (k + LaneCount <= end) {
+      AdamSparseLanes(run, k, learningRate, counts, schedule);
+    } else {
+      AdamSparseRest(run, k, end - k, learningRate, counts, schedule);
+    }
+  }
 }
 
 inline void AdamSparse(const AdamRun& run, std::int64_t count, std::uint8_t* touched,
                        float learningRate, std::uint16_t* counts, const AdamSchedule& schedule)
 {
-  // As many parameters at a time as are whole lines and whole vectors.
-  constexpr std::int64_t turn = LaneCount > GradientLine ? LaneCount : GradientLine;
-  for (std::int64_t first = 0; first < count; first += turn) {
-    const std::int64_t end = first + turn < count ? first + turn : count;
-    if (!TakeMarks(touched, first / GradientLine, (end + GradientLine - 1) / GradientLine)) {
-      continue;
-    }
-    for (std::int64_t k = first; k < end; k += LaneCount) {
-      if (k + LaneCount <= end) {
-        AdamSparseLanes(run, k, learningRate, counts, schedule);
-      } else {
-        AdamSparseRest(run, k, end - k, learningRate, counts, schedule);
+  constexpr int ahead = 8;
+  std::int64_t turns[AdamTurns];
+  for (std::int64_t first = 0; first < count; first += AdamTurns * AdamTurn) {
+    const int found = TakeTouched(touched, first, count, turns);
+    for (int turn = 0; turn < found; ++turn) {
+      if (turn + ahead < found) {
+        PrefetchTurn(run, counts, turns[turn + ahead]);
       }
+      const std::int64_t end = turns[turn] + AdamTurn < count ? turns[turn] + AdamTurn : count;
+      UpdateTurn(run, turns[turn], end, learningRate, counts, schedule);
     }
   }
 }
