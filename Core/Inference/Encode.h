@@ -5,6 +5,9 @@
 
 #include "Core/Inference/Lanes.h"
 #include "Core/Inference/ModelView.h"
+#include "Core/Inference/Transpose.h"
+
+#include <utility>
 
 namespace inr {
 
@@ -22,21 +25,35 @@ struct Position
   Floats x, y, z;
 };
 
+/// Of LaneCount interleaved triples one coordinate, in registers: reading a vector soon after its
+/// lanes were written stalls.
+template <int Axis, int... Lane>
+inline Floats TakeAxis(const Floats (&triples)[3], std::integer_sequence<int, Lane...>)
+{
+  const Floats lower = __builtin_shufflevector(
+      triples[0], triples[1], (3 * Lane + Axis < 2 * LaneCount ? 3 * Lane + Axis : -1)...);
+  return __builtin_shufflevector(
+      lower, triples[2], (3 * Lane + Axis < 2 * LaneCount ? Lane : 3 * Lane + Axis - LaneCount)...);
+}
+
 /// LaneCount positions from interleaved triples, clamped to [0, 1]; `valid` of them exist, the rest
 /// repeat the first. A NaN becomes 0.
 inline Position LoadPositions(const float* xyz, std::int64_t valid)
 {
-  float lanes[3][LaneCount];
-  for (int k = 0; k < LaneCount; ++k) {
-    const float* from = xyz + 3 * (k < valid ? k : 0);
-    for (int axis = 0; axis < 3; ++axis) {
-      lanes[axis][k] = from[axis];
+  float copies[3 * LaneCount];
+  if (valid < LaneCount) {
+    for (int k = 0; k < LaneCount; ++k) {
+      std::memcpy(copies + 3 * k, xyz + 3 * (k < valid ? k : 0), 3 * sizeof(float));
     }
+    xyz = copies;
   }
+  const Floats triples[3] = {Load(xyz), Load(xyz + LaneCount), Load(xyz + 2 * LaneCount)};
+  constexpr std::make_integer_sequence<int, LaneCount> lanes;
   const Floats zero{};
   const Floats one = Spread(1.0f);
-  return {Minimum(Maximum(Load(lanes[0]), zero), one), Minimum(Maximum(Load(lanes[1]), zero), one),
-          Minimum(Maximum(Load(lanes[2]), zero), one)};
+  return {Minimum(Maximum(TakeAxis<0>(triples, lanes), zero), one),
+          Minimum(Maximum(TakeAxis<1>(triples, lanes), zero), one),
+          Minimum(Maximum(TakeAxis<2>(triples, lanes), zero), one)};
 }
 
 /// Lattice cell and weight of one coordinate.
@@ -164,33 +181,26 @@ inline void FindCorners(const LevelView& level, GridInterpolation interpolation,
   IsRandom(level) ? FindRandomEntries(level, cells, corners) : FindEntries(level, cells, corners);
 }
 
-/// The features of one table entry. (An alias template would silently lose the attribute.)
-template <int Features> struct RowOf
-{
-  typedef float Type __attribute__((vector_size(sizeof(float) * Features)));
-};
-template <int Features> using Row = typename RowOf<Features>::Type;
-
 /// Interpolated features of one level: out[f * stride + lane].
 template <int Features>
 inline void InterpolateLevel(const float* table, const Corners& corners, float* out,
                              std::int64_t stride)
 {
-  float rows[LaneCount][Features];
-  for (int k = 0; k < LaneCount; ++k) {
-    Row<Features> sum{};
-    for (int c = 0; c < 8; ++c) {
-      Row<Features> row;
-      std::memcpy(&row, table + static_cast<std::uint64_t>(corners.entry[c][k]) * Features,
-                  sizeof(row));
-      sum += corners.weight[c][k] * row;
+  constexpr int together = LaneCount < 8 ? LaneCount : 8;
+  for (int first = 0; first < LaneCount; first += together) {
+    Row<Features> rows[together];
+    for (int k = 0; k < together; ++k) {
+      Row<Features> sum{};
+      for (int c = 0; c < 8; ++c) {
+        Row<Features> row;
+        std::memcpy(&row,
+                    table + static_cast<std::uint64_t>(corners.entry[c][first + k]) * Features,
+                    sizeof(row));
+        sum += corners.weight[c][first + k] * row;
+      }
+      rows[k] = sum;
     }
-    std::memcpy(rows[k], &sum, sizeof(sum));
-  }
-  for (int f = 0; f < Features; ++f) {
-    for (int k = 0; k < LaneCount; ++k) {
-      out[f * stride + k] = rows[k][f];
-    }
+    StoreColumns<Features>(rows, out + first, stride);
   }
 }
 

@@ -3,10 +3,17 @@
 // Features of eight samples, turned over in registers; see Lanes.h for what may be in here.
 #pragma once
 
-#include "Core/Inference/Encode.h"
+#include "Core/Inference/Lanes.h"
 
 namespace inr {
 namespace INR_ISA {
+
+/// The features of one table entry. (An alias template would silently lose the attribute.)
+template <int Features> struct RowOf
+{
+  typedef float Type __attribute__((vector_size(sizeof(float) * Features)));
+};
+template <int Features> using Row = typename RowOf<Features>::Type;
 
 /// Eight samples of one feature.
 using Octet = Row<8>;
@@ -71,6 +78,28 @@ inline void TransposeSamples(const Row<1> (&rows)[8], Octet* out)
 {
   out[0] = Octet{rows[0][0], rows[1][0], rows[2][0], rows[3][0],
                  rows[4][0], rows[5][0], rows[6][0], rows[7][0]};
+}
+
+/// out[f * stride + k] = feature f of rows[k].
+template <int Features>
+inline void StoreColumns(const Row<Features> (&rows)[8], float* out, std::int64_t stride)
+{
+  Octet columns[Features];
+  TransposeSamples(rows, columns);
+  for (int f = 0; f < Features; ++f) {
+    std::memcpy(out + f * stride, &columns[f], sizeof(Octet));
+  }
+}
+template <int Features>
+inline void StoreColumns(const Row<Features> (&rows)[4], float* out, std::int64_t stride)
+{
+  float lanes[4][Features];
+  std::memcpy(lanes, rows, sizeof(lanes));
+  for (int f = 0; f < Features; ++f) {
+    for (int k = 0; k < 4; ++k) {
+      out[f * stride + k] = lanes[k][f];
+    }
+  }
 }
 
 } // namespace INR_ISA
