@@ -129,17 +129,27 @@ template <class T> inline T* AlignToLine(T* memory)
   return reinterpret_cast<T*>(reinterpret_cast<char*>(memory) + (64 - past) % 64);
 }
 
+/// Halves onto halves: a fixed order, the same for every compiler.
 inline float SumLanes(Floats value)
 {
-  // Halves onto halves: a fixed order, the same for every compiler.
-  float lanes[LaneCount];
-  Store(lanes, value);
-  for (int half = LaneCount / 2; half > 0; half /= 2) {
-    for (int k = 0; k < half; ++k) {
-      lanes[k] += lanes[k + half];
-    }
-  }
-  return lanes[0];
+#if defined(__AVX512F__)
+  value +=
+      __builtin_shufflevector(value, value, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7);
+  value +=
+      __builtin_shufflevector(value, value, 4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11);
+  value +=
+      __builtin_shufflevector(value, value, 2, 3, 0, 1, 6, 7, 4, 5, 10, 11, 8, 9, 14, 15, 12, 13);
+  value +=
+      __builtin_shufflevector(value, value, 1, 0, 3, 2, 5, 4, 7, 6, 9, 8, 11, 10, 13, 12, 15, 14);
+#elif defined(__AVX2__)
+  value += __builtin_shufflevector(value, value, 4, 5, 6, 7, 0, 1, 2, 3);
+  value += __builtin_shufflevector(value, value, 2, 3, 0, 1, 6, 7, 4, 5);
+  value += __builtin_shufflevector(value, value, 1, 0, 3, 2, 5, 4, 7, 6);
+#else
+  value += __builtin_shufflevector(value, value, 2, 3, 0, 1);
+  value += __builtin_shufflevector(value, value, 1, 0, 3, 2);
+#endif
+  return value[0];
 }
 
 } // namespace INR_ISA
