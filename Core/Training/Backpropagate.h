@@ -176,7 +176,7 @@ inline double LossGradient(const TrainBlock& block, const float* output, std::in
 
 inline void BackpropagateBlock(const ModelView& model, TrainBlock& block, float* workspace)
 {
-  const Activity activity{model, block.encoded, workspace};
+  const Activity activity{model, block.encoded, AlignToLine(workspace)};
   const std::int64_t samples = (block.count + LaneCount - 1) / LaneCount * LaneCount;
   Forward(model, activity, samples);
   float* delta = activity.scratch(0);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 namespace inr {
@@ -232,7 +233,8 @@ void GradientDescent::backpropagateShard(std::int64_t shard, const float* target
     return;
   }
   const ModelView& model = this->Views.view();
-  AlignedVector<float> workspace(static_cast<std::size_t>(this->Kernel.workspace(model)));
+  const auto floats = static_cast<std::size_t>(this->Kernel.workspace(model));
+  const std::unique_ptr<float[]> workspace(new float[floats]); // left as it is: no need for zeros
   std::vector<float>& weightGradient = this->ShardGradients[static_cast<std::size_t>(shard)];
   weightGradient.assign(this->Shape.gridOffset, 0.0f);
   const std::int64_t samples = SamplesPerCheck(this->Shape.gridOffset);
@@ -244,7 +246,7 @@ void GradientDescent::backpropagateShard(std::int64_t shard, const float* target
     block.gradientScale = 1.0f / static_cast<float>(total);
     block.encoded = this->Encoded.data() + (first - within) * this->Shape.encodedWidth + within;
     block.weightGradient = weightGradient.data();
-    this->Kernel.backpropagate(model, block, workspace.data());
+    this->Kernel.backpropagate(model, block, workspace.get());
     this->ShardLosses[static_cast<std::size_t>(shard)] += block.loss;
   }
 }

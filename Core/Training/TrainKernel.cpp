@@ -42,7 +42,11 @@ void Scatter(const ModelView& model, int level, const float* xyz, std::int64_t c
   }
 }
 
-std::int64_t Workspace(const ModelView& model) { return Activity::size(model); }
+std::int64_t Workspace(const ModelView& model)
+{
+  constexpr std::int64_t line = 64 / sizeof(float); // it need not begin at one
+  return Activity::size(model) + line;
+}
 
 } // namespace
 
