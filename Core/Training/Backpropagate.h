@@ -19,14 +19,14 @@ inline bool SlopeFromResult(Activation activation)
          activation == Activation::Sigmoid || activation == Activation::Tanh;
 }
 
-/// What the forward pass leaves for the backward pass, in one workspace. Rows of TrainBlockSize.
+/// What the forward pass leaves for the backward pass, in one workspace. Rows of TrainRowSize.
 struct Activity
 {
   const ModelView& model;
   float* encoded;
   float* workspace;
 
-  std::int64_t plane() const { return this->model.widest * TrainBlockSize; }
+  std::int64_t plane() const { return this->model.widest * TrainRowSize; }
   /// Input of layer l; of layerCount: the output.
   float* input(int layer) const
   {
@@ -47,7 +47,7 @@ struct Activity
   }
   static std::int64_t size(const ModelView& model)
   {
-    return (2 * model.layerCount + 2) * model.widest * TrainBlockSize;
+    return (2 * model.layerCount + 2) * model.widest * TrainRowSize;
   }
 };
 
@@ -69,13 +69,13 @@ inline void Forward(const ModelView& model, const Activity& activity, std::int64
     float* before = activity.before(l);
     float* after = activity.input(l + 1);
     MultiplyBlock({layer.weights, layer.rows, UsedColumns(model, l), layer.columns, 1},
-                  activity.input(l), TrainBlockSize, samples, before);
+                  activity.input(l), TrainRowSize, samples, before);
     for (int row = 0; row < layer.rows; ++row) {
       if (before != after) {
-        std::memcpy(after + row * TrainBlockSize, before + row * TrainBlockSize,
+        std::memcpy(after + row * TrainRowSize, before + row * TrainRowSize,
                     static_cast<std::size_t>(samples) * sizeof(float));
       }
-      Activate(ActivationOf(model, l), after + row * TrainBlockSize, samples);
+      Activate(ActivationOf(model, l), after + row * TrainRowSize, samples);
     }
   }
 }
@@ -91,7 +91,7 @@ inline void ApplySlope(const ModelView& model, const Activity& activity, int lay
   const float* before = activity.before(layer);
   const float* after = activity.input(layer + 1);
   for (int row = 0; row < model.layers[layer].rows; ++row) {
-    const std::int64_t at = row * TrainBlockSize;
+    const std::int64_t at = row * TrainRowSize;
     if (activation == Activation::ReLU) {
       for (std::int64_t k = 0; k < samples; k += LaneCount) {
         const Floats kept = Load(after + at + k) > Floats{} ? Load(delta + at + k) : Floats{};
@@ -114,11 +114,11 @@ inline void OuterTile(const float* delta, const float* input, std::int64_t sampl
     Floats in[Columns];
 #pragma GCC unroll 4
     for (int c = 0; c < Columns; ++c) {
-      in[c] = Load(input + c * TrainBlockSize + k);
+      in[c] = Load(input + c * TrainRowSize + k);
     }
 #pragma GCC unroll 4
     for (int r = 0; r < Rows; ++r) {
-      const Floats out = Load(delta + r * TrainBlockSize + k);
+      const Floats out = Load(delta + r * TrainRowSize + k);
 #pragma GCC unroll 4
       for (int c = 0; c < Columns; ++c) {
         sums[r][c] = MultiplyAdd(out, in[c], sums[r][c]);
@@ -139,8 +139,8 @@ inline void AddWeightGradient(const LayerView& layer, int usedColumns, const flo
   for (int row = 0; row < layer.rows;) {
     const bool wholeRows = row + 4 <= layer.rows;
     for (int column = 0; column < usedColumns;) {
-      const float* out = delta + row * TrainBlockSize;
-      const float* in = input + column * TrainBlockSize;
+      const float* out = delta + row * TrainRowSize;
+      const float* in = input + column * TrainRowSize;
       float* target = gradient + row * layer.columns + column;
       const bool wholeColumns = column + 4 <= usedColumns;
       if (wholeRows && wholeColumns) {
@@ -189,7 +189,7 @@ inline void BackpropagateBlock(const ModelView& model, TrainBlock& block, float*
     AddWeightGradient(layer, usedColumns, delta, activity.input(l), samples,
                       block.weightGradient + (layer.weights - model.layers[0].weights));
     float* out = l == 0 ? block.encoded : next;
-    MultiplyBlock({layer.weights, usedColumns, layer.rows, 1, layer.columns}, delta, TrainBlockSize,
+    MultiplyBlock({layer.weights, usedColumns, layer.rows, 1, layer.columns}, delta, TrainRowSize,
                   samples, out);
     next = delta;
     delta = out;

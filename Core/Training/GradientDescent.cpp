@@ -185,8 +185,7 @@ std::optional<double> GradientDescent::backpropagate(const std::vector<glm::vec3
   const auto count = static_cast<std::int64_t>(positions.size());
   const std::int64_t shards = (count + ShardSize - 1) / ShardSize;
   const std::int64_t blocks = (count + TrainBlockSize - 1) / TrainBlockSize;
-  this->Encoded.resize(
-      static_cast<std::size_t>(blocks * this->Shape.encodedWidth * TrainBlockSize));
+  this->Encoded.resize(static_cast<std::size_t>(blocks * this->Shape.encodedWidth * TrainRowSize));
   this->Grid.clear(); // an update leaves nothing, but not every gradient is entered
   this->ShardGradients.resize(static_cast<std::size_t>(shards));
   this->ShardLosses.assign(static_cast<std::size_t>(shards), 0.0);
@@ -220,7 +219,8 @@ void GradientDescent::encode(const float* xyz, std::int64_t count, const StopChe
     if (check.goesOn()) {
       this->Kernel.encode(model, static_cast<int>(task / pieces), xyz + 3 * first,
                           std::min(EncodePiece, count - first),
-                          this->Encoded.data() + first * model.encodedWidth);
+                          this->Encoded.data() +
+                              first / TrainBlockSize * TrainRowSize * model.encodedWidth);
     }
   });
 }
@@ -244,7 +244,9 @@ void GradientDescent::backpropagateShard(std::int64_t shard, const float* target
     block.targets = targets + first;
     block.count = std::min(samples, end - first);
     block.gradientScale = 1.0f / static_cast<float>(total);
-    block.encoded = this->Encoded.data() + (first - within) * this->Shape.encodedWidth + within;
+    block.encoded = this->Encoded.data() +
+                    (first - within) / TrainBlockSize * TrainRowSize * this->Shape.encodedWidth +
+                    within;
     block.weightGradient = weightGradient.data();
     this->Kernel.backpropagate(model, block, workspace.get());
     this->ShardLosses[static_cast<std::size_t>(shard)] += block.loss;

@@ -49,7 +49,7 @@ inline void ForEachGroup(const ModelView& model, int level, const float* table, 
 inline std::int64_t EncodedOffset(const ModelView& model, int level, std::int64_t first)
 {
   const std::int64_t block = first / TrainBlockSize;
-  return (block * model.encodedWidth + level * model.features) * TrainBlockSize +
+  return (block * model.encodedWidth + level * model.features) * TrainRowSize +
          first % TrainBlockSize;
 }
 
@@ -60,7 +60,7 @@ inline void EncodeLevel(const ModelView& model, int level, const float* xyz, std
   const float* const table = model.grid + model.levels[level].offset;
   ForEachGroup(model, level, table, xyz, count, [&](std::int64_t first, const Corners& corners) {
     InterpolateLevel<Features>(table, corners, encoded + EncodedOffset(model, level, first),
-                               TrainBlockSize);
+                               TrainRowSize);
   });
 }
 
@@ -74,7 +74,7 @@ inline void ScatterLanes(const Corners& corners, const float* gradient, int lane
   for (int k = 0; k < lanes; ++k) {
     Row<Features> own;
     for (int f = 0; f < Features; ++f) {
-      own[f] = gradient[f * TrainBlockSize + k];
+      own[f] = gradient[f * TrainRowSize + k];
     }
     for (int c = 0; c < 8; ++c) {
       const std::uint64_t at = static_cast<std::uint64_t>(corners.entry[c][k]) * Features;

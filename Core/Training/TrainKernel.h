@@ -11,6 +11,10 @@ namespace inr {
 /// Samples that go through network and back together.
 constexpr std::int64_t TrainBlockSize = 512;
 
+/// Floats from a row of a block to the next: a line more than there are samples, as rows that are a
+/// power of two apart would share few places of a cache and drive each other out.
+constexpr std::int64_t TrainRowSize = TrainBlockSize + 16;
+
 /// One block of samples and where their gradients go.
 struct TrainBlock
 {
@@ -18,7 +22,7 @@ struct TrainBlock
   std::int64_t count;   ///< 1 to TrainBlockSize
   float gradientScale;  ///< 1 / (samples in the mini-batch)
   /// Encoded features; overwritten by d loss / d encoded feature. Row f of encodedWidth starts at
-  /// f * TrainBlockSize.
+  /// f * TrainRowSize.
   float* encoded;
   /// d loss / d MLP weight, in the parameter vector's order; added to.
   float* weightGradient;
@@ -74,7 +78,7 @@ struct OrthogonalRun
 
 /// What one gradient step needs, for one instruction set.
 ///
-/// Encoded features and their gradients have a block of encodedWidth * TrainBlockSize floats per
+/// Encoded features and their gradients have a block of encodedWidth * TrainRowSize floats per
 /// TrainBlockSize samples of the batch.
 struct TrainKernel
 {
