@@ -25,7 +25,8 @@ struct State
   {
     for (std::size_t k = 0; k < this->second.size(); ++k) {
       this->second[k] *= this->second[k];
-      this->updates[k] = static_cast<std::uint16_t>(k % 5);
+      // At first every one has another number of them, then sixteen the same.
+      this->updates[k] = static_cast<std::uint16_t>(k < 64 ? k % 5 : k / 16 % 5);
     }
   }
 
@@ -90,12 +91,12 @@ TEST(Adam, UpdatesWhatWasTouchedAndHasAGradient)
       {9.0f, 0.1f}, {2.0f, 0.5f}, {1.5f, 0.8f}, {1.25f, 0.9f}, {1.125f, 0.999f}};
   for (const std::string& kernel : UsableKernels()) {
     const inr::TrainKernel& train = inr::TrainKernelFor(inr::ChooseInstructionSet(kernel));
-    for (const std::int64_t count : {2, 8, 27, 160}) {
+    for (const std::int64_t count : {2, 8, 27, 160, 4396}) {
       State before(count);
       for (std::size_t k = 0; k < before.gradients.size(); ++k) {
         const std::size_t line = k / static_cast<std::size_t>(inr::GradientLine);
-        before.touched[line] = line % 3 == 0 ? 1 : 0;
-        const bool moves = before.touched[line] != 0 && k % 4 != 1;
+        before.touched[line] = line % 3 == 0 ? 1 + line % 2 : 0;
+        const bool moves = before.touched[line] != 0 && (k % 4 != 1 || k > 96);
         before.gradients[k] = moves ? before.gradients[k] : 0.0f;
       }
       State after = before;
