@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/CacheLine.h"
+
 #include <cstddef>
 #include <new>
 #include <vector>
@@ -11,7 +13,8 @@ namespace inr {
 template <class T> struct LineAllocator
 {
   using value_type = T;
-  static constexpr std::align_val_t Line{64};
+  static constexpr std::align_val_t Line{CacheLineBytes};
+  static_assert(alignof(T) <= CacheLineBytes, "begins at lines, not at more");
 
   LineAllocator() = default;
   template <class Other> LineAllocator(const LineAllocator<Other>&) noexcept {}
@@ -36,7 +39,8 @@ template <class A, class B> bool operator!=(const LineAllocator<A>&, const LineA
 }
 
 /// A vector that begins at a cache line. The features of a table entry, or the lanes of a vector,
-/// then lie in one line and not in two, which would be twice the reads of memory.
+/// then lie in one line and not in two, which would be twice the reads of memory: if what lies in
+/// front of them fills whole lines, as the weights of networks do that are a multiple of 16 wide.
 template <class T> using AlignedVector = std::vector<T, LineAllocator<T>>;
 
 } // namespace inr

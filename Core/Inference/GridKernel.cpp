@@ -19,7 +19,7 @@ static_assert(StripSize % PieceWidth == 0 && StripHeight <= RowCapacity,
 
 std::int64_t Workspace(const ModelView& model)
 {
-  return static_cast<std::int64_t>(sizeof(LevelPiece)) * model.levelCount + 64 +
+  return static_cast<std::int64_t>(sizeof(LevelPiece)) * model.levelCount + CacheLineBytes +
          static_cast<std::int64_t>(sizeof(float)) * StripWorkspace(model);
 }
 

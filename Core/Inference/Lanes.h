@@ -2,13 +2,15 @@
 //
 // Vectors of one instruction set. Only for sources that are built once per instruction set (see
 // INRInstructionSets.cmake): INR_ISA names the namespace, so that no two builds share a symbol.
-// Such sources use neither the standard library's templates nor inline functions from elsewhere:
-// the linker would keep one copy, and it might be the one this processor cannot run.
+// Such sources use no functions of the standard library's templates and no inline functions from
+// elsewhere: the linker would keep one copy, and it might be the one this processor cannot run.
 #pragma once
 
 #ifdef __FAST_MATH__
 #error "Build without -ffast-math and -Ofast: NaN, infinities and the order of sums matter here."
 #endif
+
+#include "Core/CacheLine.h"
 
 #include <cstdint>
 #include <cstring>
@@ -125,8 +127,9 @@ inline bool IsZero(UInts value)
 /// The first place from `memory` on where whole vectors lie within cache lines.
 template <class T> inline T* AlignToLine(T* memory)
 {
-  const std::uintptr_t past = reinterpret_cast<std::uintptr_t>(memory) % 64;
-  return reinterpret_cast<T*>(reinterpret_cast<char*>(memory) + (64 - past) % 64);
+  constexpr std::uintptr_t line = CacheLineBytes;
+  const std::uintptr_t past = reinterpret_cast<std::uintptr_t>(memory) % line;
+  return reinterpret_cast<T*>(reinterpret_cast<char*>(memory) + (line - past) % line);
 }
 
 /// Halves onto halves: a fixed order, the same for every compiler.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/CacheLine.h"
 #include "Core/Inference/InferencePrecision.h"
 #include "Core/Model/Description.h"
 
@@ -108,7 +109,7 @@ public:
 
 private:
   /// Sixteen pairs.
-  struct alignas(64) Line
+  struct alignas(CacheLineBytes) Line
   {
     std::uint32_t pairs[16];
   };

@@ -58,7 +58,7 @@ inline std::int64_t StripCapacity(const ModelView& model)
 /// Scratch memory for strips, in floats.
 inline std::int64_t StripWorkspace(const ModelView& model)
 {
-  return 2 * StripCapacity(model) * (StripSize + 1) + 64;
+  return 2 * StripCapacity(model) * (StripSize + 1) + CacheLineFloats;
 }
 
 inline StripPair MakeStrips(const ModelView& model, float* workspace)

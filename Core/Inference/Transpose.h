@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Features of eight samples, turned over in registers; see Lanes.h for what may be in here.
+// Table entries, and features of samples from one after the other to side by side: of eight in
+// registers; see Lanes.h for what may be in here.
 #pragma once
 
 #include "Core/Inference/Lanes.h"
@@ -90,6 +91,7 @@ inline void StoreColumns(const Row<Features> (&rows)[8], float* out, std::int64_
     std::memcpy(out + f * stride, &columns[f], sizeof(Octet));
   }
 }
+/// Of four, where a vector has no more lanes.
 template <int Features>
 inline void StoreColumns(const Row<Features> (&rows)[4], float* out, std::int64_t stride)
 {

@@ -36,9 +36,8 @@ struct TallMatrix
 
 inline std::int64_t OrthogonalWorkspace(int rows, int columns)
 {
-  constexpr std::int64_t line = 64 / sizeof(float);
   const TallMatrix shape(rows, columns);
-  return 2 * (shape.size() + shape.squareSize()) + line;
+  return 2 * (shape.size() + shape.squareSize()) + CacheLineFloats;
 }
 
 /// Enters the gradient into the momentum; to[...] = where the step goes, as far as both of them.

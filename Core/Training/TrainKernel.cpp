@@ -44,8 +44,7 @@ void Scatter(const ModelView& model, int level, const float* xyz, std::int64_t c
 
 std::int64_t Workspace(const ModelView& model)
 {
-  constexpr std::int64_t line = 64 / sizeof(float); // it need not begin at one
-  return Activity::size(model) + line;
+  return Activity::size(model) + CacheLineFloats; // it need not begin at a line
 }
 
 } // namespace

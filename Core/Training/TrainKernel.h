@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/CacheLine.h"
 #include "Core/Inference/InstructionSet.h"
 #include "Core/Inference/ModelView.h"
 
@@ -13,7 +14,7 @@ constexpr std::int64_t TrainBlockSize = 512;
 
 /// Floats from a row of a block to the next: a line more than there are samples, as rows that are a
 /// power of two apart would share few places of a cache and drive each other out.
-constexpr std::int64_t TrainRowSize = TrainBlockSize + 16;
+constexpr std::int64_t TrainRowSize = TrainBlockSize + CacheLineFloats;
 
 /// One block of samples and where their gradients go.
 struct TrainBlock
@@ -82,10 +83,11 @@ struct OrthogonalRun
 /// TrainBlockSize samples of the batch.
 struct TrainKernel
 {
-  std::int64_t (*workspace)(const ModelView& model); ///< floats
+  std::int64_t (*workspace)(const ModelView& model); ///< of backpropagate, floats
   /// One level's features of `count` samples.
   void (*encode)(const ModelView& model, int level, const float* xyz, std::int64_t count,
                  float* encoded);
+  /// Nothing is read of the workspace that was not written before; it may begin anywhere.
   void (*backpropagate)(const ModelView& model, TrainBlock& block, float* workspace);
   /// Adds one level's share of d loss / d grid parameter. Serial, so that the order of additions is
   /// fixed.

@@ -24,8 +24,7 @@
 
 namespace {
 
-template <typename Values>
-void WriteNumbers(const std::string& path, const Values& values)
+template <typename Values> void WriteNumbers(const std::string& path, const Values& values)
 {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(values.data()),

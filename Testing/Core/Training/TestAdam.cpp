@@ -25,9 +25,17 @@ struct State
   {
     for (std::size_t k = 0; k < this->second.size(); ++k) {
       this->second[k] *= this->second[k];
-      // At first every one has another number of them, then sixteen the same.
-      this->updates[k] = static_cast<std::uint16_t>(k < 64 ? k % 5 : k / 16 % 5);
+      this->updates[k] = UpdatesBefore(k);
     }
+  }
+
+  /// At first each has another number of them, then sixteen the same, then but for one in between.
+  static std::uint16_t UpdatesBefore(std::size_t k)
+  {
+    if (k < 64) {
+      return static_cast<std::uint16_t>(k % 5);
+    }
+    return static_cast<std::uint16_t>(k >= 256 && k % 8 == 5 ? 1 : k / 16 % 5);
   }
 
   static std::vector<float> Random(std::uint64_t seed, std::int64_t count)
@@ -95,7 +103,7 @@ TEST(Adam, UpdatesWhatWasTouchedAndHasAGradient)
       State before(count);
       for (std::size_t k = 0; k < before.gradients.size(); ++k) {
         const std::size_t line = k / static_cast<std::size_t>(inr::GradientLine);
-        before.touched[line] = line % 3 == 0 ? 1 + line % 2 : 0;
+        before.touched[line] = line % 3 == 0 || line / 8 % 2 == 1 ? 1 + line % 2 : 0;
         const bool moves = before.touched[line] != 0 && (k % 4 != 1 || k > 96);
         before.gradients[k] = moves ? before.gradients[k] : 0.0f;
       }

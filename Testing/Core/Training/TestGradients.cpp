@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -187,6 +188,49 @@ TEST(GradientDescent, AStoppedStepChangesNothing)
   }
   EXPECT_GT(stops, 3);
   EXPECT_EQ(stopped.parameters(), expected.parameters());
+}
+
+/// What the network's way back leaves of a block, in a workspace that begins `offset` floats behind
+/// a line and is full of `filling`.
+struct BlockResult
+{
+  BlockResult(const std::string& kernel, std::int64_t offset, float filling)
+      : Weights(this->Shape.gridOffset), Encoded(this->blockSize(), 0.25f)
+  {
+    const inr::TrainKernel& train = inr::TrainKernelFor(inr::ChooseInstructionSet(kernel));
+    const auto model = CalmModel(this->Description);
+    const inr::ModelViewStorage views(this->Description, this->Shape, model->parameters.data());
+    const std::vector<float> targets = MixedTargets(Count);
+    inr::AlignedVector<float> workspace(
+        static_cast<std::size_t>(train.workspace(views.view()) + offset), filling);
+    inr::TrainBlock block{targets.data(),       Count, 1.0f, this->Encoded.data(),
+                          this->Weights.data(), 0};
+    train.backpropagate(views.view(), block, workspace.data() + offset);
+    this->Loss = block.loss;
+  }
+
+  std::size_t blockSize() const
+  {
+    return static_cast<std::size_t>(this->Shape.encodedWidth * inr::TrainRowSize);
+  }
+
+  static constexpr std::int64_t Count = 100; // fills no vector
+  inr::Description Description = SmallDescription();
+  inr::Layout Shape{this->Description};
+  inr::AlignedVector<float> Weights, Encoded;
+  double Loss = 0;
+};
+
+TEST(Gradients, DependOnNothingThatAWorkspaceHeld)
+{
+  for (const std::string& kernel : UsableKernels()) {
+    const BlockResult expected(kernel, 0, 0.0f);
+    EXPECT_GT(expected.Loss, 0);
+    const BlockResult found(kernel, 5, std::numeric_limits<float>::quiet_NaN());
+    EXPECT_EQ(found.Weights, expected.Weights);
+    EXPECT_EQ(found.Encoded, expected.Encoded);
+    EXPECT_EQ(found.Loss, expected.Loss);
+  }
 }
 
 /// Of a step in training.
