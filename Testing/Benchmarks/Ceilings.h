@@ -3,6 +3,7 @@
 // What one core could do at most: the arithmetic of the network, or the loads of the grid.
 #pragma once
 
+#include "Core/AlignedVector.h"
 #include "Core/Inference/HugePages.h"
 #include "Core/Random.h"
 
@@ -88,7 +89,7 @@ inline void Arithmetic(benchmark::State& state, FusedOperations operations)
 /// from a list, as they come from hashes in inference.
 inline void RandomLoads(benchmark::State& state, std::uint64_t rows)
 {
-  std::vector<float> table(rows * 8, 1.0f);
+  inr::AlignedVector<float> table(rows * 8, 1.0f); // as a model's
   inr::PreferHugePages(table.data(), table.size() * sizeof(float));
   std::vector<std::uint32_t> places(1 << 16);
   for (std::size_t k = 0; k < places.size(); ++k) {
