@@ -5,10 +5,12 @@
 
 #include "Core/AlignedVector.h"
 #include "Core/Inference/HugePages.h"
-#include "Core/Random.h"
+#include "Core/Model/GridIndex.h"
+#include "Testing/Core/RandomModel.h"
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -85,28 +87,52 @@ inline void Arithmetic(benchmark::State& state, FusedOperations operations)
   state.SetItemsProcessed(state.iterations() * rounds * each);
 }
 
-/// Reads of eight floats each at random places of a table of `rows` times as many. The places come
-/// from a list, as they come from hashes in inference.
-inline void RandomLoads(benchmark::State& state, std::uint64_t rows)
+/// The table entries that inference at random positions reads, counted from the grid's start: of a
+/// strip of samples one level's after the other's.
+inline std::vector<std::uint32_t> EntriesOfSamples(const inr::Description& description,
+                                                   std::int64_t samples)
 {
-  inr::AlignedVector<float> table(rows * 8, 1.0f); // as a model's
-  inr::PreferHugePages(table.data(), table.size() * sizeof(float));
-  std::vector<std::uint32_t> places(1 << 16);
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    places[k] = static_cast<std::uint32_t>(inr::RandomBits(1, k) % rows);
+  constexpr std::int64_t strip = 64;
+  const std::vector<glm::vec3> positions = RandomPositions(samples);
+  std::vector<std::uint32_t> entries;
+  for (std::int64_t first = 0; first < samples; first += strip) {
+    for (const inr::GridLevel& level : inr::Layout(description).levels) {
+      for (std::int64_t k = first; k < std::min(first + strip, samples); ++k) {
+        const glm::uvec3 cell(positions[static_cast<std::size_t>(k)] * level.scale + 0.5f);
+        for (unsigned c = 0; c < 8; ++c) {
+          const std::uint32_t entry =
+              inr::GridIndex(level, description.grid.hash, cell.x + (c & 1u),
+                             cell.y + ((c >> 1) & 1u), cell.z + (c >> 2));
+          entries.push_back(static_cast<std::uint32_t>(level.offset) + entry);
+        }
+      }
+    }
   }
-  std::uint64_t shift = 0;
+  return entries;
+}
+
+/// Samples whose table entries, of eight features, are read and added up, no more: where they are
+/// is known before, and they are fetched ahead.
+inline void EntryLoads(benchmark::State& state, const inr::Description& description)
+{
+  constexpr std::int64_t samples = 1 << 16;
+  constexpr std::size_t ahead = 512; // more gains nothing
+  const std::vector<std::uint32_t> entries = EntriesOfSamples(description, samples);
+  const inr::Layout layout(description);
+  constexpr std::size_t features = 8;
+  inr::AlignedVector<float> table(layout.parameterCount - layout.gridOffset, 1.0f); // as a model's
+  inr::PreferHugePages(table.data(), table.size() * sizeof(float));
   for (auto step : state) {
-    float sums[8] = {};
-    shift = (shift + 7919) % rows; // other places every time
-    for (const std::uint32_t place : places) {
-      const std::uint64_t at = place + shift;
-      const float* const row = &table[(at < rows ? at : at - rows) * 8];
-      for (int f = 0; f < 8; ++f) {
-        sums[f] += row[f];
+    float sums[features] = {};
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      const std::size_t later = std::min(k + ahead, entries.size() - 1);
+      __builtin_prefetch(&table[entries[later] * features], 0, 2); // as inference does
+      const float* const entry = &table[entries[k] * features];
+      for (std::size_t f = 0; f < features; ++f) {
+        sums[f] += entry[f];
       }
     }
     benchmark::DoNotOptimize(sums);
   }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(places.size()));
+  state.SetItemsProcessed(state.iterations() * samples);
 }

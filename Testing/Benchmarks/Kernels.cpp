@@ -198,10 +198,7 @@ void RegisterCeilings()
                                    operations);
     }
   }
-  const inr::Layout layout(DefaultDescription());
-  const auto features = static_cast<std::size_t>(DefaultDescription().grid.features);
-  benchmark::RegisterBenchmark("ceiling, loads, default model", RandomLoads,
-                               (layout.parameterCount - layout.gridOffset) / features);
+  benchmark::RegisterBenchmark("ceiling, loads, default model", EntryLoads, DefaultDescription());
 }
 
 [[maybe_unused]] const bool Registered = [] {

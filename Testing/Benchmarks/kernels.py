@@ -20,7 +20,6 @@ TARGETS = {"brick AVX512": 3.5, "brick AVX2": 1.5, "brick vs scattered AVX512": 
            "scattered AVX2 of ceiling": 0.6, "brick two cores vs one AVX512": 1.8,
            "brick two cores vs one AVX2": 1.8, "brick AVX512 bfloat16": 6,
            "brick AMX": 12, "brick vs scattered AMX": 4, "brick two cores vs one AMX": 1.8}
-LOADS = 64  # of table entries, per sample of the default model
 WEIGHTS = 4 * 64 * 64 + 64  # products per sample of the default model
 
 
@@ -42,7 +41,7 @@ def rates(program, pattern, model=None):
 
 
 def unit_of(name):
-    if "ceiling" in name:
+    if "ceiling, arithmetic" in name:
         return "M/s"
     return "M voxels/s" if name.startswith("brick of") or "trained" in name else "M samples/s"
 
@@ -57,7 +56,7 @@ def plain(rate, model=None):
 
 def derived(rate):
     """The figures that have a target: value, unit, what they are a ratio to, note."""
-    loads = rate["ceiling, loads, default model"] / LOADS
+    loads = rate["ceiling, loads, default model"]
     for label, kernel in SETS.items():
         if f"{MODEL}, {kernel}, 1 thread" not in rate:
             continue
