@@ -79,7 +79,9 @@ inline void AppendTile(Activation activation, const Floats (&sums)[Rows][Groups]
 {
   Floats values[Rows][Groups];
   ActivateTile(activation, sums, values);
-  AppendPairs(values, row, rows, out);
+  Strip to = out; // stays in registers: for all a compiler knows, a store might change `out`
+  AppendPairs(values, row, rows, to);
+  out.count = to.count;
 }
 
 } // namespace INR_ISA

@@ -68,12 +68,14 @@ inline void AppendTile(Activation activation, const Floats (&sums)[Rows][Groups]
 {
   Floats values[Rows][Groups];
   ActivateTile(activation, sums, values);
+  Strip to = out; // stays in registers: for all a compiler knows, a store might change `out`
 #pragma GCC unroll 8
   for (int r = 0; r < Rows; ++r) {
     if (row + r < rows) {
-      AppendRow<Groups>(values[r], row + r, out);
+      AppendRow<Groups>(values[r], row + r, to);
     }
   }
+  out.count = to.count;
 }
 
 } // namespace INR_ISA
