@@ -109,6 +109,25 @@ void Bricks(benchmark::State& state, const inr::Description& description, const 
   InferBricks(state, RandomModel(description), kernel, threads, 256, 0);
 }
 
+/// 512 x 512 voxels of a volume of 4096^3, all at one place along `axis`: of those across x, no two
+/// lie beside each other along it.
+void InferSlice(benchmark::State& state, inr::ModelPointer model, const std::string& kernel,
+                int axis)
+{
+  const auto evaluator = EvaluatorOf(std::move(model), kernel);
+  const inr::Arena arena(1);
+  glm::i64vec3 size(512);
+  size[axis] = 1;
+  const inr::Lattice lattice = inr::VoxelLattice(glm::i64vec3(4096), glm::i64vec3(1024), size);
+  std::vector<float> values(512 * 512);
+  for (auto step : state) {
+    inr::EvaluateLattice(*evaluator, arena, lattice, values.data());
+    benchmark::DoNotOptimize(values.data());
+  }
+  state.counters["threads_used"] = 1;
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(values.size()));
+}
+
 /// A linear field: costs nothing beside the training step.
 class Ramp : public inr::SampleSource
 {
@@ -176,6 +195,20 @@ void RegisterBricks(const std::string& what, const inr::ModelPointer& model, std
   }
 }
 
+void RegisterSlices()
+{
+  const inr::ModelPointer model = RandomModel(DefaultDescription());
+  for (const std::string& kernel : InferenceKernels()) {
+    for (const auto& [axis, name] : {std::pair{0, "x"}, {1, "y"}, {2, "z"}}) {
+      benchmark::RegisterBenchmark(("slice of 4096^3 across " + std::string(name) +
+                                    ", default model, " + kernel + ", 1 thread")
+                                       .c_str(),
+                                   InferSlice, model, kernel, axis)
+          ->MeasureProcessCPUTime();
+    }
+  }
+}
+
 /// What numbers cost that processors or floats are bad at: denormal ones, and those that overflow.
 void RegisterBadNumbers()
 {
@@ -210,6 +243,7 @@ void RegisterCeilings()
   }
   Register("inference", Inference, InferenceKernels(), false);
   RegisterBadNumbers();
+  RegisterSlices();
   Register("brick inference", Bricks, InferenceKernels(), false);
   Register("training", Training, UsableKernels(), true);
   return true;

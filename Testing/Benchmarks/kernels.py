@@ -43,7 +43,7 @@ def rates(program, pattern, model=None):
 def unit_of(name):
     if "ceiling, arithmetic" in name:
         return "M/s"
-    return "M voxels/s" if name.startswith("brick of") or "trained" in name else "M samples/s"
+    return "M voxels/s" if name.startswith(("brick of", "slice of")) or "trained" in name else "M samples/s"
 
 
 def plain(rate, model=None):

@@ -141,6 +141,15 @@ TEST_F(BFloat16, ValuesDoNotDependOnTheirNeighbours)
   }
 }
 
+TEST_F(BFloat16, ThinLatticesArePartsOfWideOnes)
+{
+  for (const inr::Description& description : Descriptions()) {
+    for (const inr::InferenceKernels& kernels : this->Kernels) {
+      ExpectThinLatticesAreParts(*inr::MakeEvaluator(CalmModel(description), kernels));
+    }
+  }
+}
+
 /// A kernel's memory, full of something. Nobody writes behind it.
 class Workspace
 {
