@@ -20,14 +20,17 @@ TARGETS = {"brick AVX512": 3.5, "brick AVX2": 1.5, "brick vs scattered AVX512": 
            "scattered AVX2 of ceiling": 0.6, "brick two cores vs one AVX512": 1.8,
            "brick two cores vs one AVX2": 1.8, "brick AVX512 bfloat16": 6,
            "brick AMX": 12, "brick vs scattered AMX": 4, "brick two cores vs one AMX": 1.8}
+RUNS = 7
 WEIGHTS = 4 * 64 * 64 + 64  # products per sample of the default model
 
 
 def rates(program, pattern, model=None):
-    """Name -> M items/s, the best of three runs each. Runs timed by processor time count all
+    """Name -> M items/s, the best of some runs each, all of them in random order: what others do on
+    the machine for a while does not hit all runs of one. Runs timed by processor time count all
     threads' together."""
     environment = dict(os.environ, **({"INR_MODEL": model} if model else {}))
-    output = subprocess.run([program, "--benchmark_format=json", "--benchmark_repetitions=3",
+    output = subprocess.run([program, "--benchmark_format=json", f"--benchmark_repetitions={RUNS}",
+                             "--benchmark_enable_random_interleaving=true",
                              "--benchmark_min_time=0.2", f"--benchmark_filter={pattern}"],
                             check=True, capture_output=True, env=environment).stdout
     found = {}
@@ -37,7 +40,7 @@ def rates(program, pattern, model=None):
         name, _, clock = run["name"].partition("/")
         threads = run["threads_used"] if "process" in clock else 1
         found[name] = max(found.get(name, 0), run["items_per_second"] * threads / 1e6)
-    return found
+    return dict(sorted(found.items()))
 
 
 def unit_of(name):
@@ -50,7 +53,7 @@ def plain(rate, model=None):
     """`model`: the file of the trained one."""
     trained = f"; {os.path.basename(model)}" if model else ""
     return [results_file.result(name, round(value, 3), unit_of(name), "higher",
-                                "best of 3 runs" + (trained if "trained" in name else ""))
+                                f"best of {RUNS} runs" + (trained if "trained" in name else ""))
             for name, value in rate.items()]
 
 
