@@ -145,6 +145,9 @@ public:
 
   void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const override
   {
+    if (axes[0].empty() || axes[1].empty() || axes[2].empty()) {
+      return;
+    }
     const ModelView& model = this->Network.view();
     const auto bytes = static_cast<std::size_t>(this->Kernels.lattices->workspace(model));
     const std::unique_ptr<unsigned char[]> workspace(new unsigned char[bytes]);

@@ -76,8 +76,8 @@ void EvaluateParallel(const Evaluator& evaluator, const Arena& arena, const glm:
 
 /// Values at the points of a regular lattice: point (i, j, k) of `points` sits at
 /// u = first + (i, j, k) * step, clamped to [0, 1], and steps are not negative; x fastest in
-/// `values`. A value is that of evaluateGrid, whatever the lattice around it. Points are evaluated
-/// eight along x at a time: the fewer there are, the more does one of them cost.
+/// `values`. A value is that of evaluateGrid, whatever the lattice around it. The grid is
+/// interpolated for eight points along x at a time, whether or not all of them are wanted.
 struct Lattice
 {
   glm::dvec3 first{0.0};

@@ -49,18 +49,6 @@ void EncodeStrip(const ModelView& model, const Coordinates& y, int rows, LevelPi
   }
 }
 
-/// Samples of a row that have places in a strip: all of a piece, or as many as hold the `count`
-/// that are wanted. A strip of thin pieces has the more rows, and the network is asked for little
-/// else.
-int PlacesFor(int count)
-{
-  int places = 1;
-  while (places < count) {
-    places *= 2;
-  }
-  return places;
-}
-
 /// Rows of the strip that begins at row j, `height` at most; 0 where none does.
 int RowsFrom(const LatticeAxis& y, std::int64_t j, int height)
 {
@@ -75,63 +63,97 @@ int WholeRows(int rows)
   return (rows * PieceWidth + LaneCount - 1) / LaneCount * LaneCount / PieceWidth;
 }
 
-/// Encodes the first `places` samples of each of `rows` rows, side by side in strips.in; the last
-/// one is repeated up to a whole vector.
-void EncodeThinStrip(const ModelView& model, const float* y, int rows, int places,
+/// Fetches what a piece needs of one level for the next strip.
+struct FetchRows
+{
+  const ModelView& model;
+  const Coordinates& heights;
+  int rows;
+  const LevelPiece* pieces;
+
+  void operator()(int level) const
+  {
+    PrefetchRows(this->model, level, this->heights, this->rows, this->pieces[level]);
+  }
+};
+
+/// Rows of a layer, `count` samples of each: `samples` has them one after the other.
+void StoreRows(const float* samples, int rows, std::int64_t count, std::int64_t width, float* layer)
+{
+  for (int row = 0; row < rows; ++row) {
+    std::memcpy(layer + row * width, samples + row * count,
+                static_cast<std::size_t>(count) * sizeof(float));
+  }
+}
+
+/// A whole piece in the rows of a layer, which is `width` wide; its values there are from `layer`
+/// on.
+void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t width,
+                   LevelPiece* pieces, StripPair& strips, float* layer)
+{
+  const int tiles = HiddenTiles(model);
+  const int units = HasFarLevels(model) ? model.levelCount : 0;
+  Coordinates heights;
+  LoadCoordinates(y.u, RowsFrom(y, 0, StripHeight), heights);
+  for (std::int64_t j = 0; j < y.count; j += StripHeight) {
+    const int rows = RowsFrom(y, j, StripHeight);
+    EncodeStrip(model, heights, WholeRows(rows), pieces, strips.in.values);
+    const int next = RowsFrom(y, j + StripHeight, StripHeight);
+    if (next > 0) {
+      LoadCoordinates(y.u + j + StripHeight, next, heights);
+    }
+    const FetchRows fetch{model, heights, next, pieces};
+    Evenly between(fetch, next > 0 ? units : 0, tiles);
+    float outputs[StripSize];
+    RunStrip(model, strips, rows * PieceWidth, outputs, between);
+    StoreRows(outputs, rows, PieceWidth, width, layer + j * width);
+  }
+}
+
+/// Encodes `rows` rows of a piece and moves the first `count` samples of each, one row after the
+/// other, into strips.in; the last one is repeated up to a whole vector. strips.out is scratch.
+void EncodeThinStrip(const ModelView& model, const float* y, int rows, int count,
                      LevelPiece* pieces, StripPair& strips)
 {
-  for (int first = 0; first < rows; first += StripHeight) {
-    const int some = rows - first < StripHeight ? rows - first : StripHeight;
+  for (int begin = 0; begin < rows; begin += StripHeight) {
+    const int some = rows - begin < StripHeight ? rows - begin : StripHeight;
     Coordinates heights;
-    LoadCoordinates(y + first, some, heights);
+    LoadCoordinates(y + begin, some, heights);
     EncodeStrip(model, heights, some, pieces, strips.out.values);
     for (int f = 0; f < model.encodedWidth; ++f) {
       const float* const from = strips.out.values + f * StripSize;
-      float* const to = strips.in.values + f * StripSize + first * places;
+      float* const to = strips.in.values + f * StripSize + begin * count;
       for (int row = 0; row < some; ++row) {
-        std::memcpy(to + row * places, from + row * PieceWidth,
-                    static_cast<std::size_t>(places) * sizeof(float));
+        for (int k = 0; k < count; ++k) {
+          to[row * count + k] = from[row * PieceWidth + k];
+        }
       }
     }
   }
   for (int f = 0; f < model.encodedWidth; ++f) {
     float* const samples = strips.in.values + f * StripSize;
-    for (int k = rows * places; k % LaneCount != 0; ++k) {
+    for (int k = rows * count; k % LaneCount != 0; ++k) {
       samples[k] = samples[k - 1];
     }
   }
 }
 
-/// `count` samples of each row of a layer, from `first` on; `layer` is the layer's values.
-void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t first, int count,
-                   std::int64_t width, LevelPiece* pieces, StripPair& strips, float* layer)
+/// The same of a piece of which only the first `count` samples of a row are wanted: the network,
+/// which is most of the work, is asked for no others. What these few need of the grid, they share;
+/// nothing is fetched ahead.
+void EvaluateThinPiece(const ModelView& model, const LatticeAxis& y, int count, std::int64_t width,
+                       LevelPiece* pieces, StripPair& strips, float* layer)
 {
-  const int places = PlacesFor(count);
-  const bool isThin = places < PieceWidth;
-  const int height = StripSize / places;
-  const int tiles = HiddenTiles(model);
-  const int units = HasFarLevels(model) ? model.levelCount : 0;
-  Coordinates heights;
-  LoadCoordinates(y.u, RowsFrom(y, 0, StripHeight), heights);
+  const int height = StripSize / count;
   for (std::int64_t j = 0; j < y.count; j += height) {
     const int rows = RowsFrom(y, j, height);
-    const int next = isThin ? 0 : RowsFrom(y, j + height, height);
-    if (isThin) {
-      EncodeThinStrip(model, y.u + j, rows, places, pieces, strips);
-    } else {
-      EncodeStrip(model, heights, WholeRows(rows), pieces, strips.in.values);
-    }
-    if (next > 0) {
-      LoadCoordinates(y.u + j + height, next, heights);
-    }
-    auto fetch = [&](int level) { PrefetchRows(model, level, heights, next, pieces[level]); };
-    Evenly between(fetch, next > 0 ? units : 0, tiles);
+    EncodeThinStrip(model, y.u + j, rows, count, pieces, strips);
+    const Coordinates none{};
+    const FetchRows fetch{model, none, 0, pieces};
+    Evenly between(fetch, 0, HiddenTiles(model));
     float outputs[StripSize];
-    RunStrip(model, strips, rows * places, outputs, between);
-    for (int row = 0; row < rows; ++row) {
-      std::memcpy(layer + (j + row) * width + first, outputs + row * places,
-                  static_cast<std::size_t>(count) * sizeof(float));
-    }
+    RunStrip(model, strips, rows * count, outputs, between);
+    StoreRows(outputs, rows, count, width, layer + j * width);
   }
 }
 
@@ -155,8 +177,12 @@ void EvaluateGrid(const ModelView& model, const LatticeAxis (&axes)[3], float* v
       for (int l = 0; l < model.levelCount; ++l) {
         BeginLayer(model.levels[l], model.interpolation, z, pieces[l]);
       }
-      EvaluatePiece(model, axes[1], first, count, width, pieces, strips,
-                    values + k * axes[1].count * width);
+      float* const layer = values + k * axes[1].count * width + first;
+      if (count == PieceWidth) {
+        EvaluatePiece(model, axes[1], width, pieces, strips, layer);
+      } else {
+        EvaluateThinPiece(model, axes[1], count, width, pieces, strips, layer);
+      }
     }
   }
 }

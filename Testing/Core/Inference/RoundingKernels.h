@@ -3,6 +3,7 @@
 
 #include "Core/Inference/InferenceKernels.h"
 #include "Testing/Core/Inference/LongDoubleTruth.h"
+#include "Testing/Core/Kernels.h"
 #ifdef __x86_64__
 #include "Testing/Core/Inference/TileImitation.h"
 #include "Testing/Core/Inference/TileTraps.h"
@@ -51,3 +52,13 @@ private:
   std::unique_ptr<imitation::TileTraps> Traps;
 #endif
 };
+
+/// Those, and the ones for float32 that this machine runs.
+inline std::vector<inr::InferenceKernels> AllKernels(const RoundingKernels& rounding)
+{
+  std::vector<inr::InferenceKernels> all(rounding.begin(), rounding.end());
+  for (const std::string& kernel : UsableKernels()) {
+    all.push_back(inr::FloatKernels(inr::ChooseInstructionSet(kernel)));
+  }
+  return all;
+}

@@ -2,8 +2,8 @@
 //
 // Every kernel that computes with bfloat16 numbers against an evaluation in long double.
 #include "Core/Inference/ModelView.h"
-#include "Core/Inference/OverflowWatch.h"
 #include "Testing/Core/Inference/EvaluatePoints.h"
+#include "Testing/Core/Inference/OddShapes.h"
 #include "Testing/Core/Inference/RoundingKernels.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
@@ -16,43 +16,6 @@
 #include <vector>
 
 namespace {
-
-inr::Description Shape(int levels, int features, int neurons, int hiddenLayers,
-                       inr::Activation activation = inr::Activation::ReLU)
-{
-  inr::Description description = SmallDescription();
-  description.grid.levels = levels;
-  description.grid.features = features;
-  description.network.neurons = neurons;
-  description.network.hiddenLayers = hiddenLayers;
-  description.network.activation = activation;
-  return description;
-}
-
-/// Widths that no pair, panel, tile or vector of the kernels divides, and activations that go
-/// through memory or leave no zeros.
-std::vector<inr::Description> Descriptions()
-{
-  using inr::Activation;
-  std::vector<inr::Description> all = {
-      SmallDescription(),
-      Shape(5, 1, 16, 2, Activation::Tanh),
-      Shape(8, 8, 64, 3),
-      Shape(4, 4, 16, 2, Activation::None),
-      Shape(3, 2, 19, 2), // no row of weights begins where the last one's vector ends
-      Shape(1, 1, 33, 1, Activation::Exponential),
-      Shape(3, 8, 8, 2, Activation::Squareplus),
-      Shape(4, 8, 16, 0),
-      Shape(5, 1, 128, 2, Activation::LeakyReLU),
-      Shape(16, 8, 48, 1, Activation::Sigmoid),
-      Shape(1, 1, 8, 2), // less than a tile
-  };
-  all[3].network.outputActivation = Activation::LeakyReLU;
-  all[4].network.outputActivation = Activation::Softplus;
-  all[6].network.alignment = all[10].network.alignment = 8;
-  all[7].network.outputActivation = Activation::Sine;
-  return all;
-}
 
 class BFloat16 : public testing::Test
 {
@@ -70,7 +33,7 @@ protected:
 TEST_F(BFloat16, IsOffByNoMoreThanItsRounding)
 {
   const std::vector<glm::vec3> positions = RandomPositions(500);
-  for (const inr::Description& description : Descriptions()) {
+  for (const inr::Description& description : OddShapes()) {
     const inr::ModelPointer model = CalmModel(description);
     const std::vector<float> unrounded = Evaluate(*inr::MakeEvaluator(model), positions);
     for (const inr::InferenceKernels& kernels : this->Kernels) {
@@ -97,7 +60,7 @@ TEST_F(BFloat16, IsTheSameOnLatticesButForRounding)
       axes[axis].back() = static_cast<float>(axes[axis].size()) / 50;
     }
   }
-  for (const inr::Description& description : Descriptions()) {
+  for (const inr::Description& description : OddShapes()) {
     const inr::ModelPointer model = CalmModel(description);
     std::vector<float> values(axes[0].size() * axes[1].size() * axes[2].size());
     for (const inr::InferenceKernels& kernels : this->Kernels) {
@@ -134,90 +97,9 @@ void ExpectNoNeighbours(const inr::Evaluator& evaluator, const std::vector<glm::
 TEST_F(BFloat16, ValuesDoNotDependOnTheirNeighbours)
 {
   const std::vector<glm::vec3> positions = RandomPositions(107);
-  for (const inr::Description& description : Descriptions()) {
+  for (const inr::Description& description : OddShapes()) {
     for (const inr::InferenceKernels& kernels : this->Kernels) {
       ExpectNoNeighbours(*inr::MakeEvaluator(CalmModel(description), kernels), positions);
-    }
-  }
-}
-
-TEST_F(BFloat16, ThinLatticesArePartsOfWideOnes)
-{
-  for (const inr::Description& description : Descriptions()) {
-    for (const inr::InferenceKernels& kernels : this->Kernels) {
-      ExpectThinLatticesAreParts(*inr::MakeEvaluator(CalmModel(description), kernels));
-    }
-  }
-}
-
-/// A kernel's memory, full of something. Nobody writes behind it.
-class Workspace
-{
-public:
-  Workspace(std::int64_t bytes, unsigned char garbage)
-      : Bytes(static_cast<std::size_t>(bytes) + Behind, garbage)
-  {}
-  ~Workspace()
-  {
-    EXPECT_TRUE(std::all_of(this->Bytes.end() - Behind, this->Bytes.end(),
-                            [&](unsigned char byte) { return byte == this->Bytes.back(); }));
-  }
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-
-  void* data() { return this->Bytes.data(); }
-
-private:
-  static constexpr int Behind = 4096;
-
-  std::vector<unsigned char> Bytes;
-};
-
-/// Values at points and on a lattice.
-std::vector<float> ValuesAfter(unsigned char garbage, const inr::InferenceKernels& kernels,
-                               const inr::Model& model, const std::vector<glm::vec3>& positions)
-{
-  const inr::ModelViewStorage views(model.description, inr::Layout(model.description),
-                                    model.parameters.data());
-  const inr::PackedNetwork network(views.view(), kernels.layout);
-  const auto count = static_cast<std::int64_t>(positions.size());
-  std::vector<float> values(positions.size() + 12);
-  Workspace ofPoints(kernels.points->workspace(network.view()) * 4, garbage);
-  kernels.points->evaluate(network.view(), &positions[0].x, count, values.data(),
-                           static_cast<float*>(ofPoints.data()));
-  const float axis[4] = {0.1f, 0.2f, 0.7f, 0.8f};
-  const inr::LatticeAxis axes[3] = {{axis, 3}, {axis, 4}, {axis, 1}};
-  Workspace ofLattice(kernels.lattices->workspace(network.view()), garbage);
-  kernels.lattices->evaluate(network.view(), axes, values.data() + count, ofLattice.data());
-  return values;
-}
-
-/// An overflow of numbers that belong to no sample would have samples done again.
-TEST_F(BFloat16, NothingIsMadeOfWhatWasInMemory)
-{
-  constexpr unsigned char large = 0x71; // 1e30
-  for (const inr::Activation activation :
-       {inr::Activation::Exponential, inr::Activation::Squareplus}) {
-    const inr::ModelPointer model = CalmModel(Shape(4, 2, 40, 2, activation));
-    for (const std::int64_t count : {1, 16, 17, 32, 33, 40, 48, 49, 100}) {
-      for (const inr::InferenceKernels& kernels : this->Kernels) {
-        const inr::OverflowWatch watch;
-        ValuesAfter(large, kernels, *model, RandomPositions(count));
-        EXPECT_FALSE(watch.overflowed()) << kernels.name << " " << count;
-      }
-    }
-  }
-}
-
-TEST_F(BFloat16, ValuesDoNotDependOnWhatWasInMemory)
-{
-  const std::vector<glm::vec3> positions = RandomPositions(39);
-  for (const inr::Description& description : Descriptions()) {
-    const inr::ModelPointer model = CalmModel(description);
-    for (const inr::InferenceKernels& kernels : this->Kernels) {
-      EXPECT_EQ(ValuesAfter(0xff, kernels, *model, positions), // all NaN
-                ValuesAfter(0, kernels, *model, positions))
-          << kernels.name;
     }
   }
 }

@@ -75,13 +75,6 @@ TEST(Evaluator, LatticesAreTheSameHoweverTheyAreShared)
   }
 }
 
-TEST(Evaluator, ThinLatticesArePartsOfWideOnes)
-{
-  for (const std::string& kernel : UsableKernels()) {
-    ExpectThinLatticesAreParts(*inr::MakeEvaluator(RandomModel(SmallDescription()), kernel));
-  }
-}
-
 TEST(Evaluator, LatticesOutsideAreClamped)
 {
   const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
