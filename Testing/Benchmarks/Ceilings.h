@@ -6,6 +6,7 @@
 #include "Core/AlignedVector.h"
 #include "Core/Inference/HugePages.h"
 #include "Core/Model/GridIndex.h"
+#include "Testing/Benchmarks/Models.h"
 #include "Testing/Core/RandomModel.h"
 
 #include <benchmark/benchmark.h>
@@ -87,17 +88,18 @@ inline void Arithmetic(benchmark::State& state, FusedOperations operations)
   state.SetItemsProcessed(state.iterations() * rounds * each);
 }
 
-/// The table entries that inference at random positions reads, counted from the grid's start: of a
-/// strip of samples one level's after the other's.
+/// The table entries that inference reads at random positions, counted from the grid's start: of as
+/// many samples as a vector of AVX-512 holds, one level's after the other's.
 inline std::vector<std::uint32_t> EntriesOfSamples(const inr::Description& description,
                                                    std::int64_t samples)
 {
-  constexpr std::int64_t strip = 64;
+  constexpr std::int64_t lanes = 16;
+  const inr::Layout layout(description);
   const std::vector<glm::vec3> positions = RandomPositions(samples);
   std::vector<std::uint32_t> entries;
-  for (std::int64_t first = 0; first < samples; first += strip) {
-    for (const inr::GridLevel& level : inr::Layout(description).levels) {
-      for (std::int64_t k = first; k < std::min(first + strip, samples); ++k) {
+  for (std::int64_t first = 0; first < samples; first += lanes) {
+    for (const inr::GridLevel& level : layout.levels) {
+      for (std::int64_t k = first; k < std::min(first + lanes, samples); ++k) {
         const glm::uvec3 cell(positions[static_cast<std::size_t>(k)] * level.scale + 0.5f);
         for (unsigned c = 0; c < 8; ++c) {
           const std::uint32_t entry =
@@ -111,15 +113,16 @@ inline std::vector<std::uint32_t> EntriesOfSamples(const inr::Description& descr
   return entries;
 }
 
-/// Samples whose table entries, of eight features, are read and added up, no more: where they are
+/// Samples of the default model whose table entries are read and added up, no more: where they are
 /// is known before, and they are fetched ahead.
-inline void EntryLoads(benchmark::State& state, const inr::Description& description)
+inline void EntryLoads(benchmark::State& state)
 {
   constexpr std::int64_t samples = 1 << 16;
-  constexpr std::size_t ahead = 512; // more gains nothing
+  constexpr std::size_t ahead = 512; // 256 to 1024 are alike on Zen 4, 64 and 2048 slower
+  constexpr std::size_t features = 8;
+  const inr::Description description = DefaultDescription();
   const std::vector<std::uint32_t> entries = EntriesOfSamples(description, samples);
   const inr::Layout layout(description);
-  constexpr std::size_t features = 8;
   inr::AlignedVector<float> table(layout.parameterCount - layout.gridOffset, 1.0f); // as a model's
   inr::PreferHugePages(table.data(), table.size() * sizeof(float));
   for (auto step : state) {

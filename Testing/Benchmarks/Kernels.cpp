@@ -109,8 +109,8 @@ void Bricks(benchmark::State& state, const inr::Description& description, const 
   InferBricks(state, RandomModel(description), kernel, threads, 256, 0);
 }
 
-/// 512 x 512 voxels of a volume of 4096^3, all at one place along `axis`: of those across x, no two
-/// lie beside each other along it.
+/// A slice across `axis`: 512 x 512 voxels of a volume of 4096^3. Across x, a row of it is one
+/// voxel.
 void InferSlice(benchmark::State& state, inr::ModelPointer model, const std::string& kernel,
                 int axis)
 {
@@ -231,7 +231,7 @@ void RegisterCeilings()
                                    operations);
     }
   }
-  benchmark::RegisterBenchmark("ceiling, loads, default model", EntryLoads, DefaultDescription());
+  benchmark::RegisterBenchmark("ceiling, loads, default model", EntryLoads);
 }
 
 [[maybe_unused]] const bool Registered = [] {

@@ -46,12 +46,13 @@ def rates(program, pattern, model=None):
 def unit_of(name):
     if "ceiling, arithmetic" in name:
         return "M/s"
-    return "M voxels/s" if name.startswith(("brick of", "slice of")) or "trained" in name else "M samples/s"
+    voxels = name.startswith(("brick of", "slice of")) or "trained" in name
+    return "M voxels/s" if voxels else "M samples/s"
 
 
 def plain(rate, model=None):
     """`model`: the file of the trained one."""
-    trained = f"; {os.path.basename(model)}" if model else ""
+    trained = f"; a file of {os.path.getsize(model) / 1e6:.2g} MB" if model else ""
     return [results_file.result(name, round(value, 3), unit_of(name), "higher",
                                 f"best of {RUNS} runs" + (trained if "trained" in name else ""))
             for name, value in rate.items()]
