@@ -49,18 +49,68 @@ void EncodeStrip(const ModelView& model, const Coordinates& y, int rows, LevelPi
   }
 }
 
-/// Rows of the strip that begins at row j, `height` at most; 0 where none does.
-int RowsFrom(const LatticeAxis& y, std::int64_t j, int height)
+/// Rows of a piece that go through the network together, of one layer or of several.
+struct PackedRows
+{
+  explicit PackedRows(int samplesOfRow) : samples(samplesOfRow) {}
+
+  int samples; ///< of a row: as many of the piece's as are wanted
+  int rows = 0;
+  float* values[StripSize]; ///< where those of each row go
+
+  /// Rows that may be added.
+  int room() const { return StripSize / this->samples - this->rows; }
+};
+
+/// Rows from j on that are encoded next.
+int RowsFrom(const LatticeAxis& y, std::int64_t j, int most)
 {
   const std::int64_t left = y.count - j;
-  return static_cast<int>(left < 0 ? 0 : left < height ? left : height);
+  most = most < StripHeight ? most : StripHeight;
+  return static_cast<int>(left < most ? left : most);
 }
 
-/// Rows to encode so that whole vectors of samples hold `rows` of them and nothing else: the
-/// missing ones repeat the last, so that no number comes up that belongs to no sample.
-int WholeRows(int rows)
+/// Adds `rows` rows to those whose encoding is in strips.in. Of a piece that is not wanted as a
+/// whole, the samples that are move together: the network, which is most of the work, is asked for
+/// no others. strips.out is scratch.
+void EncodeMore(const ModelView& model, const Coordinates& heights, int rows,
+                const PackedRows& packed, LevelPiece* pieces, StripPair& strips)
 {
-  return (rows * PieceWidth + LaneCount - 1) / LaneCount * LaneCount / PieceWidth;
+  float* const begin = strips.in.values + packed.rows * packed.samples;
+  if (packed.samples == PieceWidth) {
+    EncodeStrip(model, heights, rows, pieces, begin);
+    return;
+  }
+  EncodeStrip(model, heights, rows, pieces, strips.out.values);
+  for (int f = 0; f < model.encodedWidth; ++f) {
+    const float* const from = strips.out.values + f * StripSize;
+    float* const to = begin + f * StripSize;
+    for (int row = 0; row < rows; ++row) {
+      for (int k = 0; k < packed.samples; ++k) {
+        to[row * packed.samples + k] = from[row * PieceWidth + k];
+      }
+    }
+  }
+}
+
+/// Repeats the last sample up to a whole vector, so that no number comes up that belongs to no
+/// sample.
+void FillVector(const ModelView& model, int samples, float* encoded)
+{
+  for (int f = 0; f < model.encodedWidth; ++f, encoded += StripSize) {
+    for (int k = samples; k % LaneCount != 0; ++k) {
+      encoded[k] = encoded[k - 1];
+    }
+  }
+}
+
+void BeginLayers(const ModelView& model, float z, LevelPiece* pieces)
+{
+  Coordinates coordinate;
+  LoadCoordinates(&z, 1, coordinate);
+  for (int l = 0; l < model.levelCount; ++l) {
+    BeginLayer(model.levels[l], model.interpolation, coordinate, pieces[l]);
+  }
 }
 
 /// Fetches what a piece needs of one level for the next strip.
@@ -77,83 +127,46 @@ struct FetchRows
   }
 };
 
-/// Rows of a layer, `count` samples of each: `samples` has them one after the other.
-void StoreRows(const float* samples, int rows, std::int64_t count, std::int64_t width, float* layer)
+/// Values of these rows, which are none then. Meanwhile, fetches what comes next.
+void RunPacked(const ModelView& model, const FetchRows& next, StripPair& strips, PackedRows& packed)
 {
-  for (int row = 0; row < rows; ++row) {
-    std::memcpy(layer + row * width, samples + row * count,
-                static_cast<std::size_t>(count) * sizeof(float));
+  const int units = next.rows > 0 && HasFarLevels(model) ? model.levelCount : 0;
+  Evenly between(next, units, HiddenTiles(model));
+  FillVector(model, packed.rows * packed.samples, strips.in.values);
+  float outputs[StripSize];
+  RunStrip(model, strips, packed.rows * packed.samples, outputs, between);
+  for (int row = 0; row < packed.rows; ++row) {
+    std::memcpy(packed.values[row], outputs + row * packed.samples,
+                static_cast<std::size_t>(packed.samples) * sizeof(float));
   }
+  packed.rows = 0;
 }
 
-/// A whole piece in the rows of a layer, which is `width` wide; its values there are from `layer`
-/// on.
-void EvaluatePiece(const ModelView& model, const LatticeAxis& y, std::int64_t width,
-                   LevelPiece* pieces, StripPair& strips, float* layer)
+/// The first `samples` of each row of a piece, in all layers of the lattice, whose rows are `width`
+/// long; `values` is the first one's place.
+void EvaluatePiece(const ModelView& model, const LatticeAxis& y, const LatticeAxis& z, int samples,
+                   std::int64_t width, LevelPiece* pieces, StripPair& strips, float* values)
 {
-  const int tiles = HiddenTiles(model);
-  const int units = HasFarLevels(model) ? model.levelCount : 0;
-  Coordinates heights;
-  LoadCoordinates(y.u, RowsFrom(y, 0, StripHeight), heights);
-  for (std::int64_t j = 0; j < y.count; j += StripHeight) {
-    const int rows = RowsFrom(y, j, StripHeight);
-    EncodeStrip(model, heights, WholeRows(rows), pieces, strips.in.values);
-    const int next = RowsFrom(y, j + StripHeight, StripHeight);
-    if (next > 0) {
-      LoadCoordinates(y.u + j + StripHeight, next, heights);
-    }
-    const FetchRows fetch{model, heights, next, pieces};
-    Evenly between(fetch, next > 0 ? units : 0, tiles);
-    float outputs[StripSize];
-    RunStrip(model, strips, rows * PieceWidth, outputs, between);
-    StoreRows(outputs, rows, PieceWidth, width, layer + j * width);
-  }
-}
-
-/// Encodes `rows` rows of a piece and moves the first `count` samples of each, one row after the
-/// other, into strips.in; the last one is repeated up to a whole vector. strips.out is scratch.
-void EncodeThinStrip(const ModelView& model, const float* y, int rows, int count,
-                     LevelPiece* pieces, StripPair& strips)
-{
-  for (int begin = 0; begin < rows; begin += StripHeight) {
-    const int some = rows - begin < StripHeight ? rows - begin : StripHeight;
+  PackedRows packed(samples);
+  for (std::int64_t k = 0; k < z.count; ++k) {
+    BeginLayers(model, z.u[k], pieces);
     Coordinates heights;
-    LoadCoordinates(y + begin, some, heights);
-    EncodeStrip(model, heights, some, pieces, strips.out.values);
-    for (int f = 0; f < model.encodedWidth; ++f) {
-      const float* const from = strips.out.values + f * StripSize;
-      float* const to = strips.in.values + f * StripSize + begin * count;
-      for (int row = 0; row < some; ++row) {
-        for (int k = 0; k < count; ++k) {
-          to[row * count + k] = from[row * PieceWidth + k];
-        }
+    LoadCoordinates(y.u, RowsFrom(y, 0, StripHeight), heights);
+    for (std::int64_t j = 0; j < y.count;) {
+      const int rows = RowsFrom(y, j, packed.room());
+      EncodeMore(model, heights, rows, packed, pieces, strips);
+      for (int row = 0; row < rows; ++row, values += width) {
+        packed.values[packed.rows++] = values;
+      }
+      j += rows;
+      const int next = RowsFrom(y, j, StripHeight);
+      if (next > 0) {
+        LoadCoordinates(y.u + j, next, heights);
+      }
+      if (packed.room() == 0 || (j == y.count && k + 1 == z.count)) {
+        RunPacked(model, {model, heights, next, pieces}, strips, packed);
       }
     }
-  }
-  for (int f = 0; f < model.encodedWidth; ++f) {
-    float* const samples = strips.in.values + f * StripSize;
-    for (int k = rows * count; k % LaneCount != 0; ++k) {
-      samples[k] = samples[k - 1];
-    }
-  }
-}
-
-/// The same of a piece of which only the first `count` samples of a row are wanted: the network,
-/// which is most of the work, is asked for no others. What these few need of the grid, they share;
-/// nothing is fetched ahead.
-void EvaluateThinPiece(const ModelView& model, const LatticeAxis& y, int count, std::int64_t width,
-                       LevelPiece* pieces, StripPair& strips, float* layer)
-{
-  const int height = StripSize / count;
-  for (std::int64_t j = 0; j < y.count; j += height) {
-    const int rows = RowsFrom(y, j, height);
-    EncodeThinStrip(model, y.u + j, rows, count, pieces, strips);
-    const Coordinates none{};
-    const FetchRows fetch{model, none, 0, pieces};
-    Evenly between(fetch, 0, HiddenTiles(model));
-    float outputs[StripSize];
-    RunStrip(model, strips, rows * count, outputs, between);
-    StoreRows(outputs, rows, count, width, layer + j * width);
   }
 }
 
@@ -171,19 +184,7 @@ void EvaluateGrid(const ModelView& model, const LatticeAxis (&axes)[3], float* v
     for (int l = 0; l < model.levelCount; ++l) {
       LocatePiece(model.levels[l], model.interpolation, x, pieces[l]);
     }
-    for (std::int64_t k = 0; k < axes[2].count; ++k) {
-      Coordinates z;
-      LoadCoordinates(axes[2].u + k, 1, z);
-      for (int l = 0; l < model.levelCount; ++l) {
-        BeginLayer(model.levels[l], model.interpolation, z, pieces[l]);
-      }
-      float* const layer = values + k * axes[1].count * width + first;
-      if (count == PieceWidth) {
-        EvaluatePiece(model, axes[1], width, pieces, strips, layer);
-      } else {
-        EvaluateThinPiece(model, axes[1], count, width, pieces, strips, layer);
-      }
-    }
+    EvaluatePiece(model, axes[1], axes[2], count, width, pieces, strips, values + first);
   }
 }
 

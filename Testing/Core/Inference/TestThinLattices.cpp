@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Lattices of few points along x, which kernels evaluate in another way than wide ones.
+// Lattices of few points along an axis: kernels put rows of several layers together, and only those
+// points of a row that are wanted.
 #include "Core/Inference/Evaluator.h"
 #include "Testing/Core/Inference/OddShapes.h"
 #include "Testing/Core/Inference/RoundingKernels.h"
