@@ -62,7 +62,7 @@ struct PackedRows
   int room() const { return StripSize / this->samples - this->rows; }
 };
 
-/// Rows from j on that are encoded next.
+/// Rows from j on that are encoded next, as many as a strip of whole pieces holds at most.
 int RowsFrom(const LatticeAxis& y, std::int64_t j, int most)
 {
   const std::int64_t left = y.count - j;
@@ -127,7 +127,7 @@ struct FetchRows
   }
 };
 
-/// Values of these rows, which are none then. Meanwhile, fetches what comes next.
+/// Evaluates the rows and leaves none. Meanwhile, fetches what comes next.
 void RunPacked(const ModelView& model, const FetchRows& next, StripPair& strips, PackedRows& packed)
 {
   const int units = next.rows > 0 && HasFarLevels(model) ? model.levelCount : 0;

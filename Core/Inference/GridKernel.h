@@ -8,7 +8,7 @@
 
 namespace inr {
 
-/// One axis of a lattice of samples: rising coordinates in [0, 1].
+/// One axis of a lattice of samples: rising coordinates in [0, 1], one at least.
 struct LatticeAxis
 {
   const float* u;

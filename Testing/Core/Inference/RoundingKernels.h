@@ -10,6 +10,7 @@
 #endif
 
 #include <memory>
+#include <string>
 #include <vector>
 
 /// The bounds that Evaluator.h states.

@@ -70,6 +70,7 @@ TEST(ThinLattices, FillSeveralStrips)
   }
 }
 
+/// A kernel would read the coordinate before the first, which only a sanitizer sees.
 TEST(ThinLattices, MayHaveNoPoints)
 {
   const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));

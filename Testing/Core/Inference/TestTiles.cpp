@@ -254,7 +254,7 @@ TEST_F(Tiles, AreNotConfiguredWhereTheLibraryIsCalled)
   description.network.activation = inr::Activation::Tanh; // 2 layers of a tile each
   const int before = imitation::Configurations();
   EvaluateBoth(description);
-  const int strips = (100 + 63) / 64 + 1;
+  const int strips = (100 + 63) / 64 + 1; // both layers of the lattice share one
   EXPECT_EQ(imitation::Configurations(), before + 2 + strips * 2);
 }
 
