@@ -16,13 +16,6 @@ namespace {
 /// Normalised values: more than interpolation and the places of samples are rounded by.
 constexpr float Margin = 0x1p-12f;
 
-int EdgeOf(const glm::ivec3& brickDims)
-{
-  constexpr int least = 4;
-  const int cells = std::max({brickDims.x, brickDims.y, brickDims.z}) - 1;
-  return std::max(least, (cells + BlockLattice::Most - 1) / BlockLattice::Most);
-}
-
 /// Extremes of the voxels of all columns along y and z through a row of blocks.
 template <typename Stored> struct RowExtremes
 {
@@ -114,30 +107,28 @@ private:
 
 } // namespace
 
-BlockLattice::BlockLattice(const glm::ivec3& brickDims)
-    : edge(EdgeOf(brickDims)), count((brickDims - 2 + this->edge) / this->edge)
-{}
-
 BrickBlocks::BrickBlocks(CachePrecision precision, const glm::ivec3& brickDims, std::int64_t room)
     : Precision(precision), Dims(brickDims), Lattice(brickDims), All(room * this->Lattice.blocks()),
-      Scales(room)
+      Scales(room), Known(room)
 {}
 
 std::int64_t BrickBlocks::bytesPerSlot(const glm::ivec3& brickDims)
 {
   return BlockLattice(brickDims).blocks() * static_cast<std::int64_t>(sizeof(Codes)) +
-         static_cast<std::int64_t>(sizeof(Scale));
+         static_cast<std::int64_t>(sizeof(Scale) + sizeof(BlockSet));
 }
 
 void BrickBlocks::resize(std::int64_t slots)
 {
   this->All.resize(slots * this->Lattice.blocks());
   this->Scales.resize(slots);
+  this->Known.resize(slots);
 }
 
 void BrickBlocks::copy(std::int32_t from, std::int32_t to)
 {
   this->Scales[to] = this->Scales[from];
+  this->Known[to] = this->Known[from];
   std::copy_n(this->codes(from), this->Lattice.blocks(), this->codes(to));
 }
 
@@ -153,8 +144,9 @@ void BrickBlocks::findCodes(const Stored* voxels, const BrickView& brick, std::i
   });
 }
 
-void BrickBlocks::store(std::int32_t slot, const BrickView& brick)
+void BrickBlocks::store(std::int32_t slot, const BrickView& brick, const BlockSet& known)
 {
+  this->Known[slot] = known;
   switch (this->Precision) {
   case CachePrecision::Float32:
     this->findCodes(static_cast<const float*>(brick.voxels), brick, slot);

@@ -162,36 +162,49 @@ void BrickCache::unmap(std::int32_t slot)
   this->Table.unmap(this->Owners[slot]);
 }
 
-void BrickCache::fill(std::int32_t slot, BrickKey key, const float* values)
+void BrickCache::fill(std::int32_t slot, const BrickPart& part, const float* values)
 {
-  this->Owners[slot] = key;
   this->Arrivals[slot] = ++this->Arrived;
   this->Pool.store(slot, values);
-  this->Blocks.store(slot, this->Pool.view(slot));
-  this->Table.map(key, slot);
+  this->Blocks.store(slot, this->Pool.view(slot), part.blocks);
+}
+
+void BrickCache::map(std::int32_t slot, const BrickPart& part, const float* values)
+{
+  this->Owners[slot] = part.key;
+  this->fill(slot, part, values);
+  this->Table.map(part.key, slot);
   this->LastUse[slot].store(this->Frame, std::memory_order_relaxed);
   this->NoneBefore = std::min(this->NoneBefore, this->Frame);
 }
 
-bool BrickCache::insert(BrickKey key, const float* values)
+bool BrickCache::insert(const BrickPart& part, const float* values)
 {
+  const std::int32_t present = this->find(part.key);
+  if (present != PageTable::Unmapped) {
+    if (part.blocks.contains(this->Blocks.known(present))) {
+      this->fill(present, part, values);
+      this->touch(present);
+    }
+    return true;
+  }
   if (this->mapped() == this->Capacity) {
-    return this->replace(key, values);
+    return this->replace(part, values);
   }
   this->Table.makeRoomForOne();
   const auto slot = static_cast<std::int32_t>(this->mapped());
   this->resize(slot + 1);
-  this->fill(slot, key, values);
+  this->map(slot, part, values);
   return true;
 }
 
-bool BrickCache::replace(BrickKey key, const float* values)
+bool BrickCache::replace(const BrickPart& part, const float* values)
 {
   this->Table.makeRoomForOne(); // before a brick goes for this one
   const std::int32_t slot = this->oldest(this->Frame);
   if (slot >= 0) {
     this->unmap(slot);
-    this->fill(slot, key, values);
+    this->map(slot, part, values);
   }
   return slot >= 0;
 }

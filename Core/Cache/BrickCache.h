@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Cache/BrickBlocks.h"
+#include "Core/Cache/BrickPart.h"
 #include "Core/Cache/BrickPool.h"
 #include "Core/Cache/PageTable.h"
 
@@ -38,7 +39,7 @@ public:
   /// Slot of a brick, or PageTable::Unmapped.
   std::int32_t find(BrickKey key) const { return this->Table.find(key); }
   BrickView view(std::int32_t slot) const { return this->Pool.view(slot); }
-  /// What is known of the voxels of a slot's brick, block by block.
+  /// What is known of a slot's brick, block by block.
   const BrickBlocks& blocks() const { return this->Blocks; }
   /// A number above 0 that no other brick has or had, nor the same one when it was here before.
   std::uint64_t arrival(std::int32_t slot) const { return this->Arrivals[slot]; }
@@ -59,12 +60,14 @@ public:
   /// than all before, and 1.
   void beginFrame(std::uint64_t frame) { this->Frame = frame; }
   std::uint64_t frame() const { return this->Frame; }
-  /// Stores and maps an unmapped brick. Without room, evicts the least recently used one that is
-  /// neither of the current frame nor pinned; false, and nothing has changed, when there is none.
-  /// Nothing has changed, either, where std::bad_alloc comes; all else takes no memory.
-  bool insert(BrickKey key, const float* values);
-  /// The same in the place of another one even where there is room.
-  bool replace(BrickKey key, const float* values);
+  /// Stores and maps a brick; one that is mapped, in the place where it is, unless that knows
+  /// blocks that are not among these: then nothing changes. Without room, evicts the least recently
+  /// used one that is neither of the current frame nor pinned; false, and nothing has changed, when
+  /// there is none. Nothing has changed, either, where std::bad_alloc comes; all else takes no
+  /// memory.
+  bool insert(const BrickPart& part, const float* values);
+  /// The same of an unmapped brick in the place of another one even where there is room.
+  bool replace(const BrickPart& part, const float* values);
   /// Keeps a mapped brick for good.
   void pin(BrickKey key);
 
@@ -95,7 +98,8 @@ private:
   void findCandidates(std::uint64_t frame);
   std::int32_t oldest(std::uint64_t frame);
   void unmap(std::int32_t slot);
-  void fill(std::int32_t slot, BrickKey key, const float* values);
+  void fill(std::int32_t slot, const BrickPart& part, const float* values);
+  void map(std::int32_t slot, const BrickPart& part, const float* values);
   void move(std::int32_t from, std::int32_t to);
   void resize(std::int64_t slots);
 

@@ -129,7 +129,7 @@ bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
   this->inferLayer(*brick, z, lock);
   if (++brick->done == brick->layers) {
     if (!brick->failed) {
-      this->Source->repeatLastLayer(brick->key, brick->values.data());
+      this->Source->complete(brick->part, brick->values.data());
     }
     this->finish(*brick);
   }
@@ -153,11 +153,10 @@ BrickLoader::Brick* BrickLoader::begin()
   if (this->Wanted.empty() || this->holding() >= this->Room) {
     return nullptr;
   }
-  auto brick = std::make_unique<Brick>();
+  const BrickPart& next = this->Wanted.front();
+  auto brick = std::make_unique<Brick>(Brick{next, this->Source->layersInside(next.key)});
   this->InWork.reserve(this->InWork.size() + 1); // what takes memory comes first: all or nothing
   this->Finished.reserve(this->InWork.size() + this->Finished.size() + 1);
-  brick->key = this->Wanted.front();
-  brick->layers = this->Source->layersInside(brick->key);
   this->Wanted.pop_front();
   if (!this->Spare.empty()) {
     brick->values = std::move(this->Spare.back());
@@ -205,7 +204,7 @@ void BrickLoader::inferBricks(const std::vector<Brick*>& bricks, std::unique_loc
   try {
     std::vector<BrickKey> keys(bricks.size());
     std::transform(bricks.begin(), bricks.end(), keys.begin(),
-                   [](const Brick* brick) { return brick->key; });
+                   [](const Brick* brick) { return brick->part.key; });
     Values values(static_cast<std::size_t>(count * voxels));
     lock.unlock();
     this->Source->infer(keys.data(), count, values.data(), Arena(1));
@@ -232,7 +231,7 @@ void BrickLoader::inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std:
     brick.values.resize(static_cast<std::size_t>(voxels));
     float* const layer = brick.values.data() + z * (voxels / this->Layers);
     lock.unlock();
-    this->Source->inferLayer(brick.key, z, layer);
+    this->Source->inferLayerOf(brick.part, z, layer);
     lock.lock();
   } catch (...) {
     if (!lock.owns_lock()) {
@@ -261,21 +260,21 @@ std::int64_t BrickLoader::holding() const
 
 bool BrickLoader::isAtHand(BrickKey key) const
 {
-  const auto isIt = [&](const std::unique_ptr<Brick>& brick) { return brick->key == key; };
+  const auto isIt = [&](const std::unique_ptr<Brick>& brick) { return brick->part.key == key; };
   return std::any_of(this->InWork.begin(), this->InWork.end(), isIt) ||
          std::any_of(this->Finished.begin(), this->Finished.end(), isIt);
 }
 
-void BrickLoader::request(const std::vector<BrickKey>& keys)
+void BrickLoader::request(const std::vector<BrickPart>& parts)
 {
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     this->Wanted.clear();
-    std::copy_if(keys.begin(), keys.end(), std::back_inserter(this->Wanted),
-                 [this](BrickKey key) { return !this->isAtHand(key); });
+    std::copy_if(parts.begin(), parts.end(), std::back_inserter(this->Wanted),
+                 [this](const BrickPart& part) { return !this->isAtHand(part.key); });
   }
   this->Wake.notify_all();
-  if (!keys.empty() && this->Threads.empty()) {
+  if (!parts.empty() && this->Threads.empty()) {
     this->start();
   }
 }
@@ -330,7 +329,7 @@ bool BrickLoader::hasWork() const
   return !this->InWork.empty() || (!this->Wanted.empty() && this->holding() < this->Room);
 }
 
-void BrickLoader::handOver(const std::function<void(BrickKey, const float*)>& receive)
+void BrickLoader::handOver(const std::function<void(const BrickPart&, const float*)>& receive)
 {
   std::vector<std::unique_ptr<Brick>> bricks;
   {
@@ -344,7 +343,7 @@ void BrickLoader::handOver(const std::function<void(BrickKey, const float*)>& re
     this->HandingOver = bricks.size();
   }
   for (const std::unique_ptr<Brick>& brick : bricks) {
-    receive(brick->key, brick->values.data());
+    receive(brick->part, brick->values.data());
   }
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);

@@ -43,8 +43,9 @@ public:
   /// for what is begun.
   void giveUp();
 
-  /// These bricks, in this order, in place of what earlier requests wanted and nobody has begun.
-  void request(const std::vector<BrickKey>& keys);
+  /// These parts of bricks, in this order, in place of what earlier requests wanted and nobody has
+  /// begun.
+  void request(const std::vector<BrickPart>& parts);
   void resume();
   void pause();
   /// Has the requests worked on for so many seconds, paused or not; until a layer is begun at
@@ -54,7 +55,7 @@ public:
 
   /// Hands over all bricks that are finished, voxelsPerBrick() values each, to what must not throw.
   /// Throws what inferring threw since the last time.
-  void handOver(const std::function<void(BrickKey key, const float* values)>& receive);
+  void handOver(const std::function<void(const BrickPart& part, const float* values)>& receive);
 
 private:
   using Clock = std::chrono::steady_clock;
@@ -62,9 +63,9 @@ private:
 
   struct Brick
   {
-    BrickKey key;
-    Values values;
-    std::int64_t layers;    ///< to infer
+    BrickPart part;
+    std::int64_t layers; ///< to infer
+    Values values{};
     std::int64_t begun = 0; ///< of them
     std::int64_t done = 0;
     bool failed = false;
@@ -97,7 +98,7 @@ private:
   bool Ended = false;
   std::int64_t LayersBegun = 0;
   std::int64_t Room;
-  std::deque<BrickKey> Wanted;
+  std::deque<BrickPart> Wanted;
   std::vector<std::unique_ptr<Brick>> InWork;
   std::vector<std::unique_ptr<Brick>> Finished;
   std::size_t HandingOver = 0; ///< bricks

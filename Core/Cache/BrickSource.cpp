@@ -25,6 +25,82 @@ BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
   return {first, glm::min(glm::i64vec3(hierarchy.brickDims()), hierarchy.size(id.level) - first)};
 }
 
+/// Points of each voxel of a level, along an axis.
+std::int64_t PointsPerAxis(int level) { return level == 0 ? 1 : 2; }
+
+/// Calls run(first, last) for the runs of set bits.
+template <typename Run> void ForEachRun(unsigned bits, const Run& run)
+{
+  for (int first = 0; bits >> first != 0; ++first) {
+    if ((bits >> first & 1u) != 0) {
+      int last = first;
+      while ((bits >> (last + 1) & 1u) != 0) {
+        ++last;
+      }
+      run(first, last);
+      first = last;
+    }
+  }
+}
+
+/// Voxels of a layer.
+struct Rectangle
+{
+  BlockLattice::Span x;
+  BlockLattice::Span y;
+};
+
+/// Calls body(rectangle) so that each voxel of a layer that is in one of some blocks comes once,
+/// but for blocks beyond `last`, the last voxel inside of the level.
+template <typename Body>
+void ForEachRectangle(const BlockSet& blocks, const BlockLattice& lattice, const glm::i64vec3& last,
+                      int z, const Body& body)
+{
+  const auto rowAt = [&](int y) { return blocks.rowOfVoxels(lattice, y, z); };
+  const int rows = lattice.lastVoxel.y + 1;
+  const unsigned valid = (1u << lattice.count.x) - 1;
+  for (int y = 0; y < rows && y <= last.y;) {
+    const int first = y;
+    const std::uint8_t row = rowAt(first);
+    while (y < rows && rowAt(y) == row) {
+      ++y;
+    }
+    ForEachRun(row & valid, [&](int begin, int end) {
+      const BlockLattice::Span x = lattice.voxelsOf({begin, end}, 0);
+      if (x.first <= last.x) {
+        body(Rectangle{x, {first, y - 1}});
+      }
+    });
+  }
+}
+
+/// Makes of all voxels of the layers up to `last` that nobody has inferred what the first is that
+/// somebody has.
+void FillRest(const BlockSet& blocks, const BlockLattice& lattice, const glm::i64vec3& last,
+              float* values)
+{
+  const std::int64_t width = lattice.lastVoxel.x + 1;
+  const std::int64_t layer = width * (lattice.lastVoxel.y + 1);
+  const std::int64_t layers = last.z + 1;
+  std::vector<bool> known(static_cast<std::size_t>(layers * layer), false);
+  float value = 0;
+  bool none = true;
+  for (int z = 0; z < layers; ++z) {
+    ForEachRectangle(blocks, lattice, last, z, [&](const Rectangle& where) {
+      for (int y = where.y.first; y <= where.y.last; ++y) {
+        const std::int64_t row = z * layer + y * width;
+        std::fill(known.begin() + row + where.x.first, known.begin() + row + where.x.last + 1,
+                  true);
+        value = none ? values[row + where.x.first] : value;
+        none = false;
+      }
+    });
+  }
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    values[k] = known[k] ? values[k] : value;
+  }
+}
+
 class FieldBricks : public BrickSource
 {
 public:
@@ -34,28 +110,49 @@ public:
 
   void inferLayer(BrickKey key, std::int64_t z, float* values) const override
   {
+    const glm::ivec3 last = this->blocks().lastVoxel;
+    this->inferRectangle(key, z, {{0, last.x}, {0, last.y}}, values);
+  }
+
+  bool infersParts() const override { return true; }
+
+  void inferLayerOf(const BrickPart& part, std::int64_t z, float* values) const override
+  {
+    const glm::i64vec3 last = BoxOf(this->hierarchy(), IdOf(part.key)).count - std::int64_t{1};
+    ForEachRectangle(
+        part.blocks, this->blocks(), last, static_cast<int>(z),
+        [&](const Rectangle& where) { this->inferRectangle(part.key, z, where, values); });
+  }
+
+private:
+  void inferRectangle(BrickKey key, std::int64_t z, const Rectangle& where, float* values) const
+  {
     const BrickId id = IdOf(key);
     const BrickBox box = BoxOf(this->hierarchy(), id);
-    const std::vector<float> inside = this->layerInside(id, box, glm::min(z, box.count.z - 1));
-    const glm::i64vec3 dims(this->hierarchy().brickDims());
-    for (std::int64_t y = 0; y < dims.y; ++y) {
-      const std::int64_t row = glm::min(y, box.count.y - 1) * box.count.x;
-      for (std::int64_t x = 0; x < dims.x; ++x) {
-        const std::int64_t from = row + glm::min(x, box.count.x - 1);
-        values[y * dims.x + x] = inside[static_cast<std::size_t>(from)];
+    const glm::i64vec3 last = box.count - std::int64_t{1}; // voxels beyond it are as that
+    const glm::i64vec3 first(glm::min<std::int64_t>(where.x.first, last.x),
+                             glm::min<std::int64_t>(where.y.first, last.y), glm::min(z, last.z));
+    const glm::i64vec3 end(glm::min<std::int64_t>(where.x.last, last.x),
+                           glm::min<std::int64_t>(where.y.last, last.y), first.z);
+    const glm::i64vec3 count = end - first + std::int64_t{1};
+    const std::vector<float> inside = this->valuesIn(id.level, box.first + first, count);
+    const std::int64_t width = this->hierarchy().brickDims().x;
+    for (std::int64_t y = where.y.first; y <= where.y.last; ++y) {
+      const std::int64_t row = (glm::min(y, end.y) - first.y) * count.x;
+      for (std::int64_t x = where.x.first; x <= where.x.last; ++x) {
+        const std::int64_t from = row + glm::min(x, end.x) - first.x;
+        values[y * width + x] = inside[static_cast<std::size_t>(from)];
       }
     }
   }
 
-private:
-  std::vector<float> layerInside(const BrickId& id, const BrickBox& box, std::int64_t z) const
+  /// A single layer of voxels.
+  std::vector<float> valuesIn(int level, const glm::i64vec3& begin, const glm::i64vec3& count) const
   {
-    const std::int64_t points = id.level == 0 ? 1 : 2; // of each voxel, along an axis
-    const glm::i64vec3 begin(box.first.x, box.first.y, box.first.z + z);
-    const glm::i64vec3 count(box.count.x, box.count.y, 1);
+    const std::int64_t points = PointsPerAxis(level);
     std::vector<float> axes[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const auto size = static_cast<double>(this->hierarchy().size(id.level)[axis]);
+      const auto size = static_cast<double>(this->hierarchy().size(level)[axis]);
       for (std::int64_t k = 0; k < count[axis] * points; ++k) {
         const double within = (static_cast<double>(k) + 0.5) / static_cast<double>(points);
         const double u = (static_cast<double>(begin[axis]) + within) / size;
@@ -64,7 +161,7 @@ private:
     }
     std::vector<float> sampled(axes[0].size() * axes[1].size() * axes[2].size());
     this->Field->evaluateGrid(axes, sampled.data());
-    return points == 1 ? Clamped(sampled) : Filtered(sampled, box.count.x, box.count.y);
+    return points == 1 ? Clamped(sampled) : Filtered(sampled, count.x, count.y);
   }
 
   static std::vector<float> Clamped(std::vector<float> values)
@@ -101,26 +198,56 @@ private:
 
 } // namespace
 
-std::int64_t BrickSource::points(BrickKey key) const
+std::int64_t BrickSource::points(const BrickPart& part) const
 {
-  const BrickId id = IdOf(key);
-  const glm::i64vec3 count = BoxOf(this->Levels, id).count;
-  return count.x * count.y * count.z * (id.level == 0 ? 1 : 8);
+  const BrickId id = IdOf(part.key);
+  const glm::i64vec3 inside = BoxOf(this->Levels, id).count;
+  std::int64_t voxels = 0;
+  for (int z = 0; z < inside.z; ++z) {
+    ForEachRectangle(
+        part.blocks, this->Lattice, inside - std::int64_t{1}, z, [&](const Rectangle& where) {
+          const auto width = glm::min<std::int64_t>(where.x.last + 1, inside.x) - where.x.first;
+          const auto height = glm::min<std::int64_t>(where.y.last + 1, inside.y) - where.y.first;
+          voxels += width * height;
+        });
+  }
+  const std::int64_t points = PointsPerAxis(id.level);
+  return voxels * points * points * points;
 }
 
 void BrickSource::infer(const BrickKey* keys, std::int64_t count, float* values,
                         const Arena& arena) const
 {
+  const std::vector<BrickPart> whole(keys, keys + count);
+  this->inferLayers(whole.data(), count, values, arena);
+}
+
+void BrickSource::inferParts(const BrickPart* parts, std::int64_t count, float* values,
+                             const Arena& arena) const
+{
+  if (this->infersParts()) {
+    this->inferLayers(parts, count, values, arena);
+    return;
+  }
+  std::vector<BrickKey> keys;
+  std::transform(parts, parts + count, std::back_inserter(keys),
+                 [](const BrickPart& part) { return part.key; });
+  this->infer(keys.data(), count, values, arena);
+}
+
+void BrickSource::inferLayers(const BrickPart* parts, std::int64_t count, float* values,
+                              const Arena& arena) const
+{
   const std::int64_t layers = this->Levels.brickDims().z;
   const std::int64_t layer = this->Levels.voxelsPerBrick() / layers;
   arena.forEachBlock(count * layers, 1, [&](std::int64_t k, std::int64_t) {
-    const BrickKey key = keys[k / layers];
-    if (k % layers < this->layersInside(key)) {
-      this->inferLayer(key, k % layers, values + k * layer);
+    const BrickPart& part = parts[k / layers];
+    if (k % layers < this->layersInside(part.key)) {
+      this->inferLayerOf(part, k % layers, values + k * layer);
     }
   });
   for (std::int64_t k = 0; k < count; ++k) {
-    this->repeatLastLayer(keys[k], values + k * layers * layer);
+    this->complete(parts[k], values + k * layers * layer);
   }
 }
 
@@ -137,6 +264,15 @@ void BrickSource::repeatLastLayer(BrickKey key, float* values) const
   for (std::int64_t z = inside; z < layers; ++z) {
     std::copy_n(values + (inside - 1) * layer, layer, values + z * layer);
   }
+}
+
+void BrickSource::complete(const BrickPart& part, float* values) const
+{
+  if (!part.blocks.isAll()) {
+    FillRest(part.blocks, this->Lattice,
+             BoxOf(this->Levels, IdOf(part.key)).count - std::int64_t{1}, values);
+  }
+  this->repeatLastLayer(part.key, values);
 }
 
 std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const Evaluator> field,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/BrickPart.h"
 #include "Core/Cache/Hierarchy.h"
 #include "Core/Inference/Evaluator.h"
 
@@ -12,17 +13,29 @@ namespace inr {
 class BrickSource
 {
 public:
-  explicit BrickSource(const Hierarchy& hierarchy) : Levels(hierarchy) {}
+  explicit BrickSource(const Hierarchy& hierarchy)
+      : Levels(hierarchy), Lattice(hierarchy.brickDims())
+  {}
   virtual ~BrickSource() = default;
 
   const Hierarchy& hierarchy() const { return this->Levels; }
+  const BlockLattice& blocks() const { return this->Lattice; } ///< of each brick
 
-  /// Points at which the field is asked for a brick's voxels.
-  std::int64_t points(BrickKey key) const;
+  /// Points at which the field is asked for the voxels of a part.
+  std::int64_t points(const BrickPart& part) const;
 
   /// One layer of a brick's voxels, the `z`-th of brickDims().z: normalised values in [0, 1], x
   /// fastest. Voxels beyond the level's last one repeat it.
   virtual void inferLayer(BrickKey key, std::int64_t z, float* values) const = 0;
+
+  /// Whether parts of bricks can be had, too. All the same for as long as this lives.
+  virtual bool infersParts() const { return false; }
+  /// Those of a layer's voxels that belong to some blocks, as inferLayer has them; the others are
+  /// left alone. Only where parts can be had.
+  virtual void inferLayerOf(const BrickPart& part, std::int64_t z, float* values) const
+  {
+    this->inferLayer(part.key, z, values);
+  }
 
   /// Bricks that are best inferred together, by one call of infer; 0: layers, on any number of
   /// threads at once. It may change at any time: a device may fail.
@@ -31,14 +44,23 @@ public:
   /// All layers of `count` bricks, one brick after the other.
   virtual void infer(const BrickKey* keys, std::int64_t count, float* values,
                      const Arena& arena) const;
+  /// The same of parts, where these can be had; else they are whole bricks.
+  void inferParts(const BrickPart* parts, std::int64_t count, float* values,
+                  const Arena& arena) const;
 
   /// Layers of a brick that are in its level; all others are the last of them.
   std::int64_t layersInside(BrickKey key) const;
-  /// Copies that one to all others. `values`: a whole brick.
-  void repeatLastLayer(BrickKey key, float* values) const;
+  /// To a whole brick of which all layers inside are inferred: copies the last of them to all
+  /// others, and makes of voxels outside of the part what some voxel in it is.
+  void complete(const BrickPart& part, float* values) const;
 
 private:
+  void inferLayers(const BrickPart* parts, std::int64_t count, float* values,
+                   const Arena& arena) const;
+  void repeatLastLayer(BrickKey key, float* values) const;
+
   Hierarchy Levels;
+  BlockLattice Lattice;
 };
 
 /// Bricks of any field over the unit cube: level 0 holds its values at the voxels, a coarser level

@@ -84,14 +84,26 @@ bool BrickStore::hasLostSince(std::uint64_t frame) const
   return std::max(this->Cache.lostUse(), this->LostQueue) >= frame;
 }
 
-BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Arena& arena,
+std::vector<BrickPart> BrickStore::toInfer(const std::vector<BrickPart>& wanted) const
+{
+  std::vector<BrickPart> parts = wanted;
+  for (BrickPart& part : parts) {
+    if (!this->Source->infersParts() || this->Cache.find(part.key) != PageTable::Unmapped) {
+      part.blocks = BlockSet::all();
+    }
+  }
+  return parts;
+}
+
+BrickStore::Loaded BrickStore::load(const std::vector<BrickPart>& wanted, const Arena& arena,
                                     const std::function<bool()>& keepGoing)
 {
+  const std::vector<BrickPart> parts = this->toInfer(wanted);
   if (this->Loader) {
     this->Loader->request({});
   }
   const std::int64_t voxels = this->Cache.hierarchy().voxelsPerBrick();
-  const auto count = static_cast<std::int64_t>(keys.size());
+  const auto count = static_cast<std::int64_t>(parts.size());
   const std::int64_t atOnce = BricksAtOnce(*this->Source);
   std::vector<float> values(static_cast<std::size_t>(atOnce * voxels));
   for (std::int64_t first = 0; first < count; first += atOnce) {
@@ -99,13 +111,13 @@ BrickStore::Loaded BrickStore::load(const std::vector<BrickKey>& keys, const Are
       return {first, false};
     }
     const std::int64_t batch = std::min(atOnce, count - first);
-    this->Source->infer(keys.data() + first, batch, values.data(), arena);
+    this->Source->inferParts(parts.data() + first, batch, values.data(), arena);
     for (std::int64_t k = first; k < first + batch; ++k) {
-      this->countInferred(keys[static_cast<std::size_t>(k)]);
+      this->countInferred(parts[static_cast<std::size_t>(k)]);
     }
     for (std::int64_t k = 0; k < batch; ++k) {
-      const BrickKey key = keys[static_cast<std::size_t>(first + k)];
-      if (!this->insert(key, values.data() + k * voxels)) {
+      const BrickPart& part = parts[static_cast<std::size_t>(first + k)];
+      if (!this->insert(part, values.data() + k * voxels)) {
         return {first + k, true};
       }
     }
@@ -121,18 +133,18 @@ void BrickStore::clear()
   }
 }
 
-void BrickStore::loadFor(double seconds, const std::vector<BrickKey>& keys, const Arena& arena)
+void BrickStore::loadFor(double seconds, const std::vector<BrickPart>& wanted, const Arena& arena)
 {
-  if (!this->makeQueue(static_cast<std::int64_t>(keys.size()))) {
+  if (!this->makeQueue(static_cast<std::int64_t>(wanted.size()))) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    this->load(keys, arena, [&] {
+    this->load(wanted, arena, [&] {
       return std::chrono::duration<double>(Clock::now() - start).count() < seconds;
     });
     return;
   }
-  this->Loader->request(keys);
-  if (!keys.empty()) {
+  this->Loader->request(this->toInfer(wanted));
+  if (!wanted.empty()) {
     this->Loader->loadFor(seconds);
     this->mapLoaded();
   }
@@ -140,44 +152,51 @@ void BrickStore::loadFor(double seconds, const std::vector<BrickKey>& keys, cons
 
 void BrickStore::mapLoaded()
 {
-  this->Loader->handOver([this](BrickKey key, const float* values) {
-    this->countInferred(key);
-    if (this->Cache.find(key) == PageTable::Unmapped) {
+  this->Loader->handOver([this](const BrickPart& part, const float* values) {
+    this->countInferred(part);
+    const std::int32_t slot = this->Cache.find(part.key);
+    if (slot == PageTable::Unmapped || !(this->Cache.blocks().known(slot) == part.blocks)) {
       try {
-        this->insert(key, values);      // or not, where all is in use
+        this->insert(part, values);     // or not, where all is in use
       } catch (const std::bad_alloc&) { // nor without memory: who wants it asks again
       }
     }
   });
 }
 
-void BrickStore::countInferred(BrickKey key) { this->Done.add({1, this->Source->points(key), 0}); }
-
-bool BrickStore::insert(BrickKey key, const float* values)
+void BrickStore::countInferred(const BrickPart& part)
 {
-  const bool inserted = this->makeRoomAndInsert(key, values);
+  this->Done.add({1, this->Source->points(part), 0});
+}
+
+bool BrickStore::insert(const BrickPart& part, const float* values)
+{
+  const bool inserted = this->makeRoomAndInsert(part, values);
   const std::int64_t bytes =
       this->Cache.hierarchy().voxelsPerBrick() * BytesPerVoxel(this->Cache.precision());
   this->Done.bytes += inserted ? bytes : 0;
   return inserted;
 }
 
-bool BrickStore::makeRoomAndInsert(BrickKey key, const float* values)
+bool BrickStore::makeRoomAndInsert(const BrickPart& part, const float* values)
 {
   const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
+  if (this->Cache.find(part.key) != PageTable::Unmapped) {
+    return this->Cache.insert(part, values);
+  }
   const std::int64_t mapped = this->Cache.mapped();
   if (mapped >= this->Cache.capacity()) {
-    return this->Cache.replace(key, values);
+    return this->Cache.replace(part, values);
   }
   const std::int64_t more = this->Cache.bytesFor(mapped + 1) - this->Cache.bytes();
   while (mapped >= BrickCache::FewestBricks && !this->Budget->fits(more)) {
     BrickStore* const oldest = this->Budget->oldest(this);
     if (oldest == nullptr || oldest == this) {
-      return this->Cache.replace(key, values);
+      return this->Cache.replace(part, values);
     }
     oldest->giveOldest();
   }
-  return this->Cache.insert(key, values);
+  return this->Cache.insert(part, values);
 }
 
 /// Room for so many bricks in the loader's queue, or as many as there may be; false when there is

@@ -51,15 +51,16 @@ public:
     std::int64_t bricks;
     bool full; ///< there were more than fitted beside what the latest frame used
   };
-  /// Infers and maps bricks now, for as long as `keepGoing` (may be empty) says so, but never
-  /// without progress. Requests to the loader are forgotten.
-  Loaded load(const std::vector<BrickKey>& keys, const Arena& arena,
+  /// Infers and maps parts of bricks now, for as long as `keepGoing` (may be empty) says so, but
+  /// never without progress. Of a brick that is mapped all is inferred: it has turned out to lack
+  /// something, and is not to come in a third time. Requests to the loader are forgotten.
+  Loaded load(const std::vector<BrickPart>& wanted, const Arena& arena,
               const std::function<bool()>& keepGoing);
   /// Drops all bricks but the coarsest level, those of the current frame included.
   void clear();
   /// Maps what the loader infers in so many seconds, or infers where there is none; it goes on with
   /// them when it is not paused.
-  void loadFor(double seconds, const std::vector<BrickKey>& keys, const Arena& arena);
+  void loadFor(double seconds, const std::vector<BrickPart>& wanted, const Arena& arena);
 
   /// The time of one call that renders: others wait, the loader is paused, so that a frame has the
   /// machine to itself, and what it has finished is mapped, in place of nothing that the last frame
@@ -92,9 +93,10 @@ private:
   friend class CacheBudget;
 
   void mapLoaded();
-  bool insert(BrickKey key, const float* values);
-  bool makeRoomAndInsert(BrickKey key, const float* values);
-  void countInferred(BrickKey key);
+  std::vector<BrickPart> toInfer(const std::vector<BrickPart>& wanted) const;
+  bool insert(const BrickPart& part, const float* values);
+  bool makeRoomAndInsert(const BrickPart& part, const float* values);
+  void countInferred(const BrickPart& part);
   bool makeQueue(std::int64_t bricks);
 
   // The rest is for who holds the budget's mutex.

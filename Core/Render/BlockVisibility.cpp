@@ -41,12 +41,13 @@ void BlockVisibility::findOut(std::int32_t slot, ShownBlocks& shown) const
   blocks.ranges(slot, ranges);
   this->Colors.maximumExtinctions(ranges, blocks.lattice().blocks(), extinctions);
   shown = {};
+  const BlockSet& known = blocks.known(slot);
   std::int64_t seen = 0;
   const float* extinction = extinctions;
   for (int z = 0; z < count.z; ++z) {
     for (int y = 0; y < count.y; ++y) {
       for (int x = 0; x < count.x; ++x) {
-        const bool isSeen = *extinction++ > 0.0f;
+        const bool isSeen = *extinction++ > 0.0f && known.has({x, y, z});
         shown.words[z] |= std::uint64_t{isSeen} << (x + BlockLattice::Most * y);
         seen += isSeen ? 1 : 0;
       }

@@ -38,7 +38,7 @@ bool BrickGradients::movePath(const Move& move, const Wish& wish, BrickKey brick
   const Hierarchy& hierarchy = this->Cache.hierarchy();
   BrickId next = IdOf(brick);
   next.at[move.axis] += move.step;
-  const std::int32_t slot = this->Cache.find(KeyOf(next));
+  const std::int32_t slot = this->Bricks.find(KeyOf(next));
   if (slot < 0) {
     wish.requests.add(KeyOf(next), wish.contribution);
     return wish.missing == Missing::OneSided;

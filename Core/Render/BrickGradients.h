@@ -4,6 +4,7 @@
 #include "Core/Cache/BrickCache.h"
 #include "Core/Cache/Requests.h"
 #include "Core/Render/BrickKernel.h"
+#include "Core/Render/SufficientBricks.h"
 
 #include <glm/vec3.hpp>
 
@@ -17,8 +18,9 @@ namespace inr {
 class BrickGradients
 {
 public:
-  BrickGradients(const BrickCache& cache, const BrickFormat& format, const BrickKernel& kernel)
-      : Cache(cache), Format(format), Kernel(kernel)
+  BrickGradients(const SufficientBricks& bricks, const BrickFormat& format,
+                 const BrickKernel& kernel)
+      : Bricks(bricks), Cache(bricks.cache()), Format(format), Kernel(kernel)
   {}
 
   /// What a neighbouring brick that is not there means.
@@ -65,6 +67,7 @@ private:
                      int axis, const float* values, const float* offsets,
                      glm::vec3* gradients) const;
 
+  const SufficientBricks& Bricks;
   const BrickCache& Cache;
   BrickFormat Format;
   const BrickKernel& Kernel;

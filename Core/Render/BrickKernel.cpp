@@ -170,32 +170,97 @@ std::uint32_t LookUp(const ShownBlocks& blocks, Ints block)
 #endif
 }
 
-std::uint64_t FindShown(const BrickFormat& format, const ShownBlocks& blocks, const BrickPath& path,
-                        const SampleRow& row, int count)
+/// Of samples in bricks, the numbers of their blocks.
+Ints BlocksAt(const BrickFormat& format, const Way& way, Floats along)
+{
+  Floats places[3];
+  FindPlaces(way, along, places);
+  Ints block{};
+  for (int axis = 2; axis >= 0; --axis) {
+    Ints at = __builtin_convertvector(places[axis] * format.blocksPerVoxel, Ints);
+    const Ints last = format.lastBlock[axis] - Ints{};
+    at = at < last ? at : last;
+    block = block * ShownBlocks::Words + at;
+  }
+  return block;
+}
+
+Ints FirstNumbers()
 {
   Ints number;
   for (int lane = 0; lane < LaneCount; ++lane) {
     number[lane] = lane;
   }
+  return number;
+}
+
+/// Not LowestBits: nothing inline comes from elsewhere.
+std::uint64_t FirstBits(std::uint64_t bits, int count)
+{
+  return count < 64 ? bits & ((std::uint64_t{1} << count) - 1) : bits;
+}
+
+std::uint64_t FindShown(const BrickFormat& format, const ShownBlocks& blocks, const BrickPath& path,
+                        const SampleRow& row, int count)
+{
+  Ints number = FirstNumbers();
   const Way way = SpreadWay(path);
   std::uint64_t shown = 0;
   for (int k = 0; k < count; k += LaneCount) {
     const Floats along =
         (__builtin_convertvector(number, Floats) * row.spacing + row.start) + row.offset;
-    Floats places[3];
-    FindPlaces(way, along, places);
-    Ints block{};
-    for (int axis = 2; axis >= 0; --axis) {
-      Ints at = __builtin_convertvector(places[axis] * format.blocksPerVoxel, Ints);
-      const Ints last = format.lastBlock[axis] - Ints{};
-      at = at < last ? at : last;
-      block = block * ShownBlocks::Words + at;
-    }
+    const Ints block = BlocksAt(format, way, along);
     shown |= static_cast<std::uint64_t>(LookUp(blocks, block)) << k;
     number += LaneCount;
   }
-  // Not LowestBits: nothing inline comes from elsewhere.
-  return count < 64 ? shown & ((std::uint64_t{1} << count) - 1) : shown;
+  return FirstBits(shown, count);
+}
+
+/// The same where a brick may be shown as a whole, or not at all.
+std::uint32_t LookUpAny(const ShownBlocks& blocks, Ints block)
+{
+  switch (blocks.kind) {
+  case ShownBlocks::Kind::All:
+    return ~std::uint32_t{0};
+  case ShownBlocks::Kind::None:
+    return 0;
+  case ShownBlocks::Kind::Some:
+    break;
+  }
+  return LookUp(blocks, block);
+}
+
+std::uint32_t BitsOf(Ints mask)
+{
+#if defined(__AVX512F__)
+  return _mm512_test_epi32_mask((__m512i)mask, (__m512i)mask);
+#elif defined(__AVX2__)
+  return static_cast<std::uint32_t>(_mm256_movemask_ps((__m256)mask));
+#else
+  std::uint32_t bits = 0;
+  for (int lane = 0; lane < LaneCount; ++lane) {
+    bits |= (mask[lane] & 1u) << lane;
+  }
+  return bits;
+#endif
+}
+
+std::uint64_t FindShownOnTwo(const BrickFormat& format, const ShownBlocks* const (&blocks)[2],
+                             const BrickPath* const (&paths)[2], const SampleRun& run, int count)
+{
+  constexpr std::uint64_t lanes = (std::uint64_t{1} << LaneCount) - 1;
+  Ints number = FirstNumbers();
+  std::uint64_t shown = 0;
+  for (int k = 0; k < count; k += LaneCount) {
+    const Dithered is = Dither(run, {number, k});
+    const Ints block = BlocksAt(format, ChooseWay(is.coarser, *paths[0], *paths[1]), is.along);
+    const std::uint32_t coarser = BitsOf(is.coarser);
+    const std::uint64_t bits =
+        (LookUpAny(*blocks[0], block) & ~coarser) | (LookUpAny(*blocks[1], block) & coarser);
+    shown |= (bits & lanes) << k;
+    number += LaneCount;
+  }
+  return FirstBits(shown, count);
 }
 
 /// Table positions of a batch.
@@ -259,7 +324,8 @@ int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opa
 
 } // namespace
 
-const BrickKernel Bricks = {FindShown, SampleRuns, Sample, Composite, CompositeIntegrated};
+const BrickKernel Bricks = {FindShown, FindShownOnTwo, SampleRuns,
+                            Sample,    Composite,      CompositeIntegrated};
 
 } // namespace INR_ISA
 } // namespace inr

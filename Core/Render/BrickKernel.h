@@ -138,6 +138,12 @@ struct BrickKernel
   std::uint64_t (*findShown)(const BrickFormat& format, const ShownBlocks& blocks,
                              const BrickPath& path, const SampleRow& row, int count);
 
+  /// The same of the first `count` samples of a run that is on two paths, from the bricks of
+  /// `blocks`: each is looked up where it is.
+  std::uint64_t (*findShownOnTwo)(const BrickFormat& format, const ShownBlocks* const (&blocks)[2],
+                                  const BrickPath* const (&paths)[2], const SampleRun& run,
+                                  int count);
+
   /// Lays out the samples of the first `runs` runs, at most Capacity in all, and finds their
   /// values.
   void (*sampleRuns)(const BrickFormat& format, SampleBatch& batch, int runs);

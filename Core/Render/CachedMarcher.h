@@ -138,11 +138,17 @@ private:
   /// Which of the first of them may show something.
   std::uint64_t findShown(const CachedRay& state, const AlikeSamples& alike, int count,
                           const BrickRun& run) const;
+  /// The same of samples that are in one of two bricks each.
+  std::uint64_t findShownOnTwo(const CachedRay& state, const AlikeSamples& alike, int count,
+                               const RunPair& runs) const;
+  /// Where such samples are, but for the places of their bricks in the batch.
+  void placeRun(const CachedRay& state, const AlikeSamples& alike, const RunPair& runs,
+                SampleRun& run) const;
   void addRun(const CachedRay& state, const AlikeSamples& alike, int count, const SampleBits& bits,
-              const BrickRun& fine, const BrickRun& coarse);
+              const RunPair& runs);
   BrickRun* runFor(const CachedRay& state, int level, double place);
-  void countUse(const CachedRay& state, const AlikeSamples& alike, int count, BrickRun& fine,
-                BrickRun& coarse) const;
+  void countUse(const CachedRay& state, const AlikeSamples& alike, std::uint64_t taken,
+                BrickRun& fine, BrickRun& coarse) const;
   /// The number that chooses between two levels for a sample. A surface would be torn where one
   /// sample is of this and the next of that level, so of its rays all have the same.
   std::int64_t ditherOf(std::int64_t interval) const { return interval & this->DitherMask; }

@@ -19,14 +19,19 @@ float Between(float a, float b, float weight) { return a + (b - a) * weight; }
 
 } // namespace
 
-CachedSampler::CachedSampler(const BrickCache& cache, const Evaluator& field, OnPathMiss onMiss)
-    : Cache(cache), Missing(onMiss), Network(field, cache.hierarchy().dims()),
-      BrickStride(cache.hierarchy().brickDims() - 1), InverseBrickStride(1.0 / this->BrickStride),
-      VoxelBytes(BytesPerVoxel(cache.precision())), StrideY(cache.hierarchy().brickDims().x),
-      StrideZ(this->StrideY * cache.hierarchy().brickDims().y),
-      LastCell(cache.hierarchy().brickDims() - 2)
+CachedSampler::CachedSampler(const SufficientBricks& bricks, const Evaluator& field,
+                             OnPathMiss onMiss)
+    : Bricks(bricks), Cache(bricks.cache()), Missing(onMiss),
+      Network(field, this->Cache.hierarchy().dims()),
+      BrickStride(this->Cache.hierarchy().brickDims() - 1),
+      InverseBrickStride(1.0 / this->BrickStride),
+      VoxelBytes(BytesPerVoxel(this->Cache.precision())),
+      StrideY(this->Cache.hierarchy().brickDims().x),
+      StrideZ(this->StrideY * this->Cache.hierarchy().brickDims().y),
+      LastCell(this->Cache.hierarchy().brickDims() - 2),
+      BlockEdge(this->Cache.blocks().lattice().edge)
 {
-  const Hierarchy& hierarchy = cache.hierarchy();
+  const Hierarchy& hierarchy = this->Cache.hierarchy();
   for (int level = 0; level < hierarchy.levels(); ++level) {
     this->Levels.push_back({hierarchy.scale(level), hierarchy.bias(level),
                             glm::dvec3(hierarchy.size(level) - std::int64_t{1}),
@@ -60,13 +65,26 @@ CachedSampler::Cell CachedSampler::cellIn(std::int32_t slot, const glm::dvec3& l
   return cell;
 }
 
+bool CachedSampler::lookUp(BrickKey key, const glm::dvec3& local, Cell& cell)
+{
+  const std::int32_t slot = this->Bricks.find(key);
+  if (slot == PageTable::Unmapped) {
+    return false;
+  }
+  cell = this->cellIn(slot, local);
+  // Cells that are those of coarser levels, too, lead paths to blocks that show nothing.
+  const BlockSet& known = this->Cache.blocks().known(slot);
+  if (!known.isAll() && !known.has(glm::min(glm::ivec3(local), this->LastCell) / this->BlockEdge)) {
+    this->Unknown.push_back(&cell - this->Cells.data());
+  }
+  return true;
+}
+
 bool CachedSampler::find(const FieldPoint& point, Cell& cell)
 {
   glm::dvec3 local;
   const BrickKey key = this->locate(point.level, IndexOf(point), local);
-  const std::int32_t slot = this->Cache.find(key);
-  if (slot != PageTable::Unmapped) {
-    cell = this->cellIn(slot, local);
+  if (this->lookUp(key, local, cell)) {
     this->Served.add({point.level, point.level});
     return true;
   }
@@ -83,9 +101,7 @@ void CachedSampler::findCoarser(const FieldPoint& point, Cell& cell)
   BrickKey finer = this->locate(point.level, index, local);
   for (int level = point.level + 1; level < static_cast<int>(this->Levels.size()); ++level) {
     const BrickKey key = this->locate(level, index, local);
-    const std::int32_t slot = this->Cache.find(key);
-    if (slot != PageTable::Unmapped) {
-      cell = this->cellIn(slot, local);
+    if (this->lookUp(key, local, cell)) {
       this->Served.add({level, level});
       break;
     }
@@ -135,6 +151,7 @@ void CachedSampler::sample(const FieldPoint* points, std::int64_t count, float* 
   const std::int32_t anywhere = this->Cache.find(this->Cache.hierarchy().coarsest());
   this->Cells.resize(static_cast<std::size_t>(count));
   this->Absent.clear();
+  this->Unknown.clear();
   for (std::int64_t k = 0; k < count; ++k) {
     Cell& cell = this->Cells[static_cast<std::size_t>(k)];
     if (this->find(points[k], cell)) {
@@ -157,6 +174,9 @@ void CachedSampler::sample(const FieldPoint* points, std::int64_t count, float* 
   case CachePrecision::Bits8:
     this->interpolate<std::uint8_t>(values);
     break;
+  }
+  for (const std::int64_t k : this->Unknown) {
+    values[k] = Hidden;
   }
   if (!this->Absent.empty()) {
     this->infer(points, values);
@@ -199,7 +219,7 @@ private:
 
 } // namespace
 
-TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
+TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& bricks,
                               const Evaluator& field, OnPathMiss onMiss, const WorkLimit* limit,
                               const Arena& arena, const std::function<bool()>& keepGoing,
                               RequestRanking& requests)
@@ -211,7 +231,7 @@ TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
   traced.tiles.resize(round.tiles.size());
   std::vector<RequestList> lists(round.tiles.size());
   const auto trace = [&](std::size_t k) {
-    CachedSampler sampler(cache, field, onMiss);
+    CachedSampler sampler(bricks, field, onMiss);
     StoppableSampler stoppable(sampler, keepGoing);
     const Tile tile = tiling.tile(round.tiles[k]);
     traced.tiles[k] = round.tracer.trace(tile, stoppable, round.output.rgba, round.output.depth);

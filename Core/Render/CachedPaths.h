@@ -5,6 +5,7 @@
 #include "Core/Cache/Requests.h"
 #include "Core/Render/PathPicture.h"
 #include "Core/Render/PathTracingField.h"
+#include "Core/Render/SufficientBricks.h"
 
 #include <cstdint>
 #include <functional>
@@ -28,7 +29,7 @@ class CachedSampler : public FieldSampler
 {
 public:
   /// `field` is for misses. The references must outlive the sampler.
-  CachedSampler(const BrickCache& cache, const Evaluator& field, OnPathMiss onMiss);
+  CachedSampler(const SufficientBricks& bricks, const Evaluator& field, OnPathMiss onMiss);
 
   void sample(const FieldPoint* points, std::int64_t count, float* values) override;
 
@@ -64,10 +65,13 @@ private:
   BrickKey locate(int level, const glm::dvec3& index, glm::dvec3& local) const;
   bool find(const FieldPoint& point, Cell& cell);
   void findCoarser(const FieldPoint& point, Cell& cell);
+  /// The voxels around a place in a brick; false where that is not there.
+  bool lookUp(BrickKey key, const glm::dvec3& local, Cell& cell);
   Cell cellIn(std::int32_t slot, const glm::dvec3& local) const;
   void infer(const FieldPoint* points, float* values);
   template <typename Voxel> void interpolate(float* values) const;
 
+  const SufficientBricks& Bricks;
   const BrickCache& Cache;
   OnPathMiss Missing;
   EvaluatorSampler Network;
@@ -78,6 +82,7 @@ private:
   std::int64_t StrideY; ///< voxels
   std::int64_t StrideZ;
   glm::ivec3 LastCell;
+  int BlockEdge; ///< voxels
   std::int64_t Missed = 0;
   std::int64_t Inferred = 0;
   LevelSpan Served;
@@ -85,6 +90,7 @@ private:
 
   std::vector<Cell> Cells; ///< of a batch
   std::vector<std::int64_t> Absent;
+  std::vector<std::int64_t> Unknown; ///< in bricks that are there
   std::vector<FieldPoint> AbsentPoints;
   std::vector<float> AbsentValues;
 };
@@ -92,7 +98,7 @@ private:
 /// Traces a round's tiles with what is in the cache; with a limit, the first few and then more
 /// until it ends. What was missing is added to `requests` in the order of the tiles.
 /// Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
-TracedTiles TraceThroughCache(const PathRound& round, const BrickCache& cache,
+TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& bricks,
                               const Evaluator& field, OnPathMiss onMiss, const WorkLimit* limit,
                               const Arena& arena, const std::function<bool()>& keepGoing,
                               RequestRanking& requests);

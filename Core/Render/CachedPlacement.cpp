@@ -9,6 +9,16 @@
 
 namespace inr {
 
+namespace {
+
+void ShowKnown(const BlockSet& known, ShownBlocks& shown)
+{
+  shown.kind = known.isAll() ? ShownBlocks::Kind::All : ShownBlocks::Kind::Some;
+  std::copy(known.words.begin(), known.words.end(), shown.words);
+}
+
+} // namespace
+
 // Flat: what it calls it calls for every brick and macro-cell of every ray.
 __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
 {
@@ -62,32 +72,38 @@ bool CachedMarcher::isCropped(const CachedRay& state, AlikeSamples& alike) const
 }
 
 // Inline: called once per run of samples, and there are as many of them as of bricks.
-inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
-                                  const SampleBits& bits, const BrickRun& fine,
-                                  const BrickRun& coarse)
+inline void CachedMarcher::placeRun(const CachedRay& state, const AlikeSamples& alike,
+                                    const RunPair& runs, SampleRun& run) const
 {
   const SampleWalker& samples = state.samples;
-  const SampleStretch& stretch = samples.stretch();
-  // A coarser brick than the one wanted may hold anything.
-  const bool exact = fine.exact() && coarse.exact();
-  const ValueRange range = exact ? stretch.range : ValueRange{0.0f, 1.0f};
-  const double offset = samples.offset(alike);
   const auto begin = static_cast<double>(samples.next());
   const double growth = samples.detail().fractionGrowth() * this->Scene.settings.step;
-  const double fraction = samples.detail().fractionAtEntry() + growth * fine.reference();
-  SampleRun& run = this->Batch.runs[this->RunCount];
-  run.start[0] = fine.along(begin);
-  run.start[1] = coarse.along(begin);
+  const double fraction = samples.detail().fractionAtEntry() + growth * runs.fine->reference();
+  run.start[0] = runs.fine->along(begin);
+  run.start[1] = runs.coarse->along(begin);
   run.spacing = static_cast<float>(alike.steps());
-  run.offset = static_cast<float>(offset);
+  run.offset = static_cast<float>(samples.offset(alike));
   run.ways = samples.detail().isDithered() ? 2 : 1;
-  run.path[0] = fine.place();
-  run.path[1] = coarse.place();
   run.fraction = static_cast<float>(fraction);
   run.growth = static_cast<float>(growth);
   run.seed = DitherSeed(state.stream);
   run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
   run.stride = static_cast<std::uint32_t>(this->ditherOf(alike.steps()));
+}
+
+inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
+                                  const SampleBits& bits, const RunPair& runs)
+{
+  const SampleWalker& samples = state.samples;
+  const SampleStretch& stretch = samples.stretch();
+  const BrickRun& fine = *runs.fine;
+  // A coarser brick than the one wanted may hold anything.
+  const bool exact = fine.exact() && runs.coarse->exact();
+  const ValueRange range = exact ? stretch.range : ValueRange{0.0f, 1.0f};
+  SampleRun& run = this->Batch.runs[this->RunCount];
+  this->placeRun(state, alike, runs, run);
+  run.path[0] = fine.place();
+  run.path[1] = runs.coarse->place();
   run.count = count;
   run.shown = bits.taken;
   run.length = LengthOf(alike.joined, alike.power);
@@ -96,7 +112,7 @@ inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& al
   // One by one: a whole one made elsewhere would be waited for until it can be read.
   Origin& origin = this->Origins[this->RunCount++];
   origin.sample = this->Count;
-  origin.offset = offset;
+  origin.offset = samples.offset(alike);
   origin.interval = samples.next();
   origin.steps = alike.steps();
   origin.shown = bits.taken;
@@ -109,16 +125,16 @@ inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& al
   this->Count += count;
 }
 
-inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike, int count,
-                                    BrickRun& fine, BrickRun& coarse) const
+inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike,
+                                    std::uint64_t taken, BrickRun& fine, BrickRun& coarse) const
 {
-  if (fine.exact() && coarse.exact()) { // nobody asks which it was; of others none is left out
-    fine.count(count);
+  if (fine.exact() && coarse.exact()) { // nobody asks which it was
+    fine.count(CountBits(taken));
     return;
   }
   const LevelOfDetail& detail = state.samples.detail();
-  for (int k = 0; k < count; ++k) {
-    const std::int64_t interval = state.samples.next() + k * alike.steps();
+  for (; taken != 0; taken &= taken - 1) {
+    const std::int64_t interval = state.samples.next() + PlaceOfBit(taken, 0) * alike.steps();
     const bool isFine = detail.dithered(state.stream, this->ditherOf(interval)) == fine.level();
     (isFine ? fine : coarse).count(1);
   }
@@ -160,16 +176,30 @@ std::uint64_t CachedMarcher::findShown(const CachedRay& state, const AlikeSample
   return this->Scene.kernel.findShown(this->Scene.format, run.shown(), run.path(), row, count);
 }
 
+std::uint64_t CachedMarcher::findShownOnTwo(const CachedRay& state, const AlikeSamples& alike,
+                                            int count, const RunPair& runs) const
+{
+  SampleRun run;
+  this->placeRun(state, alike, runs, run);
+  return this->Scene.kernel.findShownOnTwo(this->Scene.format,
+                                           {&runs.fine->shown(), &runs.coarse->shown()},
+                                           {&runs.fine->path(), &runs.coarse->path()}, run, count);
+}
+
 CachedMarcher::SampleBits CachedMarcher::choose(const CachedRay& state, const AlikeSamples& alike,
                                                 int count, const RunPair& runs) const
 {
-  // What is seen in neither is left out, whichever a sample would be from.
+  if (!this->Probe) {
+    const std::uint64_t visible = runs.coarse == runs.fine
+                                      ? this->findShown(state, alike, count, *runs.fine)
+                                      : this->findShownOnTwo(state, alike, count, runs);
+    return {visible, visible, visible};
+  }
+  // What is seen in neither is left out, whichever a sample would be from: of samples that are not
+  // taken, too, it is asked what is seen there.
   const std::uint64_t visible =
       this->findShown(state, alike, count, *runs.fine) |
       (runs.coarse != runs.fine ? this->findShown(state, alike, count, *runs.coarse) : 0);
-  if (!this->Probe) {
-    return {visible, visible, visible};
-  }
   const bool follows = state.shownTo == CachedRay::Unknown || state.shownTo == state.samples.next();
   const std::uint64_t seen = (visible | visible << 1 | (follows ? 1 : 0)) & LowestBits(count);
   return {seen | seen >> 1, seen, visible};
@@ -221,9 +251,9 @@ void CachedMarcher::add(CachedRay& state, AlikeSamples& alike, const RunPair& ru
       this->enlist(*run);
     }
   }
-  this->addRun(state, alike, taken, bits, *runs.fine, *runs.coarse);
+  this->addRun(state, alike, taken, bits, runs);
   this->Statistics.hidden += count - taken;
-  this->countUse(state, alike, taken, *runs.fine, *runs.coarse);
+  this->countUse(state, alike, bits.taken, *runs.fine, *runs.coarse);
 }
 
 BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double place)
@@ -247,7 +277,7 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
   }
   wanted.moveTo(t);
   const BrickKey key = wanted.brick();
-  std::int32_t slot = cache.find(key);
+  std::int32_t slot = this->Scene.bricks.find(key);
   if (slot >= 0) {
     run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
   } else if (this->Missing == OnMiss::Stop) {
@@ -257,7 +287,9 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
     slot = this->openCoarser(run, ray, wanted, t);
   }
   cache.touch(slot);
-  if (this->Scene.blocks != nullptr && run.exact()) { // a coarser brick may hide what is there
+  if (!run.exact()) { // a coarser brick may hide what is there, but what is not known is invisible
+    ShowKnown(cache.blocks().known(slot), run.shown());
+  } else if (this->Scene.blocks != nullptr) {
     this->Scene.blocks->find(slot, run.shown());
   }
   return true;
@@ -272,7 +304,7 @@ std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const Bri
   for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
     BrickWay served(hierarchy.view(), level, ray);
     served.moveTo(t);
-    const std::int32_t slot = cache.find(served.brick());
+    const std::int32_t slot = this->Scene.bricks.find(served.brick());
     if (slot >= 0) {
       run.open(wanted, served, cache.view(slot), this->Scene.settings.step);
       if (this->Missing == OnMiss::Approach) {

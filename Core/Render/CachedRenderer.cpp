@@ -88,11 +88,39 @@ const BlockVisibility* CachedRenderer::blocksFor(const ColorTable& colors,
   return &*this->Blocks;
 }
 
+const SufficientBricks& CachedRenderer::bricksFor(const Majorants& majorants,
+                                                  std::optional<int> reach)
+{
+  const bool fits = this->Bricks && this->Bricks->wantsAll() == !reach &&
+                    this->Bricks->reach() == reach.value_or(0);
+  if (!fits) {
+    this->Unfinished.reset(); // it reads the former ones
+    const BrickCache& cache = this->Store->cache();
+    std::optional<VisibleBlocks> wanted;
+    if (reach) {
+      wanted.emplace(cache.hierarchy(), majorants.view(), *reach);
+    }
+    this->Bricks.emplace(cache, wanted);
+  }
+  return *this->Bricks;
+}
+
+std::vector<BrickPart> CachedRenderer::partsOf(const std::vector<BrickKey>& keys) const
+{
+  std::vector<BrickPart> parts;
+  parts.reserve(keys.size());
+  for (const BrickKey key : keys) {
+    parts.emplace_back(key, this->LoadsWhole ? BlockSet::all() : this->Bricks->wanted(key));
+  }
+  return parts;
+}
+
 void CachedRenderer::forgetColors()
 {
   this->Unfinished.reset();
   this->Steps.reset();
   this->Blocks.reset();
+  this->Bricks.reset();
 }
 
 FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& geometry,
@@ -114,17 +142,26 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
   const ColorLookup& lookup = colors.lookup();
   const StepLookup& steps = this->stepsFor(lookup, settings.step * settings.unitsPerT);
   const BrickCache& cache = this->Store->cache();
+  const BlockVisibility* blocks = this->blocksFor(colors, settings, majorants.rangesHold());
+  // With samples chosen for a tolerance; until these are, less is enough.
+  const bool looksFurther = settings.looksAtBothEnds() || settings.cellSampling != nullptr;
+  this->LoadsWhole = frame.errorTolerance.has_value();
+  std::optional<int> reach;
+  if (blocks != nullptr && !looksFurther) {
+    reach = shading != nullptr ? 1 : 0; // gradients
+  }
   const CachedScene scene{frame,
                           geometry,
                           majorants,
                           lookup,
                           steps,
                           cache,
+                          this->bricksFor(majorants, reach),
                           this->Kernel,
                           FormatOf(cache),
                           settings,
                           shading,
-                          this->blocksFor(colors, settings, majorants.rangesHold())};
+                          blocks};
   FrameStatistics statistics = this->renderFrame(scene, limit, output, keepGoing);
   statistics.work = this->Work;
   return statistics;
@@ -175,7 +212,8 @@ void CachedRenderer::loadForPass(CompletePass& pass, const RequestRanking& reque
   if (pass.isAlone()) {
     keys = {keys.back()};
   }
-  const BrickStore::Loaded loaded = this->Store->load(keys, this->Threads, keepGoing);
+  const BrickStore::Loaded loaded =
+      this->Store->load(this->partsOf(keys), this->Threads, keepGoing);
   if (loaded.full && pass.isAlone()) {
     // A batch of one ray's samples has used all that there is and waits for more: its first sample
     // can have what it needs when the others have nothing.
@@ -190,10 +228,10 @@ bool CachedRenderer::loadForFrame(const std::vector<BrickKey>& keys, const WorkL
                                   const std::function<bool()>& keepGoing)
 {
   if (limit.isTimed()) {
-    this->Store->loadFor(limit.secondsForLoading(), keys, this->Threads);
+    this->Store->loadFor(limit.secondsForLoading(), this->partsOf(keys), this->Threads);
     return false;
   }
-  return this->Store->load(keys, this->Threads, keepGoing).full;
+  return this->Store->load(this->partsOf(keys), this->Threads, keepGoing).full;
 }
 
 FrameStatistics CachedRenderer::march(const CachedScene& scene, const PassOutput& output,
@@ -287,9 +325,14 @@ FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput&
   return statistics;
 }
 
-TracedTiles CachedRenderer::tracePaths(const PathRound& round, const WorkLimit& limit,
+TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& majorants,
+                                       const ColorTable& colors, const WorkLimit& limit,
                                        const std::function<bool()>& keepGoing)
 {
+  this->LoadsWhole = false;
+  const bool hides = majorants.rangesHold() && colors.hidesAny();
+  const SufficientBricks& bricks =
+      this->bricksFor(majorants, hides ? std::optional<int>(0) : std::nullopt);
   // Where somebody waits for all of it, what did not fit a moment ago is not tried again.
   const bool guessed = round.first && !limit.isLimited() && this->Overfull;
   this->Overfull = this->Overfull && (!round.first || guessed);
@@ -307,8 +350,8 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const WorkLimit& 
   const bool hurries = infers && !round.first && limit.isTimed();
   RequestRanking requests;
   TracedTiles traced =
-      TraceThroughCache(round, this->Store->cache(), *this->Field, onMiss,
-                        hurries ? &limit : nullptr, this->Threads, keepGoing, requests);
+      TraceThroughCache(round, bricks, *this->Field, onMiss, hurries ? &limit : nullptr,
+                        this->Threads, keepGoing, requests);
   if (guessed && requests.count() <= this->room()) {
     this->Overfull = false; // a wrong guess: bricks for them all, and once more
   } else if (this->Overfull && this->Options.onlyWhatFits) {

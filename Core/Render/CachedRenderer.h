@@ -7,6 +7,7 @@
 #include "Core/Render/PathPicture.h"
 #include "Core/Render/Refinement.h"
 #include "Core/Render/StepTable.h"
+#include "Core/Render/SufficientBricks.h"
 
 #include <functional>
 #include <memory>
@@ -21,8 +22,8 @@ class WorkLimit;
 struct CacheOptions
 {
   /// Of the whole cache; 0 = DefaultCacheBytes(). The caches of all renderers of a process stay
-  /// within the largest of these. Renderers note 72 bytes more for each brick that they look at:
-  /// which of its blocks their colours show.
+  /// within the largest of these. Renderers note 80 bytes more for each brick that they look at:
+  /// which of its blocks their colours show, and whether these are known.
   std::int64_t bytes = 0;
   CachePrecision precision = CachePrecision::Bits16;
   int brickSize = 40;       ///< voxels per side, 4 to 1024
@@ -73,7 +74,8 @@ public:
   /// much as `limit` allows. Where the cache has no room for
   /// what the picture wants, the rest is inferred at the paths' points instead, or stays
   /// coarser.
-  TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,
+  TracedTiles tracePaths(const PathRound& round, const Majorants& majorants,
+                         const ColorTable& colors, const WorkLimit& limit,
                          const std::function<bool()>& keepGoing);
   /// Forgets what was made of the colours; for when they change.
   void forgetColors();
@@ -86,8 +88,12 @@ private:
                               const PassOutput& output, const std::function<bool()>& keepGoing);
   void beginFrame();
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
+  /// Null where all values matter.
   const BlockVisibility* blocksFor(const ColorTable& colors, const MarchSettings& settings,
                                    bool rangesHold);
+  /// `reach`: see VisibleBlocks; nothing: whole bricks.
+  const SufficientBricks& bricksFor(const Majorants& majorants, std::optional<int> reach);
+  std::vector<BrickPart> partsOf(const std::vector<BrickKey>& keys) const;
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
                                  const std::function<bool()>& keepGoing);
   FrameStatistics renderInTime(const CachedScene& scene, const WorkLimit& limit,
@@ -119,6 +125,8 @@ private:
   WorkDone Work;                             ///< of rays, in the present call
   std::optional<StepTable> Steps;
   std::optional<BlockVisibility> Blocks;
+  std::optional<SufficientBricks> Bricks; ///< of the latest frame
+  bool LoadsWhole = false;                ///< as it will look at more later
   /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
   std::optional<Refinement> Unfinished;
   /// Of the latest path-traced picture: it wants more than the cache can hold, or keep for it.

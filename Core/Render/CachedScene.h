@@ -10,6 +10,7 @@
 #include "Core/Render/RayGeometry.h"
 #include "Core/Render/SampleShader.h"
 #include "Core/Render/SampleWalker.h"
+#include "Core/Render/SufficientBricks.h"
 
 namespace inr {
 
@@ -22,6 +23,7 @@ struct CachedScene
   const ColorLookup& colors;
   const StepLookup& steps;
   const BrickCache& cache;
+  const SufficientBricks& bricks; ///< of that, the only ones to look at
   const BrickKernel& kernel;
   BrickFormat format; ///< of the cache's bricks
   MarchSettings settings;

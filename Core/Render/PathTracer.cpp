@@ -168,8 +168,13 @@ private:
       const PathSample& sample = this->Samples[live];
       PathState& path = this->Paths[static_cast<std::size_t>(k)];
       float value = this->Values[live];
-      this->Statistics.clamped += ClampToRange(sample.range, value) ? 1 : 0;
       this->Statistics.work.lightSteps += path.towardsLight ? 1 : 0;
+      if (std::isnan(value)) { // FieldSampler::Hidden
+        PassBy(path);
+        this->Live[alive++] = k;
+        continue;
+      }
+      this->Statistics.clamped += ClampToRange(sample.range, value) ? 1 : 0;
       if (Collide(this->Scene, path, sample.majorant, value)) {
         this->Live[alive++] = k;
       }

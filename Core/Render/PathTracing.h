@@ -294,6 +294,14 @@ INR_HOST_DEVICE inline bool Scatter(const PathScene& scene, PathState& path, con
   return true;
 }
 
+/// Lets the path by where there is nothing to collide with, as Collide does.
+INR_HOST_DEVICE inline void PassBy(PathState& path)
+{
+  if (!path.towardsLight) {
+    Draw(path);
+  }
+}
+
 /// Lets the path collide, or not, with what the field has at its place; false when that ends it.
 INR_HOST_DEVICE inline bool Collide(const PathScene& scene, PathState& path, float majorant,
                                     float value)

@@ -8,6 +8,7 @@
 #include <glm/gtc/type_precision.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace inr {
@@ -16,10 +17,13 @@ namespace inr {
 class FieldSampler
 {
 public:
+  /// Not a number: instead of a value that nobody knows but that is invisible.
+  static constexpr float Hidden = std::numeric_limits<float>::quiet_NaN();
+
   virtual ~FieldSampler() = default;
 
-  /// Normalised values at `count` points inside the volume. A value must not depend on its
-  /// neighbours in the batch.
+  /// Normalised values at `count` points inside the volume, or Hidden. A value must not depend on
+  /// its neighbours in the batch.
   virtual void sample(const FieldPoint* points, std::int64_t count, float* values) = 0;
 };
 

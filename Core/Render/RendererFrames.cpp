@@ -178,8 +178,9 @@ TracedTiles Renderer::Implementation::traceHere(const PathRound& round, const Ev
                                                 const WorkLimit& limit,
                                                 const std::function<bool()>& keepGoing)
 {
-  return this->Cached ? this->Cached->tracePaths(round, limit, keepGoing)
-                      : TraceWithNetwork(round, field, this->Volume.dims, this->Threads, keepGoing);
+  return this->Cached
+             ? this->Cached->tracePaths(round, this->Cells, *this->Colors, limit, keepGoing)
+             : TraceWithNetwork(round, field, this->Volume.dims, this->Threads, keepGoing);
 }
 
 TracedTiles Renderer::Implementation::traceRound(const PathRound& round, const WorkLimit& limit,

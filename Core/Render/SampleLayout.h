@@ -147,17 +147,29 @@ Floats RandomUnits(const SampleRun& run, const Lanes& lanes)
   return __builtin_convertvector((Ints)((x ^ (x >> 16)) >> 8), Floats) * 0x1p-24f;
 }
 
+/// Samples on one of two paths each.
+struct Dithered
+{
+  Ints coarser; ///< -1 on the second path, else 0
+  Floats along; ///< their path
+};
+
+Dithered Dither(const SampleRun& run, const Lanes& lanes)
+{
+  const Floats fine = AlongOf(run, 0, lanes);
+  const Floats fraction = MultiplyAdd(fine, Spread(run.growth), Spread(run.fraction));
+  const Ints coarser = RandomUnits(run, lanes) < fraction;
+  return {coarser, coarser ? AlongOf(run, 1, lanes) : fine};
+}
+
 void PutOnTwoPaths(const SampleRun& run, const Lanes& lanes, SampleBatch& batch, Located& out)
 {
   const BrickPath& a = batch.paths[run.path[0]];
   const BrickPath& b = batch.paths[run.path[1]];
-  const Floats fine = AlongOf(run, 0, lanes);
-  const Floats fraction = MultiplyAdd(fine, Spread(run.growth), Spread(run.fraction));
-  const Ints coarser = RandomUnits(run, lanes) < fraction;
-  const Floats along = coarser ? AlongOf(run, 1, lanes) : fine;
-  PutPlaces(ChooseWay(coarser, a, b), along, lanes.at, out);
-  Store(batch.along + lanes.at, along);
-  StoreInts(batch.path + lanes.at, coarser ? run.path[1] - Ints{} : run.path[0] - Ints{});
+  const Dithered is = Dither(run, lanes);
+  PutPlaces(ChooseWay(is.coarser, a, b), is.along, lanes.at, out);
+  Store(batch.along + lanes.at, is.along);
+  StoreInts(batch.path + lanes.at, is.coarser ? run.path[1] - Ints{} : run.path[0] - Ints{});
 }
 
 void PutCommon(const SampleRun& run, int at, SampleBatch& batch)

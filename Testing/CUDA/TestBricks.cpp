@@ -3,6 +3,7 @@
 // The kernels at bricks against Core's and against the kernels at points.
 #include "Core/Cache/BrickStore.h"
 #include "Testing/CUDA/Places.h"
+#include "Testing/Core/Cache/WholeBricks.h"
 #include "Testing/Core/RandomModel.h"
 
 namespace {
@@ -170,7 +171,7 @@ TEST_P(Bricks, FillACache)
     store.beginFrame();
     for (int round = 0; round < 100 && store.mapped() <= static_cast<std::int64_t>(keys.size());
          ++round) {
-      store.loadFor(10, keys, arena);
+      store.loadFor(10, Whole(keys), arena);
     }
     for (std::size_t k = 0; k < keys.size(); ++k) {
       const std::int32_t slot = store.cache().find(keys[k]);

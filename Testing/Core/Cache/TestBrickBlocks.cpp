@@ -41,7 +41,7 @@ struct Stored
   void store(std::int32_t slot, std::uint64_t seed)
   {
     this->pool.store(slot, Brick(this->dims, seed).data());
-    this->blocks.store(slot, this->pool.view(slot));
+    this->blocks.store(slot, this->pool.view(slot), inr::BlockSet::all());
   }
   double voxel(std::int32_t slot, const glm::ivec3& at) const
   {
@@ -164,7 +164,7 @@ TEST(BrickBlocks, HoldWhatHardlyVaries)
       std::vector<float> values(729, 0.0f);
       values[700] = width;
       pool.store(0, values.data());
-      blocks.store(0, pool.view(0));
+      blocks.store(0, pool.view(0), inr::BlockSet::all());
       inr::ValueRange ranges[8];
       blocks.ranges(0, ranges);
       for (const inr::ValueRange& range : ranges) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/BrickLoader.h"
+#include "Testing/Core/Cache/WholeBricks.h"
 
 #include <gtest/gtest.h>
 
@@ -72,10 +73,10 @@ public:
 std::vector<inr::BrickKey> Receive(inr::BrickLoader& loader)
 {
   std::vector<inr::BrickKey> keys;
-  loader.handOver([&](inr::BrickKey key, const float* values) {
-    keys.push_back(key);
+  loader.handOver([&](const inr::BrickPart& part, const float* values) {
+    keys.push_back(part.key);
     for (std::int64_t k = 0; k < 512; ++k) {
-      ASSERT_EQ(values[k], CountingSource::ValueOf(key, k));
+      ASSERT_EQ(values[k], CountingSource::ValueOf(part.key, k));
     }
   });
   return keys;
@@ -103,7 +104,7 @@ template <typename Condition> bool Soon(const Condition& condition)
 TEST_P(BrickLoaderTest, LoadsWhatIsRequested)
 {
   inr::BrickLoader loader(this->Source, GetParam(), 100);
-  loader.request(Bricks(5, 20));
+  loader.request(Whole(Bricks(5, 20)));
   loader.loadFor(Forever);
   std::vector<inr::BrickKey> keys = Receive(loader);
   std::sort(keys.begin(), keys.end());
@@ -120,11 +121,11 @@ TEST_P(BrickLoaderTest, InfersNoLayerBeyondTheVolume)
   loader.request({last});
   loader.loadFor(Forever);
   int received = 0;
-  loader.handOver([&](inr::BrickKey key, const float* values) {
-    EXPECT_EQ(key, last);
+  loader.handOver([&](const inr::BrickPart& part, const float* values) {
+    EXPECT_EQ(part.key, last);
     for (std::int64_t k = 0; k < 512; ++k) {
       const std::int64_t inside = std::min<std::int64_t>(k, 4 * 64 + k % 64);
-      ASSERT_EQ(values[k], CountingSource::ValueOf(key, inside));
+      ASSERT_EQ(values[k], CountingSource::ValueOf(part.key, inside));
     }
     ++received;
   });
@@ -136,7 +137,7 @@ TEST_P(BrickLoaderTest, WorksALayerAtLeastAndNoLongerThanItMay)
 {
   this->Source->delay = std::chrono::milliseconds(2);
   inr::BrickLoader loader(this->Source, GetParam(), 100);
-  loader.request(Bricks(0, 50));
+  loader.request(Whole(Bricks(0, 50)));
   loader.loadFor(0);
   EXPECT_TRUE(Soon([&] { return this->Source->layers >= 1; }));
   EXPECT_LE(this->Source->layers, 8);
@@ -148,7 +149,7 @@ TEST_F(BrickLoaderTest, DoesNotKeepACallerForALayer)
 {
   this->Source->delay = std::chrono::seconds(3); // longer than a busy machine holds a thread up
   inr::BrickLoader loader(this->Source, 1, 100);
-  loader.request(Bricks(0, 1));
+  loader.request(Whole(Bricks(0, 1)));
   loader.loadFor(0.001);
   EXPECT_EQ(this->Source->layers, 0);
 }
@@ -157,7 +158,7 @@ TEST_P(BrickLoaderTest, HoldsNoMoreThanItHasRoomFor)
 {
   inr::BrickLoader loader(this->Source, GetParam(), 3);
   EXPECT_EQ(inr::BrickLoader::bytesFor(this->Source->hierarchy(), 3), 3 * 512 * 4);
-  loader.request(Bricks(0, 10));
+  loader.request(Whole(Bricks(0, 10)));
   std::size_t received = 0;
   for (int round = 0; round < 4; ++round) {
     loader.loadFor(Forever);
@@ -172,11 +173,11 @@ TEST_P(BrickLoaderTest, FinishesWhatIsBegunAndForgetsTheRest)
 {
   this->Source->delay = std::chrono::milliseconds(1);
   inr::BrickLoader loader(this->Source, GetParam(), 100);
-  loader.request(Bricks(0, 30));
+  loader.request(Whole(Bricks(0, 30)));
   loader.loadFor(0);
   std::vector<inr::BrickKey> wanted = Bricks(0, 1);
   wanted.push_back(inr::KeyOf({1, {0, 0, 0}}));
-  loader.request(wanted);
+  loader.request(Whole(wanted));
   loader.loadFor(Forever);
   std::map<inr::BrickKey, int> received;
   for (const inr::BrickKey key : Receive(loader)) {
@@ -191,11 +192,11 @@ TEST_P(BrickLoaderTest, SaysWhatWentWrongAndGoesOn)
 {
   inr::BrickLoader loader(this->Source, GetParam(), 100);
   this->Source->failing = true;
-  loader.request(Bricks(0, 3));
+  loader.request(Whole(Bricks(0, 3)));
   loader.loadFor(Forever);
   EXPECT_THROW(Receive(loader), std::runtime_error);
   this->Source->failing = false;
-  loader.request(Bricks(0, 3));
+  loader.request(Whole(Bricks(0, 3)));
   loader.loadFor(Forever);
   EXPECT_EQ(Receive(loader).size(), 3U);
 }
@@ -204,7 +205,7 @@ TEST_P(BrickLoaderTest, BeginsTogetherWhatIsBestInferredTogether)
 {
   const auto source = std::make_shared<TogetherSource>();
   inr::BrickLoader loader(source, GetParam(), 5);
-  loader.request(Bricks(5, 11));
+  loader.request(Whole(Bricks(5, 11)));
   std::vector<inr::BrickKey> keys;
   for (int round = 0; round < 3; ++round) { // of 5, 5 and 1, for which there is room
     loader.loadFor(Forever);
@@ -233,7 +234,7 @@ TEST_P(BrickLoaderTest, ForgetsNothingWhenBricksAreNoLongerInferredTogether)
   for (int looks = 1; looks < 8; ++looks) {
     const auto source = std::make_shared<FailingTogether>(looks);
     inr::BrickLoader loader(source, GetParam(), 100);
-    loader.request(Bricks(5, 20));
+    loader.request(Whole(Bricks(5, 20)));
     loader.loadFor(Forever);
     std::vector<inr::BrickKey> keys = Receive(loader);
     std::sort(keys.begin(), keys.end());
@@ -246,12 +247,12 @@ TEST_P(BrickLoaderTest, OfBricksThatFailTogetherNoneComes)
   const auto source = std::make_shared<TogetherSource>();
   inr::BrickLoader loader(source, GetParam(), 100);
   source->failing = true;
-  loader.request(Bricks(0, 2));
+  loader.request(Whole(Bricks(0, 2)));
   loader.loadFor(Forever);
   EXPECT_THROW(Receive(loader), std::runtime_error);
   EXPECT_EQ(loader.held(), 0);
   source->failing = false;
-  loader.request(Bricks(0, 2));
+  loader.request(Whole(Bricks(0, 2)));
   loader.loadFor(Forever);
   EXPECT_EQ(Receive(loader).size(), 2U);
 }
@@ -259,7 +260,7 @@ TEST_P(BrickLoaderTest, OfBricksThatFailTogetherNoneComes)
 TEST_F(BrickLoaderTest, WorksOnlyBetweenResumeAndPause)
 {
   inr::BrickLoader loader(this->Source, 2, 5);
-  loader.request(Bricks(0, 40));
+  loader.request(Whole(Bricks(0, 40)));
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
   EXPECT_EQ(this->Source->layers, 0);
   loader.resume();
@@ -270,7 +271,7 @@ TEST_F(BrickLoaderTest, WorksOnlyBetweenResumeAndPause)
     return received == 40;
   }));
   loader.pause();
-  loader.request(Bricks(60, 5));
+  loader.request(Whole(Bricks(60, 5)));
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
   EXPECT_EQ(this->Source->layers, 40 * 8);
 }
@@ -281,7 +282,7 @@ TEST_F(BrickLoaderTest, EndsAfterTheLayersAtHand)
   int layers = 0;
   {
     inr::BrickLoader loader(this->Source, 2, 100);
-    loader.request(Bricks(0, 100)); // 2 s
+    loader.request(Whole(Bricks(0, 100))); // 2 s
     loader.resume();
     EXPECT_TRUE(Soon([&] { return this->Source->layers > 0; }));
     layers = this->Source->layers;

@@ -5,6 +5,7 @@
 #include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Core/Random.h"
+#include "Testing/Core/Cache/WholeBricks.h"
 
 #include <gtest/gtest.h>
 
@@ -252,7 +253,7 @@ protected:
   {
     const inr::BrickStore::Call call(store, this->Threads);
     store.beginFrame();
-    return store.load(this->bricks(0, 500), this->Threads, {}).bricks;
+    return store.load(Whole(this->bricks(0, 500)), this->Threads, {}).bricks;
   }
 
   std::shared_ptr<inr::CacheBudget> Budget = std::make_shared<inr::CacheBudget>();
@@ -265,7 +266,7 @@ TEST_F(CacheBudgetTest, AStoreInUseKeepsAllThatItHasAndTheOtherStillHasTheLeast)
   const StorePointer small = MakeStore(this->Budget, 4, 6000);
   const inr::BrickStore::Call call(*large, this->Threads);
   large->beginFrame();
-  const std::int64_t loaded = large->load(this->bricks(0, 500), this->Threads, {}).bricks;
+  const std::int64_t loaded = large->load(Whole(this->bricks(0, 500)), this->Threads, {}).bricks;
   EXPECT_EQ(this->fill(*small), Least - 1); // beside the pinned one
   EXPECT_EQ(small->capacity(), Least);
   for (std::int64_t k = 0; k < loaded; ++k) {
@@ -307,7 +308,7 @@ TEST_F(CacheBudgetTest, WhatALoaderHoldsCountsAndIsGivenBack)
     const inr::BrickStore::Call call(*a, this->Threads);
     const std::uint64_t frame = a->beginFrame();
     const std::int64_t before = this->Budget->bytes();
-    a->loadFor(0, this->bricks(0, 40), this->Threads);
+    a->loadFor(0, Whole(this->bricks(0, 40)), this->Threads);
     EXPECT_GE(this->Budget->bytes(), before + 40 * 128); // room for so many floats
     EXPECT_FALSE(a->hasLostSince(frame));
   }
@@ -319,7 +320,7 @@ TEST_F(CacheBudgetTest, WhatALoaderHoldsCountsAndIsGivenBack)
   EXPECT_TRUE(a->hasLostSince(a->frame()));
   const inr::BrickStore::Call call(*a, this->Threads);
   a->beginFrame();
-  a->loadFor(1e9, this->bricks(0, 20), this->Threads); // as if nothing had been
+  a->loadFor(1e9, Whole(this->bricks(0, 20)), this->Threads); // as if nothing had been
   EXPECT_TRUE(Has(*a, Key(0)));
   EXPECT_LE(this->Budget->bytes(), 60000);
 }
@@ -395,9 +396,9 @@ TEST(CacheBudgetThreads, StoresComeAndGoAndLoadWhileOthersDo)
       }
       const bool some = store.cache().usedInFrame() + static_cast<std::int64_t>(missing.size()) > 0;
       if (random(4, 2) == 0) {
-        store.loadFor(1e-4, missing, threads);
+        store.loadFor(1e-4, Whole(missing), threads);
       } else {
-        store.load(missing, threads, {});
+        store.load(Whole(missing), threads, {});
       }
       ASSERT_TRUE(some && !store.hasLostSince(frame));
       ASSERT_GE(store.capacity(), Least);

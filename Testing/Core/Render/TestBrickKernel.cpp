@@ -227,6 +227,52 @@ TEST_P(BrickKernels, LayOutRuns)
   EXPECT_GT(second, 1000);
 }
 
+// Of each sample on one of two paths, exactly where it then is.
+TEST_P(BrickKernels, FindWhichSamplesOnTwoPathsMayShowSomething)
+{
+  const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
+  const Voxels voxels = MakeVoxels(inr::VoxelBytes::Two);
+  int seen[2] = {};
+  int hidden[2] = {};
+  for (int round = 0; round < 2000; ++round) {
+    const auto batch = std::make_unique<inr::SampleBatch>();
+    inr::ShownBlocks blocks[2];
+    for (int way = 0; way < 2; ++way) {
+      batch->paths[way] = RandomPath(voxels);
+      blocks[way].kind = static_cast<inr::ShownBlocks::Kind>(RandomInt(0, 2));
+      for (std::uint64_t& word : blocks[way].words) {
+        word = RandomBits(RandomInt(0, 64));
+      }
+    }
+    inr::SampleRun& run = batch->runs[0];
+    run = RandomRun(RandomInt(1, 64), 2);
+    run.ways = 2;
+    run.path[0] = 0;
+    run.path[1] = 1;
+    run.shown = inr::LowestBits(run.count);
+    const std::uint64_t shown =
+        kernel.findShownOnTwo(voxels.format, {&blocks[0], &blocks[1]},
+                              {&batch->paths[0], &batch->paths[1]}, run, run.count);
+    EXPECT_EQ(shown & ~inr::LowestBits(run.count), 0u);
+    kernel.sampleRuns(voxels.format, *batch, 1);
+    for (int k = 0; k < run.count; ++k) {
+      const int way = batch->path[k];
+      const bool isShown = (shown >> k & 1) != 0;
+      const inr::ShownBlocks& its = blocks[way];
+      const inr::SampleRow row{batch->along[k], 0, 0};
+      const bool truth = its.kind == inr::ShownBlocks::Kind::All ||
+                         (its.kind == inr::ShownBlocks::Kind::Some &&
+                          kernel.findShown(voxels.format, its, batch->paths[way], row, 1) != 0);
+      EXPECT_EQ(isShown, truth) << k;
+      ++(isShown ? seen : hidden)[way];
+    }
+  }
+  for (const int way : {0, 1}) {
+    EXPECT_GT(seen[way], 3000);
+    EXPECT_GT(hidden[way], 3000);
+  }
+}
+
 TEST_P(BrickKernels, FindWhichSamplesMayShowSomething)
 {
   const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
