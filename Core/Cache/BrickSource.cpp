@@ -28,79 +28,6 @@ BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
 /// Points of each voxel of a level, along an axis.
 std::int64_t PointsPerAxis(int level) { return level == 0 ? 1 : 2; }
 
-/// Calls run(first, last) for the runs of set bits.
-template <typename Run> void ForEachRun(unsigned bits, const Run& run)
-{
-  for (int first = 0; bits >> first != 0; ++first) {
-    if ((bits >> first & 1u) != 0) {
-      int last = first;
-      while ((bits >> (last + 1) & 1u) != 0) {
-        ++last;
-      }
-      run(first, last);
-      first = last;
-    }
-  }
-}
-
-/// Voxels of a layer.
-struct Rectangle
-{
-  BlockLattice::Span x;
-  BlockLattice::Span y;
-};
-
-/// Calls body(rectangle) so that each voxel of a layer that is in one of some blocks comes once,
-/// but for blocks beyond `last`, the last voxel inside of the level.
-template <typename Body>
-void ForEachRectangle(const BlockSet& blocks, const BlockLattice& lattice, const glm::i64vec3& last,
-                      int z, const Body& body)
-{
-  const auto rowAt = [&](int y) { return blocks.rowOfVoxels(lattice, y, z); };
-  const int rows = lattice.lastVoxel.y + 1;
-  const unsigned valid = (1u << lattice.count.x) - 1;
-  for (int y = 0; y < rows && y <= last.y;) {
-    const int first = y;
-    const std::uint8_t row = rowAt(first);
-    while (y < rows && rowAt(y) == row) {
-      ++y;
-    }
-    ForEachRun(row & valid, [&](int begin, int end) {
-      const BlockLattice::Span x = lattice.voxelsOf({begin, end}, 0);
-      if (x.first <= last.x) {
-        body(Rectangle{x, {first, y - 1}});
-      }
-    });
-  }
-}
-
-/// Makes of all voxels of the layers up to `last` that nobody has inferred what the first is that
-/// somebody has.
-void FillRest(const BlockSet& blocks, const BlockLattice& lattice, const glm::i64vec3& last,
-              float* values)
-{
-  const std::int64_t width = lattice.lastVoxel.x + 1;
-  const std::int64_t layer = width * (lattice.lastVoxel.y + 1);
-  const std::int64_t layers = last.z + 1;
-  std::vector<bool> known(static_cast<std::size_t>(layers * layer), false);
-  float value = 0;
-  bool none = true;
-  for (int z = 0; z < layers; ++z) {
-    ForEachRectangle(blocks, lattice, last, z, [&](const Rectangle& where) {
-      for (int y = where.y.first; y <= where.y.last; ++y) {
-        const std::int64_t row = z * layer + y * width;
-        std::fill(known.begin() + row + where.x.first, known.begin() + row + where.x.last + 1,
-                  true);
-        value = none ? values[row + where.x.first] : value;
-        none = false;
-      }
-    });
-  }
-  for (std::size_t k = 0; k < known.size(); ++k) {
-    values[k] = known[k] ? values[k] : value;
-  }
-}
-
 class FieldBricks : public BrickSource
 {
 public:
@@ -111,38 +38,41 @@ public:
   void inferLayer(BrickKey key, std::int64_t z, float* values) const override
   {
     const glm::ivec3 last = this->blocks().lastVoxel;
-    this->inferRectangle(key, z, {{0, last.x}, {0, last.y}}, values);
+    this->inferRectangle(key, z, {0, last.x}, {0, last.y}, values);
   }
 
   bool infersParts() const override { return true; }
 
   void inferLayerOf(const BrickPart& part, std::int64_t z, float* values) const override
   {
-    const glm::i64vec3 last = BoxOf(this->hierarchy(), IdOf(part.key)).count - std::int64_t{1};
-    ForEachRectangle(
-        part.blocks, this->blocks(), last, static_cast<int>(z),
-        [&](const Rectangle& where) { this->inferRectangle(part.key, z, where, values); });
+    if (part.blocks.isAll()) {
+      this->inferLayer(part.key, z, values);
+      return;
+    }
+    this->rowsOf(part).forEachRectangle(static_cast<int>(z), [&](const Span& x, const Span& y) {
+      this->inferRectangle(part.key, z, x, y, values);
+    });
   }
 
 private:
-  void inferRectangle(BrickKey key, std::int64_t z, const Rectangle& where, float* values) const
+  using Span = BlockLattice::Span;
+
+  void inferRectangle(BrickKey key, std::int64_t z, const Span& x, const Span& y,
+                      float* values) const
   {
     const BrickId id = IdOf(key);
     const BrickBox box = BoxOf(this->hierarchy(), id);
-    const glm::i64vec3 last = box.count - std::int64_t{1}; // voxels beyond it are as that
-    const glm::i64vec3 first(glm::min<std::int64_t>(where.x.first, last.x),
-                             glm::min<std::int64_t>(where.y.first, last.y), glm::min(z, last.z));
-    const glm::i64vec3 end(glm::min<std::int64_t>(where.x.last, last.x),
-                           glm::min<std::int64_t>(where.y.last, last.y), first.z);
+    // Voxels beyond the last one are as that.
+    const glm::i64vec3 first(x.first, y.first, glm::min(z, box.count.z - 1));
+    const glm::i64vec3 end(glm::min<std::int64_t>(x.last, box.count.x - 1),
+                           glm::min<std::int64_t>(y.last, box.count.y - 1), first.z);
     const glm::i64vec3 count = end - first + std::int64_t{1};
     const std::vector<float> inside = this->valuesIn(id.level, box.first + first, count);
     const std::int64_t width = this->hierarchy().brickDims().x;
-    for (std::int64_t y = where.y.first; y <= where.y.last; ++y) {
-      const std::int64_t row = (glm::min(y, end.y) - first.y) * count.x;
-      for (std::int64_t x = where.x.first; x <= where.x.last; ++x) {
-        const std::int64_t from = row + glm::min(x, end.x) - first.x;
-        values[y * width + x] = inside[static_cast<std::size_t>(from)];
-      }
+    for (std::int64_t row = y.first; row <= y.last; ++row) {
+      const float* from = inside.data() + (glm::min(row, end.y) - first.y) * count.x;
+      float* const to = std::copy_n(from, count.x, values + row * width + first.x);
+      std::fill_n(to, x.last - end.x, from[count.x - 1]);
     }
   }
 
@@ -198,20 +128,24 @@ private:
 
 } // namespace
 
+BlockRows BrickSource::rowsOf(const BrickPart& part) const
+{
+  const glm::i64vec3 last = BoxOf(this->Levels, IdOf(part.key)).count - std::int64_t{1};
+  return {part.blocks, this->Lattice, glm::ivec3(last)};
+}
+
 std::int64_t BrickSource::points(const BrickPart& part) const
 {
-  const BrickId id = IdOf(part.key);
-  const glm::i64vec3 inside = BoxOf(this->Levels, id).count;
+  const BlockRows rows = this->rowsOf(part);
   std::int64_t voxels = 0;
-  for (int z = 0; z < inside.z; ++z) {
-    ForEachRectangle(
-        part.blocks, this->Lattice, inside - std::int64_t{1}, z, [&](const Rectangle& where) {
-          const auto width = glm::min<std::int64_t>(where.x.last + 1, inside.x) - where.x.first;
-          const auto height = glm::min<std::int64_t>(where.y.last + 1, inside.y) - where.y.first;
-          voxels += width * height;
-        });
+  for (int z = 0; z <= rows.last.z; ++z) {
+    for (int y = 0; y <= rows.last.y; ++y) {
+      rows.forEachRun(rows.at(y, z), [&](const BlockLattice::Span& x) {
+        voxels += glm::min(x.last, rows.last.x) + 1 - x.first;
+      });
+    }
   }
-  const std::int64_t points = PointsPerAxis(id.level);
+  const std::int64_t points = PointsPerAxis(IdOf(part.key).level);
   return voxels * points * points * points;
 }
 
@@ -269,8 +203,7 @@ void BrickSource::repeatLastLayer(BrickKey key, float* values) const
 void BrickSource::complete(const BrickPart& part, float* values) const
 {
   if (!part.blocks.isAll()) {
-    FillRest(part.blocks, this->Lattice,
-             BoxOf(this->Levels, IdOf(part.key)).count - std::int64_t{1}, values);
+    this->rowsOf(part).fillRest(values);
   }
   this->repeatLastLayer(part.key, values);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/BlockRows.h"
 #include "Core/Cache/BrickPart.h"
 #include "Core/Cache/Hierarchy.h"
 #include "Core/Inference/Evaluator.h"
@@ -28,10 +29,10 @@ public:
   /// fastest. Voxels beyond the level's last one repeat it.
   virtual void inferLayer(BrickKey key, std::int64_t z, float* values) const = 0;
 
-  /// Whether parts of bricks can be had, too. All the same for as long as this lives.
+  /// Whether parts of bricks can be had, too; else all parts have to be whole. Always the same.
   virtual bool infersParts() const { return false; }
-  /// Those of a layer's voxels that belong to some blocks, as inferLayer has them; the others are
-  /// left alone. Only where parts can be had.
+  /// Those of a layer's voxels that belong to a part, as inferLayer has them; the others are left
+  /// alone.
   virtual void inferLayerOf(const BrickPart& part, std::int64_t z, float* values) const
   {
     this->inferLayer(part.key, z, values);
@@ -44,15 +45,18 @@ public:
   /// All layers of `count` bricks, one brick after the other.
   virtual void infer(const BrickKey* keys, std::int64_t count, float* values,
                      const Arena& arena) const;
-  /// The same of parts, where these can be had; else they are whole bricks.
+  /// The same of parts.
   void inferParts(const BrickPart* parts, std::int64_t count, float* values,
                   const Arena& arena) const;
 
   /// Layers of a brick that are in its level; all others are the last of them.
   std::int64_t layersInside(BrickKey key) const;
-  /// To a whole brick of which all layers inside are inferred: copies the last of them to all
-  /// others, and makes of voxels outside of the part what some voxel in it is.
+  /// Of a brick whose part has been inferred in all layers inside: copies the last of these to all
+  /// others, and makes of voxels outside of the part what some voxel in it is. Takes no memory.
   void complete(const BrickPart& part, float* values) const;
+
+protected:
+  BlockRows rowsOf(const BrickPart& part) const;
 
 private:
   void inferLayers(const BrickPart* parts, std::int64_t count, float* values,

@@ -145,7 +145,7 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
   const BlockVisibility* blocks = this->blocksFor(colors, settings, majorants.rangesHold());
   // With samples chosen for a tolerance; until these are, less is enough.
   const bool looksFurther = settings.looksAtBothEnds() || settings.cellSampling != nullptr;
-  this->LoadsWhole = frame.errorTolerance.has_value();
+  this->LoadsWhole = frame.errorTolerance.value_or(0) > 0;
   std::optional<int> reach;
   if (blocks != nullptr && !looksFurther) {
     reach = shading != nullptr ? 1 : 0; // gradients
