@@ -4,8 +4,6 @@
 #include "Core/Cache/BlockSet.h"
 #include "Core/Cache/BrickKey.h"
 
-#include <functional>
-
 namespace inr {
 
 /// Some blocks of a brick, all of them unless something else is said.
@@ -17,8 +15,5 @@ struct BrickPart
   BrickKey key;
   BlockSet blocks = BlockSet::all();
 };
-
-/// The blocks of a brick in which somebody looks at the field.
-using WantedBlocks = std::function<BlockSet(BrickKey)>;
 
 } // namespace inr

@@ -84,21 +84,20 @@ bool BrickStore::hasLostSince(std::uint64_t frame) const
   return std::max(this->Cache.lostUse(), this->LostQueue) >= frame;
 }
 
-std::vector<BrickPart> BrickStore::toInfer(const std::vector<BrickPart>& wanted) const
+/// Makes whole bricks of those that are mapped, and where the source has no others.
+void BrickStore::completeKnown(std::vector<BrickPart>& parts) const
 {
-  std::vector<BrickPart> parts = wanted;
   for (BrickPart& part : parts) {
     if (!this->Source->infersParts() || this->Cache.find(part.key) != PageTable::Unmapped) {
       part.blocks = BlockSet::all();
     }
   }
-  return parts;
 }
 
-BrickStore::Loaded BrickStore::load(const std::vector<BrickPart>& wanted, const Arena& arena,
+BrickStore::Loaded BrickStore::load(std::vector<BrickPart> parts, const Arena& arena,
                                     const std::function<bool()>& keepGoing)
 {
-  const std::vector<BrickPart> parts = this->toInfer(wanted);
+  this->completeKnown(parts);
   if (this->Loader) {
     this->Loader->request({});
   }
@@ -133,18 +132,19 @@ void BrickStore::clear()
   }
 }
 
-void BrickStore::loadFor(double seconds, const std::vector<BrickPart>& wanted, const Arena& arena)
+void BrickStore::loadFor(double seconds, std::vector<BrickPart> parts, const Arena& arena)
 {
-  if (!this->makeQueue(static_cast<std::int64_t>(wanted.size()))) {
+  if (!this->makeQueue(static_cast<std::int64_t>(parts.size()))) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    this->load(wanted, arena, [&] {
+    this->load(std::move(parts), arena, [&] {
       return std::chrono::duration<double>(Clock::now() - start).count() < seconds;
     });
     return;
   }
-  this->Loader->request(this->toInfer(wanted));
-  if (!wanted.empty()) {
+  this->completeKnown(parts);
+  this->Loader->request(parts);
+  if (!parts.empty()) {
     this->Loader->loadFor(seconds);
     this->mapLoaded();
   }

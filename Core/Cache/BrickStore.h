@@ -54,13 +54,13 @@ public:
   /// Infers and maps parts of bricks now, for as long as `keepGoing` (may be empty) says so, but
   /// never without progress. Of a brick that is mapped all is inferred: it has turned out to lack
   /// something, and is not to come in a third time. Requests to the loader are forgotten.
-  Loaded load(const std::vector<BrickPart>& wanted, const Arena& arena,
+  Loaded load(std::vector<BrickPart> parts, const Arena& arena,
               const std::function<bool()>& keepGoing);
   /// Drops all bricks but the coarsest level, those of the current frame included.
   void clear();
   /// Maps what the loader infers in so many seconds, or infers where there is none; it goes on with
   /// them when it is not paused.
-  void loadFor(double seconds, const std::vector<BrickPart>& wanted, const Arena& arena);
+  void loadFor(double seconds, std::vector<BrickPart> parts, const Arena& arena);
 
   /// The time of one call that renders: others wait, the loader is paused, so that a frame has the
   /// machine to itself, and what it has finished is mapped, in place of nothing that the last frame
@@ -93,7 +93,7 @@ private:
   friend class CacheBudget;
 
   void mapLoaded();
-  std::vector<BrickPart> toInfer(const std::vector<BrickPart>& wanted) const;
+  void completeKnown(std::vector<BrickPart>& parts) const;
   bool insert(const BrickPart& part, const float* values);
   bool makeRoomAndInsert(const BrickPart& part, const float* values);
   void countInferred(const BrickPart& part);
