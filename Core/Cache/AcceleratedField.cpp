@@ -114,6 +114,8 @@ public:
         Cpu(std::move(cpu))
   {}
 
+  ValueRange rangeOf(BrickKey key) const override { return this->Cpu->rangeOf(key); }
+
   std::int64_t bricksAtOnce() const override
   {
     const std::shared_ptr<AcceleratedField> field = this->Owner->find(this->Source);

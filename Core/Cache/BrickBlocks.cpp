@@ -72,7 +72,7 @@ template <typename Stored> struct Coding
   float low;
   float step;
 
-  Coding(const Stored* /*voxels*/, std::int64_t /*count*/, const BrickView& brick)
+  Coding(const BrickView& brick, const ValueRange& /*within*/, std::int64_t /*voxels*/)
       : low(brick.low - 0.5f * brick.step), step(brick.step * Quanta)
   {}
   std::uint8_t operator()(Stored stored) const
@@ -89,8 +89,8 @@ template <> struct Coding<float>
   float low;
   float step;
 
-  Coding(const float* voxels, std::int64_t count, const BrickView& /*brick*/)
-      : Coding(RangeOfValues(voxels, count))
+  Coding(const BrickView& brick, const ValueRange& within, std::int64_t voxels)
+      : Coding(With(RangeOfValues(static_cast<const float*>(brick.voxels), voxels), within))
   {}
   explicit Coding(const ValueRange& range)
       : low(range.low), step((range.high - range.low) / 256),
@@ -102,6 +102,12 @@ template <> struct Coding<float>
   }
 
 private:
+  static ValueRange With(ValueRange range, const ValueRange& other)
+  {
+    range.extend(other);
+    return range;
+  }
+
   float inverse;
 };
 
@@ -133,10 +139,11 @@ void BrickBlocks::copy(std::int32_t from, std::int32_t to)
 }
 
 template <typename Stored>
-void BrickBlocks::findCodes(const Stored* voxels, const BrickView& brick, std::int32_t slot)
+void BrickBlocks::findCodes(const BrickView& brick, const ValueRange& within, std::int32_t slot)
 {
+  const auto* voxels = static_cast<const Stored*>(brick.voxels);
   const std::int64_t count = std::int64_t{1} * this->Dims.x * this->Dims.y * this->Dims.z;
-  const Coding<Stored> code(voxels, count, brick);
+  const Coding<Stored> code(brick, within, count);
   this->Scales[slot] = {code.low, code.step};
   Codes* to = this->codes(slot);
   ForEachBlock(voxels, this->Dims, this->Lattice, [&](Stored low, Stored high) {
@@ -144,18 +151,19 @@ void BrickBlocks::findCodes(const Stored* voxels, const BrickView& brick, std::i
   });
 }
 
-void BrickBlocks::store(std::int32_t slot, const BrickView& brick, const BlockSet& known)
+void BrickBlocks::store(std::int32_t slot, const BrickView& brick, const BlockSet& known,
+                        const ValueRange& within)
 {
   this->Known[slot] = known;
   switch (this->Precision) {
   case CachePrecision::Float32:
-    this->findCodes(static_cast<const float*>(brick.voxels), brick, slot);
+    this->findCodes<float>(brick, within, slot);
     break;
   case CachePrecision::Bits16:
-    this->findCodes(static_cast<const std::uint16_t*>(brick.voxels), brick, slot);
+    this->findCodes<std::uint16_t>(brick, within, slot);
     break;
   case CachePrecision::Bits8:
-    this->findCodes(static_cast<const std::uint8_t*>(brick.voxels), brick, slot);
+    this->findCodes<std::uint8_t>(brick, within, slot);
     break;
   }
 }

@@ -26,8 +26,10 @@ public:
   /// `slots`: no more than there is room for. The memory of those that go is given back.
   void resize(std::int64_t slots);
   void copy(std::int32_t from, std::int32_t to);
-  /// From the voxels as they are stored. `known`: blocks whose voxels are the field's.
-  void store(std::int32_t slot, const BrickView& brick, const BlockSet& known);
+  /// From the voxels as they are stored. `known`: blocks whose voxels are the field's. `within`: as
+  /// of BrickPool.
+  void store(std::int32_t slot, const BrickView& brick, const BlockSet& known,
+             const ValueRange& within = {});
   const BlockSet& known(std::int32_t slot) const { return this->Known[slot]; }
   /// Of all blocks, x fastest. Wider than need be by a 256th of the brick's range at most, by half
   /// a quantum of integers, and by what interpolating rounds.
@@ -47,7 +49,7 @@ private:
 
   Codes* codes(std::int32_t slot) const { return this->All.data() + slot * this->Lattice.blocks(); }
   template <typename Stored>
-  void findCodes(const Stored* voxels, const BrickView& brick, std::int32_t slot);
+  void findCodes(const BrickView& brick, const ValueRange& within, std::int32_t slot);
 
   CachePrecision Precision;
   glm::ivec3 Dims;

@@ -162,49 +162,59 @@ void BrickCache::unmap(std::int32_t slot)
   this->Table.unmap(this->Owners[slot]);
 }
 
-void BrickCache::fill(std::int32_t slot, const BrickPart& part, const float* values)
+void BrickCache::fill(std::int32_t slot, const BrickPart& part, const float* values,
+                      const ValueRange& within)
 {
   this->Arrivals[slot] = ++this->Arrived;
-  this->Pool.store(slot, values);
-  this->Blocks.store(slot, this->Pool.view(slot), part.blocks);
+  this->Pool.store(slot, values, within);
+  this->Blocks.store(slot, this->Pool.view(slot), part.blocks, within);
 }
 
-void BrickCache::map(std::int32_t slot, const BrickPart& part, const float* values)
+void BrickCache::map(std::int32_t slot, const BrickPart& part, const float* values,
+                     const ValueRange& within)
 {
   this->Owners[slot] = part.key;
-  this->fill(slot, part, values);
+  this->fill(slot, part, values, within);
   this->Table.map(part.key, slot);
   this->LastUse[slot].store(this->Frame, std::memory_order_relaxed);
   this->NoneBefore = std::min(this->NoneBefore, this->Frame);
 }
 
-bool BrickCache::insert(const BrickPart& part, const float* values)
+bool BrickCache::lacks(const BrickPart& part) const
+{
+  const std::int32_t slot = this->find(part.key);
+  if (slot == PageTable::Unmapped) {
+    return true;
+  }
+  const BlockSet& known = this->Blocks.known(slot);
+  return part.blocks.contains(known) && !(part.blocks == known);
+}
+
+bool BrickCache::insert(const BrickPart& part, const float* values, const ValueRange& within)
 {
   const std::int32_t present = this->find(part.key);
   if (present != PageTable::Unmapped) {
-    if (part.blocks.contains(this->Blocks.known(present))) {
-      this->fill(present, part, values);
-      this->touch(present);
-    }
+    this->fill(present, part, values, within);
+    this->touch(present);
     return true;
   }
   if (this->mapped() == this->Capacity) {
-    return this->replace(part, values);
+    return this->replace(part, values, within);
   }
   this->Table.makeRoomForOne();
   const auto slot = static_cast<std::int32_t>(this->mapped());
   this->resize(slot + 1);
-  this->map(slot, part, values);
+  this->map(slot, part, values, within);
   return true;
 }
 
-bool BrickCache::replace(const BrickPart& part, const float* values)
+bool BrickCache::replace(const BrickPart& part, const float* values, const ValueRange& within)
 {
   this->Table.makeRoomForOne(); // before a brick goes for this one
   const std::int32_t slot = this->oldest(this->Frame);
   if (slot >= 0) {
     this->unmap(slot);
-    this->map(slot, part, values);
+    this->map(slot, part, values, within);
   }
   return slot >= 0;
 }

@@ -60,14 +60,16 @@ public:
   /// than all before, and 1.
   void beginFrame(std::uint64_t frame) { this->Frame = frame; }
   std::uint64_t frame() const { return this->Frame; }
-  /// Stores and maps a brick; one that is mapped, in the place where it is, unless that knows
-  /// blocks that are not among these: then nothing changes. Without room, evicts the least recently
+  /// Whether it knows less of a brick than it would with this part.
+  bool lacks(const BrickPart& part) const;
+  /// Stores and maps a part that it lacks; where the brick is mapped, in its place. `within`: the
+  /// range of all of the brick's values, if that is known. Without room, evicts the least recently
   /// used one that is neither of the current frame nor pinned; false, and nothing has changed, when
   /// there is none. Nothing has changed, either, where std::bad_alloc comes; all else takes no
   /// memory.
-  bool insert(const BrickPart& part, const float* values);
+  bool insert(const BrickPart& part, const float* values, const ValueRange& within = {});
   /// The same of an unmapped brick in the place of another one even where there is room.
-  bool replace(const BrickPart& part, const float* values);
+  bool replace(const BrickPart& part, const float* values, const ValueRange& within = {});
   /// Keeps a mapped brick for good.
   void pin(BrickKey key);
 
@@ -98,8 +100,9 @@ private:
   void findCandidates(std::uint64_t frame);
   std::int32_t oldest(std::uint64_t frame);
   void unmap(std::int32_t slot);
-  void fill(std::int32_t slot, const BrickPart& part, const float* values);
-  void map(std::int32_t slot, const BrickPart& part, const float* values);
+  void fill(std::int32_t slot, const BrickPart& part, const float* values,
+            const ValueRange& within);
+  void map(std::int32_t slot, const BrickPart& part, const float* values, const ValueRange& within);
   void move(std::int32_t from, std::int32_t to);
   void resize(std::int64_t slots);
 

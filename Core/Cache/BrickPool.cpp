@@ -47,7 +47,7 @@ void BrickPool::copy(std::int32_t from, std::int32_t to)
   std::memcpy(this->brick(to), this->brick(from), static_cast<std::size_t>(this->BytesPerBrick));
 }
 
-void BrickPool::store(std::int32_t slot, const float* values)
+void BrickPool::store(std::int32_t slot, const float* values, const ValueRange& within)
 {
   Scale& scale = this->Scales[slot];
   if (this->Precision == CachePrecision::Float32) {
@@ -55,7 +55,8 @@ void BrickPool::store(std::int32_t slot, const float* values)
     std::memcpy(this->brick(slot), values, static_cast<std::size_t>(this->BytesPerBrick));
     return;
   }
-  const ValueRange range = RangeOfValues(values, this->VoxelsPerBrick);
+  ValueRange range = RangeOfValues(values, this->VoxelsPerBrick);
+  range.extend(within);
   const bool wide = this->Precision == CachePrecision::Bits16;
   scale = {range.low, StepOf(range.low, range.high, wide ? 65535.0f : 255.0f)};
   const auto quantise = wide ? Quantise<std::uint16_t> : Quantise<std::uint8_t>;

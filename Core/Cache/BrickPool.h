@@ -4,6 +4,7 @@
 #include "Core/Cache/BrickView.h"
 #include "Core/Cache/CachePrecision.h"
 #include "Core/Cache/ReservedArray.h"
+#include "Core/Model/MacroCells.h"
 
 #include <cstdint>
 
@@ -23,8 +24,9 @@ public:
   /// `slots`: no more than there is room for. The memory of those that go is given back.
   void resize(std::int64_t slots);
   void copy(std::int32_t from, std::int32_t to);
-  /// `values`: voxelsPerBrick finite ones.
-  void store(std::int32_t slot, const float* values);
+  /// `values`: voxelsPerBrick finite ones. `within`: what integers divide evenly; where that is
+  /// empty or not wide enough, the range of the values is, or is added.
+  void store(std::int32_t slot, const float* values, const ValueRange& within = {});
   BrickView view(std::int32_t slot) const;
 
 private:

@@ -6,7 +6,9 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 namespace inr {
 
@@ -28,12 +30,42 @@ BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
 /// Points of each voxel of a level, along an axis.
 std::int64_t PointsPerAxis(int level) { return level == 0 ? 1 : 2; }
 
+/// Of all cells that a brick's voxels reach into.
+ValueRange RangeWithin(const MacroCells& cells, const Hierarchy& hierarchy, const BrickId& id)
+{
+  const BrickBox box = BoxOf(hierarchy, id);
+  const glm::dvec3 perVoxel = 1.0 / (glm::dvec3(hierarchy.size(id.level)) * cells.spacing);
+  const glm::i64vec3 end = cells.dims - std::int64_t{1};
+  const glm::i64vec3 first = glm::min(glm::i64vec3(glm::dvec3(box.first) * perVoxel), end);
+  const glm::i64vec3 last =
+      glm::min(glm::i64vec3(glm::dvec3(box.first + box.count) * perVoxel), end);
+  ValueRange range;
+  for (std::int64_t z = first.z; z <= last.z; ++z) {
+    for (std::int64_t y = first.y; y <= last.y; ++y) {
+      for (std::int64_t x = first.x; x <= last.x; ++x) {
+        range.extend(cells.ranges[static_cast<std::size_t>(cells.index(x, y, z))]);
+      }
+    }
+  }
+  return range;
+}
+
 class FieldBricks : public BrickSource
 {
 public:
-  FieldBricks(std::shared_ptr<const Evaluator> field, const Hierarchy& hierarchy)
-      : BrickSource(hierarchy), Field(std::move(field))
+  FieldBricks(std::shared_ptr<const Evaluator> field, const Hierarchy& hierarchy,
+              std::shared_ptr<const MacroCells> cells)
+      : BrickSource(hierarchy), Field(std::move(field)), Cells(std::move(cells))
   {}
+
+  ValueRange rangeOf(BrickKey key) const override
+  {
+    if (!this->Cells) {
+      return {};
+    }
+    const ValueRange range = RangeWithin(*this->Cells, this->hierarchy(), IdOf(key));
+    return {NormalisedOutput(range.low), NormalisedOutput(range.high)};
+  }
 
   void inferLayer(BrickKey key, std::int64_t z, float* values) const override
   {
@@ -124,6 +156,7 @@ private:
   }
 
   std::shared_ptr<const Evaluator> Field;
+  std::shared_ptr<const MacroCells> Cells;
 };
 
 } // namespace
@@ -209,9 +242,10 @@ void BrickSource::complete(const BrickPart& part, float* values) const
 }
 
 std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const Evaluator> field,
-                                                   const Hierarchy& hierarchy)
+                                                   const Hierarchy& hierarchy,
+                                                   std::shared_ptr<const MacroCells> cells)
 {
-  return std::make_shared<FieldBricks>(std::move(field), hierarchy);
+  return std::make_shared<FieldBricks>(std::move(field), hierarchy, std::move(cells));
 }
 
 } // namespace inr

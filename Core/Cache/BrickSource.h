@@ -5,6 +5,7 @@
 #include "Core/Cache/BrickPart.h"
 #include "Core/Cache/Hierarchy.h"
 #include "Core/Inference/Evaluator.h"
+#include "Core/Model/MacroCells.h"
 
 #include <memory>
 
@@ -22,6 +23,13 @@ public:
   const Hierarchy& hierarchy() const { return this->Levels; }
   const BlockLattice& blocks() const { return this->Lattice; } ///< of each brick
 
+  /// Between which values all of a brick's are, as far as that is known before they are; else
+  /// empty.
+  virtual ValueRange rangeOf(BrickKey key) const
+  {
+    (void)key;
+    return {};
+  }
   /// Points at which the field is asked for the voxels of a part.
   std::int64_t points(const BrickPart& part) const;
 
@@ -68,8 +76,10 @@ private:
 };
 
 /// Bricks of any field over the unit cube: level 0 holds its values at the voxels, a coarser level
-/// the mean over 2 x 2 x 2 points of each voxel (a box filter).
-std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const Evaluator> field,
-                                                   const Hierarchy& hierarchy);
+/// the mean over 2 x 2 x 2 points of each voxel (a box filter). `cells`: of the field, whose ranges
+/// hold; may be null.
+std::shared_ptr<const BrickSource>
+MakeBrickSource(std::shared_ptr<const Evaluator> field, const Hierarchy& hierarchy,
+                std::shared_ptr<const MacroCells> cells = nullptr);
 
 } // namespace inr

@@ -154,8 +154,7 @@ void BrickStore::mapLoaded()
 {
   this->Loader->handOver([this](const BrickPart& part, const float* values) {
     this->countInferred(part);
-    const std::int32_t slot = this->Cache.find(part.key);
-    if (slot == PageTable::Unmapped || !(this->Cache.blocks().known(slot) == part.blocks)) {
+    if (this->Cache.lacks(part)) {
       try {
         this->insert(part, values);     // or not, where all is in use
       } catch (const std::bad_alloc&) { // nor without memory: who wants it asks again
@@ -180,23 +179,24 @@ bool BrickStore::insert(const BrickPart& part, const float* values)
 
 bool BrickStore::makeRoomAndInsert(const BrickPart& part, const float* values)
 {
+  const ValueRange within = this->Source->rangeOf(part.key);
   const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
   if (this->Cache.find(part.key) != PageTable::Unmapped) {
-    return this->Cache.insert(part, values);
+    return this->Cache.insert(part, values, within);
   }
   const std::int64_t mapped = this->Cache.mapped();
   if (mapped >= this->Cache.capacity()) {
-    return this->Cache.replace(part, values);
+    return this->Cache.replace(part, values, within);
   }
   const std::int64_t more = this->Cache.bytesFor(mapped + 1) - this->Cache.bytes();
   while (mapped >= BrickCache::FewestBricks && !this->Budget->fits(more)) {
     BrickStore* const oldest = this->Budget->oldest(this);
     if (oldest == nullptr || oldest == this) {
-      return this->Cache.replace(part, values);
+      return this->Cache.replace(part, values, within);
     }
     oldest->giveOldest();
   }
-  return this->Cache.insert(part, values);
+  return this->Cache.insert(part, values, within);
 }
 
 /// Room for so many bricks in the loader's queue, or as many as there may be; false when there is

@@ -24,6 +24,13 @@ struct ValueRange
     this->low = first || value < this->low ? value : this->low;
     this->high = first || value > this->high ? value : this->high;
   }
+  INR_HOST_DEVICE void extend(const ValueRange& other)
+  {
+    if (!other.empty()) {
+      this->extend(other.low);
+      this->extend(other.high);
+    }
+  }
 };
 
 /// Where the ranges come from, in falling order of trust.

@@ -9,14 +9,6 @@ namespace inr {
 
 namespace {
 
-void Extend(ValueRange& range, const ValueRange& other)
-{
-  if (!other.empty()) {
-    range.extend(other.low);
-    range.extend(other.high);
-  }
-}
-
 /// Calls body(row, y, z) for the rows of a grid's ranges.
 template <typename Body> void ForEachRow(MacroCells& cells, const Arena& arena, const Body& body)
 {
@@ -53,10 +45,10 @@ void DilateRow(const ValueRange* from, std::int64_t count, std::int64_t stride, 
 {
   std::copy_n(from, count, to);
   for (std::int64_t k = 0; before && k < count; ++k) {
-    Extend(to[k], from[k - stride]);
+    to[k].extend(from[k - stride]);
   }
   for (std::int64_t k = 0; after && k < count; ++k) {
-    Extend(to[k], from[k + stride]);
+    to[k].extend(from[k + stride]);
   }
 }
 
@@ -71,7 +63,7 @@ MacroCells Joined(const MacroCells& cells, const Arena& arena)
       for (std::int64_t j = 2 * y; j < std::min(2 * y + 2, cells.dims.y); ++j) {
         const ValueRange* from = Row(cells, j, k);
         for (std::int64_t x = 0; x < cells.dims.x; ++x) {
-          Extend(row[x / 2], from[x]);
+          row[x / 2].extend(from[x]);
         }
       }
     }
@@ -88,8 +80,8 @@ MacroCells Dilated(const MacroCells& cells, const Arena& arena)
     const ValueRange* from = Row(cells, y, z);
     std::copy_n(from, dims.x, row);
     for (std::int64_t x = 1; x < dims.x; ++x) {
-      Extend(row[x], from[x - 1]);
-      Extend(row[x - 1], from[x]);
+      row[x].extend(from[x - 1]);
+      row[x - 1].extend(from[x]);
     }
   });
   ForEachRow(second, arena, [&](ValueRange* row, std::int64_t y, std::int64_t z) {

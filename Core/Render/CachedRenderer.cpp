@@ -26,7 +26,8 @@ const CacheOptions& Checked(const CacheOptions& options)
 /// What all renderers of the same field with the same options share.
 std::shared_ptr<BrickStore>
 StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<const void>& identity,
-         const glm::i64vec3& dims, const CacheOptions& options, const Arena& arena,
+         const glm::i64vec3& dims, std::shared_ptr<const MacroCells> cells,
+         const CacheOptions& options, const Arena& arena,
          const std::shared_ptr<const Accelerator>& accelerator, const ModelPointer& model)
 {
   const std::int64_t bytes = options.bytes > 0 ? options.bytes : DefaultCacheBytes();
@@ -35,7 +36,7 @@ StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<co
                      bytes,    options.background, accelerator};
   return budget->storeFor(key, [&] {
     std::shared_ptr<const BrickSource> source =
-        MakeBrickSource(field, Hierarchy(dims, options.brickSize));
+        MakeBrickSource(field, Hierarchy(dims, options.brickSize), std::move(cells));
     if (accelerator) {
       source = MakeBrickSource(accelerator, model, std::move(source));
     }
@@ -54,12 +55,14 @@ std::int64_t DefaultCacheBytes(int processes)
 
 CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field,
                                const std::shared_ptr<const void>& identity,
-                               const glm::i64vec3& dims, const CacheOptions& options,
-                               const BrickKernel& kernel, const Arena& arena,
+                               const glm::i64vec3& dims, std::shared_ptr<const MacroCells> cells,
+                               const CacheOptions& options, const BrickKernel& kernel,
+                               const Arena& arena,
                                const std::shared_ptr<const Accelerator>& accelerator,
                                const ModelPointer& model)
     : Options(Checked(options)), Kernel(kernel), Threads(arena), Field(std::move(field)),
-      Store(StoreFor(this->Field, identity, dims, options, arena, accelerator, model))
+      Store(StoreFor(this->Field, identity, dims, std::move(cells), options, arena, accelerator,
+                     model))
 {}
 
 void CachedRenderer::beginFrame() { this->Latest = this->Store->beginFrame(); }

@@ -53,12 +53,13 @@ std::int64_t DefaultCacheBytes(int processes = 1);
 class CachedRenderer
 {
 public:
-  /// `identity`: the same object for the same field. `accelerator`: infers the bricks; where it is
-  /// not null, the field is that of `model`. Throws what Hierarchy and BrickCache throw. `arena`
-  /// must outlive the renderer.
+  /// `identity`: the same object for the same field. `cells`: of the field, whose ranges hold; may
+  /// be null. `accelerator`: infers the bricks; where it is not null, the field is that of `model`.
+  /// Throws what Hierarchy and BrickCache throw. `arena` must outlive the renderer.
   CachedRenderer(std::shared_ptr<const Evaluator> field,
                  const std::shared_ptr<const void>& identity, const glm::i64vec3& dims,
-                 const CacheOptions& options, const BrickKernel& kernel, const Arena& arena,
+                 std::shared_ptr<const MacroCells> cells, const CacheOptions& options,
+                 const BrickKernel& kernel, const Arena& arena,
                  const std::shared_ptr<const Accelerator>& accelerator = nullptr,
                  const ModelPointer& model = nullptr);
 

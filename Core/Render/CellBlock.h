@@ -27,14 +27,6 @@ struct CellBlock
   int power = LargestCellPower; ///< and the least
   bool matters = false;         ///< whether one of them can be seen
   ValueRange range;
-
-  INR_HOST_DEVICE void extend(const ValueRange& other)
-  {
-    if (!other.empty()) {
-      this->range.extend(other.low);
-      this->range.extend(other.high);
-    }
-  }
 };
 
 /// Those from where `cells` is up to t = `end`, where it then is. `sampling`: of each cell.
@@ -47,7 +39,7 @@ INR_HOST_DEVICE inline CellBlock MeetCells(CellWalker& cells, const CellSampling
     block.level = glm::min(block.level, int{wanted.level});
     block.power = glm::min(block.power, int{wanted.power});
     block.matters = block.matters || cells.extinction() > 0.0f;
-    block.extend(cells.range());
+    block.range.extend(cells.range());
     if (cells.exit() >= end) {
       return block;
     }

@@ -55,10 +55,7 @@ Majorants::Majorants(const MacroCells& cells) : RangesHold(cells.rangesHold())
   for (std::size_t cell = 0; cell < whole.ranges.size(); ++cell) {
     const ValueRange& range = whole.ranges[cell];
     RequireFinite(range, cell);
-    if (!range.empty()) {
-      this->Bounds.extend(range.low);
-      this->Bounds.extend(range.high);
-    }
+    this->Bounds.extend(range);
   }
   this->add(whole, EveryLevel);
 }

@@ -20,12 +20,13 @@ struct LineInterval
   double end;
 
   /// Keeps where value + slope * t >= 0.
-  INR_HOST_DEVICE void keep(double value, double slope)
+  INR_HOST_DEVICE void keep(double value, double slope) { this->keep(value, slope, 1.0 / slope); }
+  INR_HOST_DEVICE void keep(double value, double slope, double inverse)
   {
     if (slope > 0) {
-      this->begin = glm::max(this->begin, -value / slope);
+      this->begin = glm::max(this->begin, -value * inverse);
     } else if (slope < 0) {
-      this->end = glm::min(this->end, -value / slope);
+      this->end = glm::min(this->end, -value * inverse);
     } else if (value < 0) {
       this->end = -Infinite;
     }
@@ -109,9 +110,10 @@ struct RayView
     const glm::dvec3 origin(this->worldToIndex * glm::dvec4(line.near, 1.0));
     const glm::dvec3 direction(this->worldToIndex * glm::dvec4(line.forward, 0.0));
     LineInterval world{begin, end};
+    const glm::dvec3 inverse = 1.0 / direction;
     for (int axis = 0; axis < 3; ++axis) {
-      world.keep(origin[axis] - this->low[axis], direction[axis]);
-      world.keep(this->high[axis] - origin[axis], -direction[axis]);
+      world.keep(origin[axis] - this->low[axis], direction[axis], inverse[axis]);
+      world.keep(this->high[axis] - origin[axis], -direction[axis], -inverse[axis]);
     }
     keepAbove(this->planes, this->planeCount, line, world);
     if (this->opaqueDepth != nullptr) {
@@ -126,7 +128,7 @@ struct RayView
     if (kept.begin < kept.end) { // false, too, where something was not a number
       ray.entry = origin + world.begin * direction;
       ray.direction = direction * this->worldPerUnit;
-      ray.inverse = 1.0 / ray.direction;
+      ray.inverse = inverse / this->worldPerUnit;
       ray.length = (world.end - world.begin) / this->worldPerUnit;
       ray.pieceBegin = (kept.begin - world.begin) / this->worldPerUnit;
       if (kept.end < world.end) {

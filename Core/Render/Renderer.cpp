@@ -50,6 +50,17 @@ std::shared_ptr<const Evaluator> FieldOf(const ModelPointer& model, const Render
   return MakeEvaluator(model, options.kernel, PrecisionOf(model->description.network, options));
 }
 
+/// Null where their ranges may not hold.
+std::shared_ptr<const MacroCells> SharedCells(const MacroCells& cells, const ModelPointer& model)
+{
+  if (cells.empty() || !cells.rangesHold()) {
+    return nullptr;
+  }
+  return model && &cells == &model->macroCells
+             ? std::shared_ptr<const MacroCells>(model, &cells) // they may be large
+             : std::make_shared<MacroCells>(cells);
+}
+
 } // namespace
 
 Renderer::Implementation::Implementation(std::shared_ptr<const Evaluator> field,
@@ -71,8 +82,8 @@ Renderer::Implementation::Implementation(std::shared_ptr<const Evaluator> field,
   }
   if (this->Options.cached) { // at once, so that whom this one replaces can leave its bricks
     const BrickKernel& kernel = BrickKernelFor(ChooseInstructionSet(this->Options.kernel));
-    this->Cached.emplace(this->Field, this->Identity, this->Volume.dims, this->Options.cache,
-                         kernel, this->Threads, accelerator, model);
+    this->Cached.emplace(this->Field, this->Identity, this->Volume.dims, SharedCells(cells, model),
+                         this->Options.cache, kernel, this->Threads, accelerator, model);
   } else if (accelerator) {
     this->Samples = MakeEvaluator(this->Accelerated, this->Field);
   }

@@ -295,8 +295,7 @@ private:
       if (leaves || FaintSamples(settings, extinction * depth) != faint) {
         break;
       }
-      range.extend(this->Cells.range().low);
-      range.extend(this->Cells.range().high);
+      range.extend(this->Cells.range());
       exit = this->Cells.exit();
     }
     const double stepsPerT = 1.0 / settings.step;
@@ -304,8 +303,7 @@ private:
     double last = matters ? reach : std::nextafter(this->firstPlace(), this->End + 1);
     if (leaves && settings.looksAtBothEnds() && this->Cells.exit() >= exit + length) {
       // With the sample that isLeaving() would be said of.
-      range.extend(this->Cells.range().low);
-      range.extend(this->Cells.range().high);
+      range.extend(this->Cells.range());
       last += PowerOfTwo(level);
     }
     this->Stretch = SampleStretch();
@@ -352,7 +350,7 @@ private:
         break;
       }
       this->Cells = ahead;
-      first.extend(next.range);
+      first.range.extend(next.range);
       end += block;
     }
     this->closeStretch(first, end);
@@ -364,7 +362,7 @@ private:
   {
     const double block = PowerOfTwo(LargestCellPower);
     CellBlock cells;
-    cells.extend(this->Cells.range());
+    cells.range.extend(this->Cells.range());
     double exit = this->Cells.exit() / settings.step;
     while (exit < enough) {
       this->Cells.moveTo(this->Cells.exit());
@@ -375,7 +373,7 @@ private:
       if (settings.cellSampling[this->Cells.index()].power > 0 && way >= WorthAStretch) {
         enough = glm::min(enough, (std::floor(exit / block) + 1.0) * block);
       }
-      cells.extend(this->Cells.range());
+      cells.range.extend(this->Cells.range());
       exit = this->Cells.exit() / settings.step;
     }
     cells.level = cells.power = 0;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "Core/Cache/BrickCache.h"
-#include "Core/Render/BrickKernel.h"
 #include "Core/Render/VisibleBlocks.h"
 
 #include <atomic>

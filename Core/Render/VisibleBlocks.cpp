@@ -2,7 +2,6 @@
 #include "Core/Render/VisibleBlocks.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace inr {
 

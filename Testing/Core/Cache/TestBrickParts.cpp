@@ -194,28 +194,62 @@ TEST_F(Stored, PartsComeFromTheLoaderToo)
   EXPECT_TRUE(this->known(0).isAll());
 }
 
-// What comes late, of an earlier wish, takes nothing away.
-TEST(BrickParts, StayWhereTheyKnowMore)
+TEST(BrickParts, TakeThePlaceOfThoseThatKnowLess)
 {
   const inr::Hierarchy levels({60, 45, 52}, 17);
   inr::BrickCache cache(levels, inr::CachePrecision::Float32, 64 << 20);
   const inr::BlockLattice lattice(levels.brickDims());
   std::vector<float> values(static_cast<std::size_t>(levels.voxelsPerBrick()), 0.5f);
   const inr::BrickKey key = inr::KeyOf({0, {1, 1, 1}});
-  EXPECT_TRUE(cache.insert(key, values.data()));
+  const inr::BlockSet some = RandomBlocks(lattice, 0.5, 3);
+  EXPECT_TRUE(cache.lacks({key, some}));
+  EXPECT_TRUE(cache.insert({key, some}, values.data()));
   const std::int32_t slot = cache.find(key);
   cache.pin(key);
   const std::uint64_t arrival = cache.arrival(slot);
+  // What comes late, of an earlier wish, would take something away.
+  EXPECT_FALSE(cache.lacks({key, some}));
+  EXPECT_FALSE(cache.lacks({key, RandomBlocks(lattice, 0.5, 4)}));
+  EXPECT_TRUE(cache.lacks(key));
   std::fill(values.begin(), values.end(), 0.25f);
-  EXPECT_TRUE(cache.insert({key, RandomBlocks(lattice, 0.5, 3)}, values.data()));
-  EXPECT_TRUE(cache.blocks().known(slot).isAll());
-  EXPECT_EQ(cache.arrival(slot), arrival);
-  EXPECT_EQ(*static_cast<const float*>(cache.view(slot).voxels), 0.5f);
   EXPECT_TRUE(cache.insert(key, values.data()));
+  EXPECT_FALSE(cache.lacks(key));
+  EXPECT_TRUE(cache.blocks().known(slot).isAll());
+  EXPECT_GT(cache.arrival(slot), arrival);
   EXPECT_EQ(*static_cast<const float*>(cache.view(slot).voxels), 0.25f);
   EXPECT_EQ(cache.mapped(), 1);
   cache.beginFrame(100);
   EXPECT_EQ(cache.oldestUse(inr::BrickCache::Pinned), inr::BrickCache::Pinned); // as it was
+}
+
+// Cells that a brick reaches into, and no others: whatever part of it is inferred.
+TEST(BrickParts, AreWithinTheRangesOfTheirCells)
+{
+  const glm::i64vec3 dims(64, 48, 40);
+  auto cells = std::make_shared<inr::MacroCells>(inr::MakeMacroCells(dims, 16));
+  for (std::size_t k = 0; k < cells->ranges.size(); ++k) {
+    const auto low = static_cast<float>(0.01 * static_cast<double>(k));
+    cells->ranges[k] = {low, low + 0.001f};
+  }
+  cells->ranges[0] = {}; // of a cell without values
+  const inr::Hierarchy levels(dims, 17);
+  const auto source = inr::MakeBrickSource(std::make_shared<FieldEvaluator>(Wave), levels, cells);
+  const auto expect = [&](const inr::BrickId& id, const glm::i64vec3& first,
+                          const glm::i64vec3& last) {
+    const inr::ValueRange range = source->rangeOf(inr::KeyOf(id));
+    const auto at = [&](const glm::i64vec3& cell) {
+      return cells->ranges[static_cast<std::size_t>(cells->index(cell.x, cell.y, cell.z))];
+    };
+    EXPECT_EQ(range.low, at(first).low) << id.level;
+    EXPECT_EQ(range.high, at(last).high) << id.level;
+  };
+  expect({0, {0, 0, 0}}, {1, 0, 0}, {1, 1, 1});
+  expect({0, {1, 1, 1}}, {1, 1, 1}, {2, 2, 2});
+  expect({0, {3, 2, 2}}, {3, 2, 2}, {3, 2, 2});
+  expect({1, {1, 0, 0}}, {2, 0, 0}, {3, 2, 2});
+  EXPECT_TRUE(inr::MakeBrickSource(std::make_shared<FieldEvaluator>(Wave), levels)
+                  ->rangeOf(levels.coarsest())
+                  .empty());
 }
 
 } // namespace

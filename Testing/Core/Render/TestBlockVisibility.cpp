@@ -24,12 +24,13 @@ struct Filled
   }
 
   /// `corner` in the last voxel, and `rest` elsewhere.
-  std::int32_t insert(const glm::i64vec3& at, float rest, float corner)
+  std::int32_t insert(const glm::i64vec3& at, float rest, float corner,
+                      const inr::BlockSet& known = inr::BlockSet::all())
   {
     std::fill(this->values.begin(), this->values.end(), rest);
     this->values.back() = corner;
     const inr::BrickKey key = inr::KeyOf({0, at});
-    EXPECT_TRUE(this->cache.insert(key, this->values.data()));
+    EXPECT_TRUE(this->cache.insert({key, known}, this->values.data()));
     return this->cache.find(key);
   }
 
@@ -37,6 +38,19 @@ struct Filled
   inr::BrickCache cache;
   std::vector<float> values;
 };
+
+TEST(BlockVisibility, LeavesOutWhatIsNotKnown)
+{
+  const inr::ColorTable colors(Shell(0), VolumeOf(Dims));
+  Filled filled(inr::CachePrecision::Bits16);
+  inr::BlockSet known;
+  known.add({1, 2, 3});
+  const std::int32_t slot = filled.insert({0, 0, 0}, 0.7f, 0.7f, known);
+  inr::ShownBlocks shown;
+  inr::BlockVisibility(filled.cache, colors).find(slot, shown);
+  ASSERT_EQ(shown.kind, inr::ShownBlocks::Kind::Some);
+  EXPECT_TRUE(std::equal(known.words.begin(), known.words.end(), shown.words));
+}
 
 TEST(BlockVisibility, SaysWhatMayBeSeen)
 {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -30,12 +31,12 @@ const Voxels& Truth()
 /// Two renderers of the same field, one of which trusts no range and infers whole bricks.
 struct Pair
 {
-  explicit Pair(const inr::CacheOptions& cache)
+  explicit Pair(const inr::CacheOptions& cache, int cell = 8)
   {
     const auto field = [](const glm::vec3& u) { return Truth().at(u); };
     for (const auto provenance :
          {inr::MacroCellProvenance::Decoded, inr::MacroCellProvenance::File}) {
-      inr::MacroCells cells = CellsOf(field, Dims, 8);
+      inr::MacroCells cells = CellsOf(field, Dims, cell);
       cells.provenance = provenance;
       inr::RendererOptions options;
       options.threads = 2;
@@ -124,17 +125,81 @@ TEST_P(PartsOfBricks, ScatterAsWholeOnesDo)
   EXPECT_LT(points[0], (GetParam() < 1 ? 0.6 : 1.01) * static_cast<double>(points[1]));
 }
 
+// Where cells are small, those of a coarser level reach beyond the blocks that a level shows.
+TEST(PartsOfSmallBricks, LetPathsPassThroughWhatIsHidden)
+{
+  inr::Frame frame = FrameOf(0);
+  frame.mode = inr::RenderMode::PathTracing;
+  frame.samplesPerPixel = 2;
+  frame.lights = {inr::Light{}};
+  for (const double scale : {1.5, 2.2, 3.0}) {
+    Pair pair(Options(inr::CachePrecision::Float32, 8), 3);
+    frame.levelOfDetailScale = scale;
+    std::int64_t points[2];
+    pair.compare(frame, points);
+    EXPECT_LE(points[0], points[1]);
+  }
+}
+
+/// Opaque within a tenth of a value.
+inr::TransferFunction Around(float value, float otherwise = 0)
+{
+  inr::TransferFunction function;
+  for (int k = 0; k < 64; ++k) {
+    const float x = static_cast<float>(k) / 63;
+    const bool isShown = std::abs(x - value) < 0.1f;
+    function.table.emplace_back(x, 1 - x, 0.5f, isShown ? 0.3f : otherwise);
+  }
+  function.below = function.above = function.table.front();
+  return function;
+}
+
 TEST_P(PartsOfBricks, AreCompletedForOtherColours)
 {
   Pair pair(Cache());
   std::int64_t points[2];
   const inr::Frame frame = FrameOf(GetParam());
-  pair.compare(frame, points);
-  for (const float opacity : {0.002f, 0.0f}) { // more is seen, and less again
-    pair.colour(Shell(opacity));
+  for (const float value : {0.85f, 0.3f, 0.6f}) {
+    pair.colour(Around(value));
     pair.compare(frame, points);
   }
-  EXPECT_EQ(points[0], 0);
+  EXPECT_EQ(points[0], 0); // between the others
+  pair.colour(Around(0.6f, 0.002f));
+  pair.compare(frame, points);
+}
+
+// Whatever was looked at before, and by whom, in any precision.
+TEST_P(PartsOfBricks, AreRoundedAsWholeOnesAre)
+{
+  const auto field =
+      std::make_shared<FieldEvaluator>([](const glm::vec3& u) { return Truth().at(u); });
+  const inr::MacroCells cells = CellsOf([](const glm::vec3& u) { return Truth().at(u); }, Dims, 8);
+  for (const auto precision :
+       {inr::CachePrecision::Float32, inr::CachePrecision::Bits16, inr::CachePrecision::Bits8}) {
+    inr::RendererOptions options;
+    options.threads = 2;
+    options.cache = Cache();
+    options.cache.precision = precision;
+    const inr::Frame frame = FrameOf(GetParam());
+    const auto makeRenderer = [&](const std::shared_ptr<const inr::Evaluator>& evaluator) {
+      return inr::Renderer(evaluator, VolumeOf(Dims), cells, options);
+    };
+    inr::Renderer fresh = makeRenderer(std::make_shared<FieldEvaluator>(*field));
+    fresh.setTransferFunction(Around(0.6f));
+    Drawn first;
+    inr::Image samples[2];
+    first.statistics = fresh.render(frame, first.picture, nullptr, {}, &samples[0]);
+    inr::Renderer other = makeRenderer(field);
+    other.setTransferFunction(Around(0.3f));
+    Draw(other, frame);
+    inr::Renderer late = makeRenderer(field); // shares the bricks
+    late.setTransferFunction(Around(0.6f));
+    Drawn second;
+    second.statistics = late.render(frame, second.picture, nullptr, {}, &samples[1]);
+    EXPECT_EQ(first.picture.pixels, second.picture.pixels);
+    EXPECT_EQ(samples[0].pixels, samples[1].pixels);
+    EXPECT_LT(second.statistics.work.bricks.bricks, first.statistics.work.bricks.bricks);
+  }
 }
 
 // Modes that look at values in other places, before and after one that does not.
