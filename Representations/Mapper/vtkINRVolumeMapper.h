@@ -299,9 +299,9 @@ public:
   enum CachePrecisions { FLOAT32 = 0, BITS16 = 1, BITS8 = 2 };
   ///@{
   /**
-   * How a cached voxel is stored, one of CachePrecisions. The integers divide the range of a
-   * brick's values. Default BITS16, the fastest; its error is below the network's. A change empties
-   * the cache.
+   * How a cached voxel is stored, one of CachePrecisions. The integers divide the range of the
+   * macro-cells that a brick is in or, where these may not hold, of its values. Default BITS16, the
+   * fastest; its error is below the network's. A change empties the cache.
    */
   vtkSetClampMacro(CachePrecision, int, FLOAT32, BITS8);
   vtkGetMacro(CachePrecision, int);
