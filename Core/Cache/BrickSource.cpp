@@ -163,8 +163,9 @@ private:
 
 BlockRows BrickSource::rowsOf(const BrickPart& part) const
 {
-  const glm::i64vec3 last = BoxOf(this->Levels, IdOf(part.key)).count - std::int64_t{1};
-  return {part.blocks, this->Lattice, glm::ivec3(last)};
+  // Of a brick beyond its level, which nobody looks at, one voxel.
+  const glm::i64vec3 count = glm::max(BoxOf(this->Levels, IdOf(part.key)).count, std::int64_t{1});
+  return {part.blocks, this->Lattice, glm::ivec3(count) - 1};
 }
 
 std::int64_t BrickSource::points(const BrickPart& part) const
