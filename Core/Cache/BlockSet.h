@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace inr {
@@ -23,7 +24,11 @@ struct BlockSet
     set.words.fill(~std::uint64_t{0});
     return set;
   }
-  void add(const glm::ivec3& block) { this->word(block.z) |= bitOf(block); }
+
+  void add(const glm::ivec3& block)
+  {
+    this->words[static_cast<std::size_t>(block.z)] |= bitOf(block);
+  }
   bool has(const glm::ivec3& block) const
   {
     return (this->words[static_cast<std::size_t>(block.z)] & bitOf(block)) != 0;
@@ -57,7 +62,6 @@ private:
   {
     return std::uint64_t{1} << (block.x + BlockLattice::Most * block.y);
   }
-  std::uint64_t& word(int z) { return this->words[static_cast<std::size_t>(z)]; }
 };
 
 } // namespace inr

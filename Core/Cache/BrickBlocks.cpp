@@ -55,10 +55,10 @@ void ForEachBlock(const Stored* voxels, const glm::ivec3& dims, const BlockLatti
         }
       }
       for (int x = 0; x < lattice.count.x; ++x) {
-        const int begin = x * lattice.edge;
-        const int end = std::min(begin + lattice.edge, dims.x - 1) + 1;
-        extremes(*std::min_element(row.low + begin, row.low + end),
-                 *std::max_element(row.high + begin, row.high + end));
+        const BlockLattice::Span voxels = lattice.voxelsOf({x, x}, 0);
+        const int end = voxels.last + 1;
+        extremes(*std::min_element(row.low + voxels.first, row.low + end),
+                 *std::max_element(row.high + voxels.first, row.high + end));
       }
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/BlockVisibility.h"
 
+#include <algorithm>
+
 namespace inr {
 
 static_assert(ShownBlocks::Words == BlockLattice::Most &&
@@ -40,19 +42,21 @@ void BlockVisibility::findOut(std::int32_t slot, ShownBlocks& shown) const
   float extinctions[64 * ShownBlocks::Words];
   blocks.ranges(slot, ranges);
   this->Colors.maximumExtinctions(ranges, blocks.lattice().blocks(), extinctions);
-  shown = {};
   const BlockSet& known = blocks.known(slot);
+  BlockSet visible;
   std::int64_t seen = 0;
   const float* extinction = extinctions;
   for (int z = 0; z < count.z; ++z) {
     for (int y = 0; y < count.y; ++y) {
       for (int x = 0; x < count.x; ++x) {
-        const bool isSeen = *extinction++ > 0.0f && known.has({x, y, z});
-        shown.words[z] |= std::uint64_t{isSeen} << (x + BlockLattice::Most * y);
-        seen += isSeen ? 1 : 0;
+        if (*extinction++ > 0.0f && known.has({x, y, z})) {
+          visible.add({x, y, z});
+          ++seen;
+        }
       }
     }
   }
+  std::copy(visible.words.begin(), visible.words.end(), shown.words);
   shown.kind = seen == 0                           ? ShownBlocks::Kind::None
                : seen == blocks.lattice().blocks() ? ShownBlocks::Kind::All
                                                    : ShownBlocks::Kind::Some;

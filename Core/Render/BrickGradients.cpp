@@ -18,7 +18,7 @@ float PlaceOn(const BrickPath& path, int axis, float along)
 
 BrickGradients::Inside BrickGradients::insideOf(BrickKey brick, const Move& move) const
 {
-  const Hierarchy& hierarchy = this->Cache.hierarchy();
+  const Hierarchy& hierarchy = this->Bricks.cache().hierarchy();
   const BrickId id = IdOf(brick);
   const int last = hierarchy.brickDims()[move.axis] - 1;
   constexpr float everywhere = std::numeric_limits<float>::infinity();
@@ -35,7 +35,7 @@ bool BrickGradients::movePath(const Move& move, const Wish& wish, BrickKey brick
   if (!crosses) {
     return true;
   }
-  const Hierarchy& hierarchy = this->Cache.hierarchy();
+  const Hierarchy& hierarchy = this->Bricks.cache().hierarchy();
   BrickId next = IdOf(brick);
   next.at[move.axis] += move.step;
   const std::int32_t slot = this->Bricks.find(KeyOf(next));
@@ -43,8 +43,8 @@ bool BrickGradients::movePath(const Move& move, const Wish& wish, BrickKey brick
     wish.requests.add(KeyOf(next), wish.contribution);
     return wish.missing == Missing::OneSided;
   }
-  this->Cache.touch(slot);
-  const BrickView view = this->Cache.view(slot);
+  this->Bricks.cache().touch(slot);
+  const BrickView view = this->Bricks.cache().view(slot);
   path.voxels = view.voxels;
   path.base = view.low;
   path.quantum = view.step;
@@ -124,7 +124,7 @@ void BrickGradients::differentiate(const SampleBatch& batch, const BrickKey* bri
     const int path = batch.path[which[k]];
     if (path != source) {
       const int level = IdOf(bricks[path]).level;
-      scale = static_cast<float>(this->Cache.hierarchy().scale(level)[axis]);
+      scale = static_cast<float>(this->Bricks.cache().hierarchy().scale(level)[axis]);
       source = path;
     }
     const float length = this->Offsets[k] - offsets[k];

@@ -20,7 +20,7 @@ class BrickGradients
 public:
   BrickGradients(const SufficientBricks& bricks, const BrickFormat& format,
                  const BrickKernel& kernel)
-      : Bricks(bricks), Cache(bricks.cache()), Format(format), Kernel(kernel)
+      : Bricks(bricks), Format(format), Kernel(kernel)
   {}
 
   /// What a neighbouring brick that is not there means.
@@ -68,7 +68,6 @@ private:
                      glm::vec3* gradients) const;
 
   const SufficientBricks& Bricks;
-  const BrickCache& Cache;
   BrickFormat Format;
   const BrickKernel& Kernel;
   SampleBatch Moved{};                  ///< the samples one voxel along

@@ -21,7 +21,7 @@ SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t s
           scene.settings,
           ray,
           scene.frame.levelOfDetailScale,
-          scene.cache.hierarchy().levels(),
+          scene.bricks.cache().hierarchy().levels(),
           JitterOf(scene.settings, stream)};
 }
 

@@ -268,7 +268,7 @@ BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double place)
 
 bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
 {
-  const BrickCache& cache = this->Scene.cache;
+  const BrickCache& cache = this->Scene.bricks.cache();
   const Hierarchy& hierarchy = cache.hierarchy();
   const double t = place * this->Scene.settings.step;
   BrickWay& wanted = this->Ways[level & 1];
@@ -298,7 +298,7 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
 std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted,
                                         double t)
 {
-  const BrickCache& cache = this->Scene.cache;
+  const BrickCache& cache = this->Scene.bricks.cache();
   const Hierarchy& hierarchy = cache.hierarchy();
   BrickKey wish = wanted.brick();
   for (int level = wanted.level() + 1;; ++level) { // the coarsest is there

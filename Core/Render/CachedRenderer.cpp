@@ -153,18 +153,9 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
   if (blocks != nullptr && !looksFurther) {
     reach = shading != nullptr ? 1 : 0; // gradients
   }
-  const CachedScene scene{frame,
-                          geometry,
-                          majorants,
-                          lookup,
-                          steps,
-                          cache,
-                          this->bricksFor(majorants, reach),
-                          this->Kernel,
-                          FormatOf(cache),
-                          settings,
-                          shading,
-                          blocks};
+  const CachedScene scene{
+      frame,        geometry,        majorants, lookup,  steps, this->bricksFor(majorants, reach),
+      this->Kernel, FormatOf(cache), settings,  shading, blocks};
   FrameStatistics statistics = this->renderFrame(scene, limit, output, keepGoing);
   statistics.work = this->Work;
   return statistics;

@@ -22,8 +22,7 @@ struct CachedScene
   const Majorants& majorants;
   const ColorLookup& colors;
   const StepLookup& steps;
-  const BrickCache& cache;
-  const SufficientBricks& bricks; ///< of that, the only ones to look at
+  const SufficientBricks& bricks; ///< of the cache, the only ones to look at
   const BrickKernel& kernel;
   BrickFormat format; ///< of the cache's bricks
   MarchSettings settings;

@@ -24,7 +24,7 @@ bool RayProbe::find(const Ray& ray, int level, double place, float contribution,
 bool RayProbe::open(const Ray& ray, int level, double place, float contribution,
                     RequestList& requests)
 {
-  const BrickCache& cache = this->Scene.cache;
+  const BrickCache& cache = this->Scene.bricks.cache();
   const double step = this->Scene.settings.step;
   BrickWay wanted(cache.hierarchy().view(), level, ray);
   wanted.moveTo(place * step);

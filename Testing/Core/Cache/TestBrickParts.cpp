@@ -222,6 +222,24 @@ TEST(BrickParts, TakeThePlaceOfThoseThatKnowLess)
   EXPECT_EQ(cache.oldestUse(inr::BrickCache::Pinned), inr::BrickCache::Pinned); // as it was
 }
 
+TEST(BrickParts, MoveWithTheirBricks)
+{
+  const inr::Hierarchy levels({60, 45, 52}, 17);
+  inr::BrickCache cache(levels, inr::CachePrecision::Bits16, 64 << 20);
+  const inr::BlockLattice lattice(levels.brickDims());
+  const std::vector<float> values(static_cast<std::size_t>(levels.voxelsPerBrick()), 0.5f);
+  const auto key = [](std::int64_t x) { return inr::KeyOf({0, {x, 0, 0}}); };
+  for (std::int64_t x = 0; x < 3; ++x) {
+    cache.beginFrame(static_cast<std::uint64_t>(x) + 1);
+    const auto seed = static_cast<std::uint64_t>(x);
+    ASSERT_TRUE(cache.insert({key(x), RandomBlocks(lattice, 0.5, seed)}, values.data()));
+  }
+  const std::int32_t gone = cache.find(key(0));
+  cache.evict(2);
+  ASSERT_EQ(cache.find(key(2)), gone); // the last one takes the place of the first
+  EXPECT_TRUE(cache.blocks().known(gone) == RandomBlocks(lattice, 0.5, 2));
+}
+
 // Cells that a brick reaches into, and no others: whatever part of it is inferred.
 TEST(BrickParts, AreWithinTheRangesOfTheirCells)
 {
