@@ -39,6 +39,12 @@ public:
     return std::int64_t{1} * this->BrickDims.x * this->BrickDims.y * this->BrickDims.z;
   }
   glm::i64vec3 firstVoxel(const BrickId& id) const { return this->view().firstVoxel(id); }
+  /// The brick of the next coarser level, which must exist, that shows most of the same.
+  BrickId coarser(const BrickId& id) const
+  {
+    return {id.level + 1,
+            glm::min(id.at / std::int64_t{2}, this->bricks(id.level + 1) - std::int64_t{1})};
+  }
   BrickKey coarsest() const { return KeyOf({this->levels() - 1, glm::i64vec3(0)}); }
 
   /// Position p in voxels of level 0 (voxel i at i) is p * scale + bias in voxels of `level`.

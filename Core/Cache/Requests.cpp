@@ -23,12 +23,26 @@ void RequestList::add(BrickKey key, float contribution)
 void RequestRanking::add(const RequestList& list)
 {
   for (const Request& request : list.entries()) {
-    const auto place = this->Places.try_emplace(request.key, this->Sums.size());
-    if (place.second) {
-      this->Sums.push_back({request.key, 0.0});
-    }
-    this->Sums[place.first->second].contribution += static_cast<double>(request.contribution);
+    this->add(request.key, static_cast<double>(request.contribution));
   }
+}
+
+void RequestRanking::add(BrickKey key, double contribution)
+{
+  const auto place = this->Places.try_emplace(key, this->Sums.size());
+  if (place.second) {
+    this->Sums.push_back({key, 0.0});
+  }
+  this->Sums[place.first->second].contribution += contribution;
+}
+
+RequestRanking RequestRanking::replaced(const std::function<BrickKey(BrickKey)>& instead) const
+{
+  RequestRanking others;
+  for (const Sum& sum : this->Sums) {
+    others.add(instead(sum.key), sum.contribution);
+  }
+  return others;
 }
 
 std::vector<BrickKey> RequestRanking::ranked(std::int64_t most, bool byContribution) const

@@ -4,6 +4,7 @@
 #include "Core/Cache/Hierarchy.h"
 
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -36,11 +37,16 @@ public:
   bool empty() const { return this->Sums.empty(); }
   std::int64_t count() const { return static_cast<std::int64_t>(this->Sums.size()); } ///< bricks
 
+  /// Each wish as one for the brick that `instead` gives in place of its own.
+  RequestRanking replaced(const std::function<BrickKey(BrickKey)>& instead) const;
+
   /// At most `most` bricks: by falling contribution (coarser levels, then smaller keys first among
   /// equals), or in the order in which they were first wanted.
   std::vector<BrickKey> ranked(std::int64_t most, bool byContribution) const;
 
 private:
+  void add(BrickKey key, double contribution);
+
   struct Sum
   {
     BrickKey key;

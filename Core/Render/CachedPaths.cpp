@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/CachedPaths.h"
 
+#include "Core/Render/OnMiss.h"
 #include "Core/Render/TileLoop.h"
 #include "Core/Render/WorkLimit.h"
 
@@ -105,7 +106,7 @@ void CachedSampler::findCoarser(const FieldPoint& point, Cell& cell)
       this->Served.add({level, level});
       break;
     }
-    finer = key;
+    finer = IsOnTheWay(level) ? key : finer;
   }
   if (this->Missing == OnPathMiss::Approach) {
     this->Wishes.push_back(finer);

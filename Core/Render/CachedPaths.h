@@ -19,7 +19,7 @@ class WorkLimit;
 /// What a path gets where the brick it wants is not there.
 enum class OnPathMiss {
   UseCoarser, ///< the nearest coarser level that is, and a wish for the wanted one
-  Approach,   ///< the same, but a wish for the level after the coarser one
+  Approach,   ///< the same, but a wish for the next level on the way, as OnMiss::Approach
   Infer       ///< what the network says at the point, and a wish
 };
 

@@ -312,7 +312,7 @@ std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const Bri
       }
       return slot;
     }
-    wish = served.brick();
+    wish = IsOnTheWay(level) ? served.brick() : wish;
   }
 }
 

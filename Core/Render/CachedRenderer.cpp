@@ -108,6 +108,20 @@ const SufficientBricks& CachedRenderer::bricksFor(const Majorants& majorants,
   return *this->Bricks;
 }
 
+RequestRanking CachedRenderer::inSteps(const RequestRanking& requests) const
+{
+  if (!this->Options.preloading || requests.count() <= this->room()) {
+    return requests;
+  }
+  const Hierarchy& hierarchy = this->Store->cache().hierarchy();
+  return requests.replaced([&](BrickKey key) {
+    const BrickId id = IdOf(key);
+    const bool mayStep = id.level == 0 && hierarchy.levels() > 1;
+    const BrickKey coarser = mayStep ? KeyOf(hierarchy.coarser(id)) : key;
+    return this->Bricks->find(coarser) == PageTable::Unmapped ? coarser : key;
+  });
+}
+
 std::vector<BrickPart> CachedRenderer::partsOf(const std::vector<BrickKey>& keys) const
 {
   std::vector<BrickPart> parts;
@@ -255,8 +269,9 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
     if (!fits) { // should the same be asked for again
       this->Unfinished.emplace(scene, output);
     }
-    this->loadForFrame(requests.ranked(this->Options.maximumRequests, this->Options.ranking), limit,
-                       keepGoing);
+    this->loadForFrame(
+        this->inSteps(requests).ranked(this->Options.maximumRequests, this->Options.ranking), limit,
+        keepGoing);
     if (statistics.complete || !fits || limit.endsWithin(statistics.marchSeconds)) {
       return statistics;
     }
@@ -280,7 +295,8 @@ FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const W
       // Nothing goes that is shown, so every place of the picture only gets finer.
       const std::int64_t most =
           limit.isLimited() ? std::min<std::int64_t>(room, this->Options.maximumRequests) : room;
-      full = this->loadForFrame(requests.ranked(most, this->Options.ranking), limit, keepGoing);
+      full = this->loadForFrame(this->inSteps(requests).ranked(most, this->Options.ranking), limit,
+                                keepGoing);
     }
     if (statistics.complete || limit.endsWithin(statistics.marchSeconds)) {
       return statistics;
@@ -356,7 +372,8 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
       tile.missed = 0;
     }
   }
-  this->loadForPaths(requests, limit, keepGoing);
+  this->loadForPaths(onMiss == OnPathMiss::Approach ? this->inSteps(requests) : requests, limit,
+                     keepGoing);
   return traced;
 }
 

@@ -94,6 +94,9 @@ private:
                                    bool rangesHold);
   /// `reach`: see VisibleBlocks; nothing: whole bricks.
   const SufficientBricks& bricksFor(const Majorants& majorants, std::optional<int> reach);
+  /// Where what was wished for has no room, level 1, which takes an eighth of it, in place of level
+  /// 0, unless it is there.
+  RequestRanking inSteps(const RequestRanking& requests) const;
   std::vector<BrickPart> partsOf(const std::vector<BrickKey>& keys) const;
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
                                  const std::function<bool()>& keepGoing);

@@ -72,7 +72,7 @@ private:
         this->enter(cache, served, slot, step);
         return;
       }
-      next = served.brick();
+      next = IsOnTheWay(level) ? served.brick() : next;
     }
   }
 

@@ -48,7 +48,7 @@ private:
         this->Cache.request(this->Missing == OnMiss::Approach ? next : wish, 1.0f);
         return this->read(slot, served.local, level);
       }
-      next = KeyOf(served.brick);
+      next = IsOnTheWay(level) ? KeyOf(served.brick) : next;
     }
   }
 

@@ -54,6 +54,26 @@ TEST(Hierarchy, KeysAndPlacesAreOneToOne)
   }
 }
 
+TEST(Hierarchy, TheCoarserBrickHasTheMiddleOfAFinerOne)
+{
+  for (const i64vec3& dims : Sizes) {
+    const inr::Hierarchy levels(dims, 40);
+    for (int k = 0; k < 200; ++k) {
+      for (int level = 0; level + 1 < levels.levels(); ++level) {
+        const inr::BrickId fine =
+            levels.locate(level, RandomPoint(dims, static_cast<std::uint64_t>(k))).brick;
+        const inr::BrickId coarse = levels.coarser(fine);
+        const dvec3 first(levels.firstVoxel(fine));
+        const dvec3 end = glm::min(first + dvec3(levels.brickDims() - 1),
+                                   dvec3(levels.size(level) - std::int64_t{1}));
+        const dvec3 middle = (0.5 * (first + end) - levels.bias(level)) / levels.scale(level);
+        EXPECT_EQ(levels.locate(level + 1, middle).brick.at, coarse.at);
+        EXPECT_EQ(coarse.level, level + 1);
+      }
+    }
+  }
+}
+
 TEST(Hierarchy, EveryVoxelIsInABrickAndNeighboursShareALayer)
 {
   for (const int edge : {4, 7, 40}) {

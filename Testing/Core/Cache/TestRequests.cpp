@@ -61,6 +61,24 @@ TEST(Requests, SumsDoNotDependOnHowAListWasMade)
   EXPECT_EQ(ranking.ranked(1, true).front(), Brick(0, 19));
 }
 
+TEST(Requests, ForOthersInTheirPlaceAddUp)
+{
+  inr::RequestRanking ranking;
+  inr::RequestList list;
+  list.add(Brick(0, 4), 1.0f);
+  list.add(Brick(0, 7), 2.0f);
+  list.add(Brick(0, 5), 1.5f);
+  list.add(Brick(1, 9), 0.5f);
+  ranking.add(list);
+  const inr::RequestRanking halves = ranking.replaced([](inr::BrickKey key) {
+    return Brick(1, inr::IdOf(key).level == 0 ? inr::IdOf(key).at.x / 2 : 9);
+  });
+  using Keys = std::vector<inr::BrickKey>;
+  EXPECT_EQ(halves.count(), 3);
+  EXPECT_EQ(halves.ranked(9, true), (Keys{Brick(1, 2), Brick(1, 3), Brick(1, 9)}));
+  EXPECT_EQ(ranking.count(), 4);
+}
+
 /// A wish that is `place`-th in a picture of random wishes for a few hundred bricks.
 inr::Request RandomWish(std::uint64_t picture, std::uint64_t place)
 {

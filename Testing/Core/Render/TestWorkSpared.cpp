@@ -258,6 +258,47 @@ TEST(WorkSpared, ThePicturesOfPathsGoOnWithNothingWhenTheyAreDone)
   }
 }
 
+/// To the end, of pictures of the finest level, a few bricks at a time.
+void Finish(RecordedScene& scene, inr::Frame frame)
+{
+  frame.levelOfDetailScale = 0;
+  frame.timeLimit = 1;
+  for (int k = 0; k < 5000 && (k == 0 || !scene.statistics.complete); ++k) {
+    scene.render(frame);
+  }
+  EXPECT_TRUE(scene.statistics.complete);
+}
+
+TEST(WorkSpared, NoLevelOnTheWayThatTakesAsLongAsTheFinest)
+{
+  for (const inr::Frame& view : Views(Cube)) {
+    inr::RendererOptions options = SmallBricks();
+    options.deterministic = true;
+    RecordedScene scene(options, Waves, Cube);
+    Finish(scene, view);
+    EXPECT_TRUE(scene.field->layers(1).empty());
+    EXPECT_FALSE(scene.field->layers(2).empty());
+    RecordedScene whole(options, Waves, Cube);
+    inr::Frame frame = view;
+    frame.levelOfDetailScale = 0;
+    whole.render(frame);
+    EXPECT_LT(scene.field->inGrids(), 1.25 * whole.field->inGrids());
+  }
+}
+
+TEST(WorkSpared, ButWhereTheFinestDoesNotFit)
+{
+  for (const inr::Frame& view : Views(Cube)) {
+    inr::RendererOptions options = SmallBricks();
+    options.cache.bytes = 300 * 2 * 9 * 9 * 9; // less than half of the finest level
+    options.cache.onlyWhatFits = true;
+    RecordedScene scene(options, Waves, Cube);
+    Finish(scene, view);
+    EXPECT_FALSE(scene.field->layers(1).empty());
+    EXPECT_FALSE(scene.field->layers(0).empty());
+  }
+}
+
 /// One of `count` views around the volume.
 inr::Frame Around(inr::Frame frame, const glm::dvec3& dims, int k, int count)
 {
