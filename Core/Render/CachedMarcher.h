@@ -148,7 +148,7 @@ private:
               const RunPair& runs);
   BrickRun* runFor(const CachedRay& state, int level, double place);
   void countUse(const CachedRay& state, const AlikeSamples& alike, std::uint64_t taken,
-                BrickRun& fine, BrickRun& coarse) const;
+                const RunPair& runs) const;
   /// The number that chooses between two levels for a sample. A surface would be torn where one
   /// sample is of this and the next of that level, so of its rays all have the same.
   std::int64_t ditherOf(std::int64_t interval) const { return interval & this->DitherMask; }

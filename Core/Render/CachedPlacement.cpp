@@ -126,18 +126,25 @@ inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& al
 }
 
 inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike,
-                                    std::uint64_t taken, BrickRun& fine, BrickRun& coarse) const
+                                    std::uint64_t taken, const RunPair& runs) const
 {
-  if (fine.exact() && coarse.exact()) { // nobody asks which it was
-    fine.count(CountBits(taken));
+  const int count = CountBits(taken);
+  if (runs.fine == runs.coarse || (runs.fine->exact() && runs.coarse->exact())) {
+    runs.fine->count(count); // of two, nobody asks which it was
     return;
   }
-  const LevelOfDetail& detail = state.samples.detail();
-  for (; taken != 0; taken &= taken - 1) {
-    const std::int64_t interval = state.samples.next() + PlaceOfBit(taken, 0) * alike.steps();
-    const bool isFine = detail.dithered(state.stream, this->ditherOf(interval)) == fine.level();
-    (isFine ? fine : coarse).count(1);
-  }
+  // As if all were visible in the one and nothing in the other: only the kernel knows to the last
+  // bit where it reads a sample.
+  static constexpr ShownBlocks all{ShownBlocks::Kind::All, {}};
+  static constexpr ShownBlocks none{ShownBlocks::Kind::None, {}};
+  SampleRun run;
+  this->placeRun(state, alike, runs, run);
+  const std::uint64_t onFine = this->Scene.kernel.findShownOnTwo(
+      this->Scene.format, {&all, &none}, {&runs.fine->path(), &runs.coarse->path()}, run,
+      alike.count);
+  const int fine = CountBits(taken & onFine);
+  runs.fine->count(fine);
+  runs.coarse->count(count - fine);
 }
 
 CachedMarcher::RunPair CachedMarcher::runsFor(const CachedRay& state, double place)
@@ -253,7 +260,7 @@ void CachedMarcher::add(CachedRay& state, AlikeSamples& alike, const RunPair& ru
   }
   this->addRun(state, alike, taken, bits, runs);
   this->Statistics.hidden += count - taken;
-  this->countUse(state, alike, bits.taken, *runs.fine, *runs.coarse);
+  this->countUse(state, alike, bits.taken, runs);
 }
 
 BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double place)

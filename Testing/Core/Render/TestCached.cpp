@@ -81,6 +81,29 @@ TEST(Cached, FramesInALimitedTimeEndWithTheCompletePicture)
   EXPECT_EQ(image.pixels, truth.pixels);
 }
 
+/// A sample is of one of two levels where these are mixed, whose bricks may not both be there.
+TEST(Cached, FramesInALimitedTimeCountWhatMixedLevelsLack)
+{
+  const glm::i64vec3 dims(97, 83, 91);
+  inr::Frame frame = Oblique(glm::dvec3(dims), 130);
+  frame.levelOfDetailScale = 0.9;
+  inr::CacheOptions options = Options(inr::CachePrecision::Bits16, 9);
+  options.background = false;
+  options.maximumRequests = 9;
+  inr::Renderer complete = CachedRenderer(dims, Waves, options);
+  const inr::Image truth = Render(complete, frame);
+
+  frame.timeLimit = 1e-9;
+  inr::Renderer hurried = CachedRenderer(dims, Waves, options);
+  inr::Image image;
+  int frames = 0;
+  while (!hurried.render(frame, image).complete && frames < 1000) {
+    ++frames;
+  }
+  EXPECT_GT(frames, 10);
+  EXPECT_EQ(image.pixels, truth.pixels);
+}
+
 TEST(Cached, FramesInALimitedTimeEndEvenWhereTheCacheIsTooSmall)
 {
   const glm::i64vec3 dims(90, 70, 80);
