@@ -85,6 +85,15 @@ std::int64_t BrickCache::usedInFrame() const
   return std::count_if(this->LastUse.data(), this->LastUse.data() + this->mapped(), isUsed);
 }
 
+void BrickCache::touchThoseOf(std::uint64_t frame)
+{
+  for (std::int32_t slot = 0; slot < this->mapped(); ++slot) {
+    if (this->lastUse(slot) == frame) {
+      this->touch(slot);
+    }
+  }
+}
+
 // The first few per cent of all that can be evicted, from a sample drawn by a fixed rule: sorting
 // all of them would take longer than a frame may wait.
 std::uint64_t BrickCache::lastCandidate(std::uint64_t frame) const

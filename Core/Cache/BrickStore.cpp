@@ -72,10 +72,13 @@ std::int64_t BrickStore::capacity() const
   return std::clamp(bricks, BrickCache::FewestBricks, this->Cache.capacity());
 }
 
-std::uint64_t BrickStore::beginFrame()
+std::uint64_t BrickStore::beginFrame(std::optional<std::uint64_t> continued)
 {
   const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
   this->Cache.beginFrame(++this->Budget->Clock);
+  if (continued) {
+    this->Cache.touchThoseOf(*continued);
+  }
   return this->Cache.frame();
 }
 

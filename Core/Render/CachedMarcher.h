@@ -69,6 +69,8 @@ public:
   FrameStatistics statistics() const;
   SampleTally tally() const { return {this->Statistics.samples, this->LevelSum}; }
   RequestList& requests() { return this->Requests; }
+  /// Bricks in whose place a coarser one was read.
+  RequestList& absent() { return this->Absent; }
 
 private:
   /// How the samples of a run came about, should the ray have to go back to one.
@@ -215,6 +217,7 @@ private:
   std::int64_t LevelSum = 0;
   std::int64_t Visited = 0; ///< macro-cells, by the present ray before it was marched
   RequestList Requests;
+  RequestList Absent;
 
   BrickWay Ways[2]; ///< of even and of odd levels, along the present ray
   BrickRun Runs[2]; ///< of even and of odd levels: dithering alternates between two neighbours

@@ -53,33 +53,17 @@ bool March(CachedMarcher& marcher, CachedRay& ray)
 
 } // namespace
 
-FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
-                          const std::function<bool()>& keepGoing, const PassOutput& output,
-                          RequestRanking& requests)
+void MarchTile(const CachedScene& scene, CachedMarcher& marcher, const Tile& tile,
+               const std::function<bool()>& keepGoing, const PassOutput& output)
 {
-  const Tiling tiling(scene.frame.width, scene.frame.height);
-  std::vector<FrameStatistics> statistics(static_cast<std::size_t>(tiling.count()));
-  std::vector<RequestList> lists(static_cast<std::size_t>(tiling.count()));
-  ForEachTile(arena, tiling.count(), keepGoing, [&](std::int64_t k) {
-    CachedMarcher marcher(scene, onMiss);
-    const Tile tile = tiling.tile(k);
-    for (int y = tile.y; y < tile.y + tile.height; ++y) {
-      RequireGoing(keepGoing);
-      for (int x = tile.x; x < tile.x + tile.width; ++x) {
-        CachedRay ray = marcher.begin(x, y);
-        March(marcher, ray);
-        WritePixel(scene, ray, x, y, output);
-      }
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    RequireGoing(keepGoing);
+    for (int x = tile.x; x < tile.x + tile.width; ++x) {
+      CachedRay ray = marcher.begin(x, y);
+      March(marcher, ray);
+      WritePixel(scene, ray, x, y, output);
     }
-    statistics[static_cast<std::size_t>(k)] = marcher.statistics();
-    lists[static_cast<std::size_t>(k)] = std::move(marcher.requests());
-  });
-  FrameStatistics sum;
-  for (std::size_t k = 0; k < lists.size(); ++k) {
-    sum.add(statistics[k]);
-    requests.add(lists[k]);
   }
-  return sum;
 }
 
 void CompletePass::start(ActiveTile& at, CachedMarcher& marcher, const PassOutput& output) const

@@ -24,11 +24,10 @@ struct PassOutput
 /// How far a picture's rays have come, in samples, whether those were taken or left out.
 std::int64_t CamePast(const FrameStatistics& statistics);
 
-/// Marches the whole picture once with what is in the cache and notes what was missing. Throws
-/// Error(Cancelled) when `keepGoing` says so; see ForEachTile.
-FrameStatistics MarchOnce(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
-                          const std::function<bool()>& keepGoing, const PassOutput& output,
-                          RequestRanking& requests);
+/// Marches a tile's rays to their ends, with a marcher that does not stop. Throws Error(Cancelled)
+/// when `keepGoing` says so.
+void MarchTile(const CachedScene& scene, CachedMarcher& marcher, const Tile& tile,
+               const std::function<bool()>& keepGoing, const PassOutput& output);
 
 /// Marches the picture with every sample at the level it asks for, whatever the size of the cache:
 /// tiles in a fixed order, as many at a time as their waiting rays fit memory; a ray that misses a

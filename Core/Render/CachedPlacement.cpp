@@ -308,6 +308,7 @@ std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const Bri
   const BrickCache& cache = this->Scene.bricks.cache();
   const Hierarchy& hierarchy = cache.hierarchy();
   BrickKey wish = wanted.brick();
+  this->Absent.add(wish, 0.0f);
   for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
     BrickWay served(hierarchy.view(), level, ray);
     served.moveTo(t);
@@ -319,6 +320,7 @@ std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const Bri
       }
       return slot;
     }
+    this->Absent.add(served.brick(), 0.0f);
     wish = IsOnTheWay(level) ? served.brick() : wish;
   }
 }

@@ -97,6 +97,7 @@ const SufficientBricks& CachedRenderer::bricksFor(const Majorants& majorants,
   const bool fits = this->Bricks && this->Bricks->wantsAll() == !reach &&
                     this->Bricks->reach() == reach.value_or(0);
   if (!fits) {
+    this->Kept.reset();
     this->Unfinished.reset(); // it reads the former ones
     const BrickCache& cache = this->Store->cache();
     std::optional<VisibleBlocks> wanted;
@@ -134,6 +135,7 @@ std::vector<BrickPart> CachedRenderer::partsOf(const std::vector<BrickKey>& keys
 
 void CachedRenderer::forgetColors()
 {
+  this->Kept.reset();
   this->Unfinished.reset();
   this->Steps.reset();
   this->Blocks.reset();
@@ -147,7 +149,7 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
                                        const std::function<bool()>& keepGoing)
 {
   this->Work = {};
-  if (this->Unfinished && limit.isLimited() && this->Unfinished->continues(frame)) {
+  if (this->Unfinished && limit.isLimited() && this->Unfinished->continues(frame, output)) {
     try {
       return this->refine(limit, output, keepGoing);
     } catch (const std::bad_alloc&) { // in the midst of its rays: nobody knows how far they are
@@ -242,15 +244,17 @@ bool CachedRenderer::loadForFrame(const std::vector<BrickKey>& keys, const WorkL
   return this->Store->load(this->partsOf(keys), this->Threads, keepGoing).full;
 }
 
-FrameStatistics CachedRenderer::march(const CachedScene& scene, const PassOutput& output,
+FrameStatistics CachedRenderer::march(const CachedScene& scene, MarchedTiles& tiles,
+                                      const PassOutput& output,
                                       const std::function<bool()>& keepGoing,
                                       RequestRanking& requests)
 {
   const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
-  const Timer timer;
-  this->beginFrame();
-  FrameStatistics statistics = MarchOnce(scene, onMiss, this->Threads, keepGoing, output, requests);
-  statistics.marchSeconds = timer.seconds();
+  // Tiles that stay as they are show what they did.
+  this->Latest =
+      this->Store->beginFrame(tiles.begun() ? std::optional(this->Latest) : std::nullopt);
+  const FrameStatistics statistics =
+      tiles.march(scene, onMiss, this->Threads, keepGoing, output, requests);
   this->Work.add(statistics.work);
   return statistics;
 }
@@ -261,9 +265,17 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
 {
   // Whoever takes from this picture what it has will do so again.
   const bool contested = this->Store->hasLostSince(this->Latest);
+  // Tiles go on with bricks that come in, not with samples that are chosen anew.
+  const bool mayKeep = !contested && scene.settings.cellSampling == nullptr;
+  const std::unique_ptr<KeptPicture> kept = std::move(this->Kept);
+  MarchedTiles tiles(scene.frame.width, scene.frame.height);
+  if (kept && mayKeep && kept->isOf(scene.frame, output)) {
+    kept->pixels.copyTo(output);
+    tiles = std::move(kept->tiles);
+  }
   while (true) {
     RequestRanking requests;
-    FrameStatistics statistics = this->march(scene, output, keepGoing, requests);
+    FrameStatistics statistics = this->march(scene, tiles, output, keepGoing, requests);
     statistics.complete = requests.empty();
     const bool fits = !contested && requests.count() <= this->room();
     if (!fits) { // should the same be asked for again
@@ -273,6 +285,9 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
         this->inSteps(requests).ranked(this->Options.maximumRequests, this->Options.ranking), limit,
         keepGoing);
     if (statistics.complete || !fits || limit.endsWithin(statistics.marchSeconds)) {
+      if (mayKeep && fits && !statistics.complete) {
+        this->Kept = std::make_unique<KeptPicture>(scene.frame, std::move(tiles), output);
+      }
       return statistics;
     }
   }
@@ -286,7 +301,8 @@ FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const W
   bool full = limit.isLimited() && this->Store->hasLostSince(this->Latest);
   while (true) {
     RequestRanking requests;
-    FrameStatistics statistics = this->march(scene, output, keepGoing, requests);
+    MarchedTiles tiles(scene.frame.width, scene.frame.height);
+    FrameStatistics statistics = this->march(scene, tiles, output, keepGoing, requests);
     const std::int64_t room = this->room();
     // Not down to the last brick: fewer and fewer come in for all that they replace.
     full = full || room <= this->Store->capacity() / 64;

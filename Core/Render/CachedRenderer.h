@@ -4,6 +4,7 @@
 #include "Core/Cache/Accelerator.h"
 #include "Core/Cache/BrickStore.h"
 #include "Core/Parallel.h"
+#include "Core/Render/KeptPicture.h"
 #include "Core/Render/PathPicture.h"
 #include "Core/Render/Refinement.h"
 #include "Core/Render/StepTable.h"
@@ -104,8 +105,8 @@ private:
                                const PassOutput& output, const std::function<bool()>& keepGoing);
   FrameStatistics renderWhatFits(const CachedScene& scene, const WorkLimit& limit,
                                  const PassOutput& output, const std::function<bool()>& keepGoing);
-  /// Once, as far as the bricks are there.
-  FrameStatistics march(const CachedScene& scene, const PassOutput& output,
+  /// Those tiles that are due, as far as the bricks are there.
+  FrameStatistics march(const CachedScene& scene, MarchedTiles& tiles, const PassOutput& output,
                         const std::function<bool()>& keepGoing, RequestRanking& requests);
   FrameStatistics refine(const WorkLimit& limit, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
@@ -131,6 +132,8 @@ private:
   std::optional<BlockVisibility> Blocks;
   std::optional<SufficientBricks> Bricks; ///< of the latest frame
   bool LoadsWhole = false;                ///< as it will look at more later
+  /// The latest picture, where bricks of it have come in but not all.
+  std::unique_ptr<KeptPicture> Kept;
   /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
   std::optional<Refinement> Unfinished;
   /// Of the latest path-traced picture: it wants more than the cache can hold, or keep for it.

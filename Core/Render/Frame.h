@@ -149,7 +149,9 @@ struct FrameStatistics
   /// Whether an accelerator has drawn it, or part of it; else the CPU did, of what that inferred.
   bool accelerated = false;
   double seconds = 0;      ///< wall time
-  double marchSeconds = 0; ///< of these, without what was loaded into the cache in between
+  /// Of these, without what was loaded into the cache in between; where only some tiles were
+  /// marched, what all of them had taken before.
+  double marchSeconds = 0;
   WorkDone work;           ///< of the call
 
   /// Which part of the samples is not missed, those that are left out included; 1 of none.

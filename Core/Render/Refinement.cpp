@@ -23,27 +23,13 @@ Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
             scene.kernel,    scene.format,
             scene.settings,  this->Lighting ? &*this->Lighting : nullptr,
             scene.blocks},
-      Pass(this->Scene), Rgba(soFar.rgba),
-      Depth(soFar.depth != nullptr ? *soFar.depth : Image(soFar.rgba.width, soFar.rgba.height, 1)),
-      Samples(soFar.samples != nullptr ? *soFar.samples
-                                       : Image(soFar.rgba.width, soFar.rgba.height, 2))
+      Pass(this->Scene), Pixels(soFar)
 {}
 
 WorkDone Refinement::advance(const Arena& arena, const std::function<bool()>& keepGoing,
                              RequestRanking& requests)
 {
-  return this->Pass.advance(arena, keepGoing, {this->Rgba, &this->Depth, &this->Samples}, requests);
-}
-
-void Refinement::copyTo(const PassOutput& output) const
-{
-  output.rgba = this->Rgba;
-  if (output.depth != nullptr) {
-    *output.depth = this->Depth;
-  }
-  if (output.samples != nullptr) {
-    *output.samples = this->Samples;
-  }
+  return this->Pass.advance(arena, keepGoing, this->Pixels.output(), requests);
 }
 
 } // namespace inr

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Image/Image.h"
 #include "Core/Render/CachedPasses.h"
+#include "Core/Render/PictureCopy.h"
 
 #include <optional>
 #include <vector>
@@ -20,8 +20,11 @@ public:
   Refinement(const Refinement&) = delete;
   Refinement& operator=(const Refinement&) = delete;
 
-  /// Whether `frame` asks for the same picture.
-  bool continues(const Frame& frame) const { return IsSamePicture(this->Picture, frame); }
+  /// Whether `frame` asks for the same picture, and `output` for no more of it.
+  bool continues(const Frame& frame, const PassOutput& output) const
+  {
+    return IsSamePicture(this->Picture, frame) && this->Pixels.isEnoughFor(output);
+  }
 
   /// One round of the complete pass; the bricks that it waits for come out of `requests`. Its work.
   WorkDone advance(const Arena& arena, const std::function<bool()>& keepGoing,
@@ -29,7 +32,7 @@ public:
   /// For what it waits for.
   CompletePass& pass() { return this->Pass; }
   bool done() const { return this->Pass.done(); }
-  void copyTo(const PassOutput& output) const;
+  void copyTo(const PassOutput& output) const { this->Pixels.copyTo(output); }
   const FrameStatistics& statistics() const { return this->Pass.statistics(); }
 
 private:
@@ -39,9 +42,7 @@ private:
   std::optional<Shading> Lighting;
   CachedScene Scene;
   CompletePass Pass;
-  Image Rgba;
-  Image Depth;
-  Image Samples;
+  PictureCopy Pixels;
 };
 
 } // namespace inr

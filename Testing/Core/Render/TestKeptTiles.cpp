@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Pictures that are asked for again while bricks come in: of those, only the tiles that lacked
+// something are marched again.
+#include "Core/Image/Metrics.h"
+#include "Testing/Core/Render/RecordingField.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+constexpr glm::i64vec3 Dims(81, 67, 74);
+
+inr::RendererOptions FewAtATime()
+{
+  inr::RendererOptions options = SmallBricks();
+  options.deterministic = true;
+  options.cache.maximumRequests = 12;
+  return options;
+}
+
+inr::Frame Limited(double levelOfDetailScale = 0, int size = 110)
+{
+  inr::Frame frame = Oblique(glm::dvec3(Dims), size);
+  frame.levelOfDetailScale = levelOfDetailScale;
+  frame.timeLimit = 1;
+  return frame;
+}
+
+/// As a call to a renderer gives it.
+struct Given
+{
+  Given(inr::Renderer& renderer, const inr::Frame& frame)
+      : statistics(renderer.render(frame, this->rgba, &this->depth, {}, &this->samples))
+  {}
+
+  inr::Image rgba;
+  inr::Image depth;
+  inr::Image samples;
+  inr::FrameStatistics statistics;
+};
+
+void ExpectTheSame(const Given& a, const Given& b)
+{
+  EXPECT_EQ(a.rgba.pixels, b.rgba.pixels);
+  EXPECT_EQ(a.depth.pixels, b.depth.pixels);
+  EXPECT_EQ(a.samples.pixels, b.samples.pixels);
+  EXPECT_EQ(a.statistics.rays, b.statistics.rays);
+  EXPECT_EQ(a.statistics.samples, b.statistics.samples);
+  EXPECT_EQ(a.statistics.missed, b.statistics.missed);
+  EXPECT_EQ(a.statistics.hidden, b.statistics.hidden);
+  EXPECT_EQ(a.statistics.levels.finest, b.statistics.levels.finest);
+  EXPECT_EQ(a.statistics.levels.coarsest, b.statistics.levels.coarsest);
+  EXPECT_EQ(a.statistics.complete, b.statistics.complete);
+  EXPECT_TRUE(a.statistics.work.bricks == b.statistics.work.bricks);
+}
+
+/// Until the picture is complete, beside a renderer that forgets it each time as its colours
+/// change. How much of the other's work it took.
+double ShareOfWork(const inr::Frame& frame)
+{
+  RecordedScene scenes[2] = {RecordedScene(FewAtATime(), Waves, Dims),
+                             RecordedScene(FewAtATime(), Waves, Dims)};
+  std::int64_t cells[2] = {0, 0};
+  int frames = 0;
+  for (bool complete = false; !complete && frames < 2000; ++frames) {
+    scenes[1].renderer.setTransferFunction(OpacityRamp(0.1f));
+    scenes[1].renderer.setTransferFunction(Colours());
+    const Given kept(scenes[0].renderer, frame);
+    const Given anew(scenes[1].renderer, frame);
+    ExpectTheSame(kept, anew);
+    cells[0] += kept.statistics.work.cells;
+    cells[1] += anew.statistics.work.cells;
+    complete = kept.statistics.complete;
+  }
+  EXPECT_GT(frames, 10);
+  EXPECT_LT(frames, 2000);
+  return static_cast<double>(cells[0]) / static_cast<double>(cells[1]);
+}
+
+TEST(KeptTiles, AreAsIfAllHadBeenMarchedAgain)
+{
+  for (const double scale : {0.0, 0.9}) {
+    EXPECT_LT(ShareOfWork(Limited(scale)), 0.7);
+  }
+}
+
+TEST(KeptTiles, AreSoInAllModes)
+{
+  inr::Frame lit = Limited(0, 80);
+  lit.shading = inr::Material{};
+  lit.lights = {Headlight()};
+  EXPECT_LT(ShareOfWork(lit), 0.85);
+  inr::Frame layered = Limited(0, 80);
+  AddLayerHalfWay(layered);
+  EXPECT_LT(ShareOfWork(layered), 0.85);
+  inr::Frame integrated = Limited(0, 80);
+  integrated.preIntegration = true;
+  EXPECT_LT(ShareOfWork(integrated), 0.85);
+  inr::Frame largest = Limited(0, 80);
+  largest.blending.mode = inr::BlendMode::MaximumIntensity;
+  EXPECT_LT(ShareOfWork(largest), 0.9);
+  inr::Frame surfaces = Limited(0, 80);
+  surfaces.blending.mode = inr::BlendMode::Isosurface;
+  surfaces.blending.isosurfaces = {0.6, 0.8};
+  EXPECT_LT(ShareOfWork(surfaces), 0.85);
+}
+
+/// Bricks that tiles show which nobody marches must not go for others of the same picture.
+TEST(KeptTiles, KeepTheirBricks)
+{
+  inr::RendererOptions options = FewAtATime();
+  RecordedScene whole(options, Waves, Dims);
+  inr::Frame frame = Limited();
+  frame.timeLimit = 0;
+  whole.render(frame);
+  const std::int64_t bricks = whole.renderer.cachedBricks();
+  // As many, some of coarser levels that stand for them meanwhile, and the tables.
+  options.cache.bytes = (bricks + bricks / 4) * (2 * 9 * 9 * 9 + 200);
+  RecordedScene scene(options, Waves, Dims);
+  int frames = 0;
+  do {
+    scene.render(Limited());
+    ++frames;
+  } while (!scene.statistics.complete && frames < 2000);
+  EXPECT_GT(frames, 10);
+  EXPECT_TRUE(scene.statistics.complete);
+  EXPECT_LT(scene.field->inGrids(), 1.3 * static_cast<double>(whole.field->inGrids()));
+}
+
+/// Whether the cache has room for all of it, or for so little that rays wait.
+TEST(KeptTiles, HaveWhatWasNotAskedForAtFirst)
+{
+  for (const std::int64_t bytes : {64 << 20, 300000}) {
+    inr::RendererOptions options = FewAtATime();
+    options.cache.bytes = bytes;
+    RecordedScene whole(options, Waves, Dims);
+    inr::Frame frame = Limited();
+    frame.timeLimit = 0;
+    const Given truth(whole.renderer, frame);
+    RecordedScene scene(options, Waves, Dims);
+    inr::Image image;
+    for (int k = 0; k < 5; ++k) {
+      EXPECT_FALSE(scene.renderer.render(Limited(), image).complete);
+    }
+    int frames = 0;
+    for (bool complete = false; !complete && frames < 5000; ++frames) {
+      const Given given(scene.renderer, Limited());
+      complete = given.statistics.complete;
+      if (complete) {
+        EXPECT_EQ(given.rgba.pixels, truth.rgba.pixels);
+        EXPECT_EQ(given.depth.pixels, truth.depth.pixels);
+      }
+      for (std::size_t k = 0; frames == 0 && k < given.depth.pixels.size(); ++k) {
+        EXPECT_GT(given.depth.pixels[k], 0.5f);
+        EXPECT_EQ(given.samples.pixels[2 * k] > 0, given.samples.pixels[2 * k + 1] >= 0);
+      }
+    }
+    EXPECT_LT(frames, 5000);
+  }
+}
+
+TEST(KeptTiles, AreLeftWhereTheViewOrTheColoursChange)
+{
+  RecordedScene scene(FewAtATime(), Waves, Dims);
+  inr::Frame other = Limited();
+  other.clipToWorld[0][0] *= 1.1;
+  const inr::TransferFunction functions[] = {Colours(), OpacityRamp(0.2f)};
+  for (int k = 0; k < 40; ++k) { // three calls of each
+    const inr::Frame frame = k / 3 % 2 == 0 ? Limited() : other;
+    scene.renderer.setTransferFunction(functions[k / 6 % 2]);
+    const Given given(scene.renderer, frame);
+    RecordedScene fresh(FewAtATime(), Waves, Dims);
+    fresh.renderer.setTransferFunction(functions[k / 6 % 2]);
+    inr::Frame whole = frame;
+    whole.timeLimit = 0;
+    const Given truth(fresh.renderer, whole);
+    if (given.statistics.complete) {
+      EXPECT_EQ(given.rgba.pixels, truth.rgba.pixels);
+    } else { // the same picture, less sharp
+      EXPECT_GT(inr::ImagePsnr(given.rgba, truth.rgba), 18) << k;
+    }
+  }
+}
+
+} // namespace
