@@ -235,10 +235,10 @@ void CachedRenderer::loadForPass(CompletePass& pass, const RequestRanking& reque
 }
 
 bool CachedRenderer::loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
-                                  const std::function<bool()>& keepGoing)
+                                  const std::function<bool()>& keepGoing, double part)
 {
   if (limit.isTimed()) {
-    this->Store->loadFor(limit.secondsForLoading(), this->partsOf(keys), this->Threads);
+    this->Store->loadFor(limit.secondsForLoading(part), this->partsOf(keys), this->Threads);
     return false;
   }
   return this->Store->load(this->partsOf(keys), this->Threads, keepGoing).full;
@@ -388,8 +388,8 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
       tile.missed = 0;
     }
   }
-  this->loadForPaths(onMiss == OnPathMiss::Approach ? this->inSteps(requests) : requests, limit,
-                     keepGoing);
+  this->loadForPaths(onMiss == OnPathMiss::Approach ? this->inSteps(requests) : requests,
+                     !round.first, limit, keepGoing);
   return traced;
 }
 
@@ -398,13 +398,15 @@ std::int64_t CachedRenderer::room() const
   return this->Store->capacity() - this->Store->cache().usedInFrame();
 }
 
-void CachedRenderer::loadForPaths(const RequestRanking& requests, const WorkLimit& limit,
-                                  const std::function<bool()>& keepGoing)
+void CachedRenderer::loadForPaths(const RequestRanking& requests, bool again,
+                                  const WorkLimit& limit, const std::function<bool()>& keepGoing)
 {
   const std::int64_t room = this->room();
   const bool some = limit.isLimited() || this->Overfull;
   const std::int64_t most = std::min(room, some ? this->Options.maximumRequests : room);
-  this->loadForFrame(requests.ranked(most, this->Options.ranking), limit, keepGoing);
+  // Paths see of new bricks only what they come upon in another round, which takes its time.
+  this->loadForFrame(requests.ranked(most, this->Options.ranking), limit, keepGoing,
+                     again ? 0.5 : 0.25);
   // What does not fit is not worth loading for one path: paths come back to it from everywhere.
   this->Overfull = this->Overfull || requests.count() > room;
 }

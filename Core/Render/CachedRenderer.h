@@ -114,11 +114,13 @@ private:
   void loadForPass(CompletePass& pass, const RequestRanking& requests, std::int64_t most,
                    const std::function<bool()>& keepGoing);
   /// Whether the cache is found to be full.
+  /// `part`: see WorkLimit::secondsForLoading.
   bool loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
-                    const std::function<bool()>& keepGoing);
+                    const std::function<bool()>& keepGoing, double part = 0.25);
   /// Bricks that may come without any of the present frame having to go.
   std::int64_t room() const;
-  void loadForPaths(const RequestRanking& requests, const WorkLimit& limit,
+  /// `again`: others for the same picture.
+  void loadForPaths(const RequestRanking& requests, bool again, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing);
 
   CacheOptions Options;

@@ -35,12 +35,12 @@ public:
   {
     return this->isLimited() && (this->Counted || this->Clock.left() < seconds);
   }
-  /// Where it is timed: what is left, but at least a quarter of the limit and of what the frame has
-  /// taken so far. However long rendering itself takes, a fifth of all the time is for what it
-  /// waits for.
-  double secondsForLoading() const
+  /// Where it is timed: what is left, but at least a part of the limit and of what the frame has
+  /// taken so far. However long rendering itself takes, part/(1 + part) of all the time is for what
+  /// it waits for.
+  double secondsForLoading(double part = 0.25) const
   {
-    return std::max(this->Clock.left(), 0.25 * std::max(this->Seconds, this->Clock.seconds()));
+    return std::max(this->Clock.left(), part * std::max(this->Seconds, this->Clock.seconds()));
   }
 
 private:
