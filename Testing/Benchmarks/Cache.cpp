@@ -75,6 +75,32 @@ void CompareWithUncached(const inr::ModelPointer& model, const Look& look, const
          Target(1.3, "dense grid frame" + where));
 }
 
+/// A still picture in a window, in pieces of a tenth of a second until it is complete, beside one
+/// at once; nothing of either in the cache.
+void InPieces(const inr::ModelPointer& model, const Look& look, const std::string& name)
+{
+  const std::string where = " " + look.name + ", " + name;
+  double seconds[2] = {0, 0};
+  double points[2] = {0, 0};
+  for (const bool inPieces : {false, true}) {
+    inr::Renderer renderer(model, Cached());
+    renderer.setTransferFunction(look.function);
+    inr::Frame frame = View(model->volume);
+    frame.timeLimit = inPieces ? 0.1 : 0;
+    inr::FrameStatistics statistics;
+    do {
+      inr::Image picture;
+      statistics = renderer.render(frame, picture);
+      seconds[inPieces ? 1 : 0] += statistics.seconds;
+      points[inPieces ? 1 : 0] += static_cast<double>(statistics.work.bricks.points);
+    } while (!statistics.complete);
+  }
+  Report("complete in pieces" + where, 1000 * seconds[1], "ms", "lower");
+  Report("in pieces vs at once" + where, seconds[1] / seconds[0], "", "lower",
+         ", \"baseline\": \"first complete frame" + where + "\"");
+  Report("points in pieces vs at once" + where, points[1] / points[0], "", "lower");
+}
+
 /// The camera goes round with a cache of an eighth of what one view wants.
 void SteadyMisses(const inr::ModelPointer& model, const Look& look, const std::string& name)
 {
@@ -252,6 +278,7 @@ int main(int argc, char* argv[])
   if (all || part == "frames") {
     for (const Look& look : looks) {
       CompareWithUncached(model, look, argv[2]);
+      InPieces(model, look, argv[2]);
       SteadyMisses(model, look, argv[2]);
     }
     TransferFunctionChange(model, looks.front());
