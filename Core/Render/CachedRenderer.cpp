@@ -277,13 +277,14 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
     RequestRanking requests;
     FrameStatistics statistics = this->march(scene, tiles, output, keepGoing, requests);
     statistics.complete = requests.empty();
-    const bool fits = !contested && requests.count() <= this->room();
+    const std::int64_t room = this->room();
+    const bool fits = !contested && requests.count() <= room;
     if (!fits) { // should the same be asked for again
       this->Unfinished.emplace(scene, output);
     }
-    this->loadForFrame(
-        this->inSteps(requests).ranked(this->Options.maximumRequests, this->Options.ranking), limit,
-        keepGoing);
+    const std::int64_t most = std::min<std::int64_t>(room, this->Options.maximumRequests);
+    this->loadForFrame(this->inSteps(requests).ranked(most, this->Options.ranking), limit,
+                       keepGoing);
     if (statistics.complete || !fits || limit.endsWithin(statistics.marchSeconds)) {
       if (mayKeep && fits && !statistics.complete) {
         this->Kept = std::make_unique<KeptPicture>(scene.frame, std::move(tiles), output);

@@ -330,4 +330,25 @@ TEST(WorkSpared, AnOrbitInfersNothingTheSecondTimeRound)
   }
 }
 
+TEST(WorkSpared, NoBrickThatHasNoRoom)
+{
+  constexpr std::int64_t bytes = 2 * 9 * 9 * 9; // of a brick
+  for (const inr::Frame& view : Views(Cube)) {
+    inr::RendererOptions options = SmallBricks();
+    options.deterministic = true;
+    options.cache.bytes = 60 * bytes; // of hundreds
+    RecordedScene scene(options, Waves, Cube);
+    std::int64_t came = 0;
+    for (int k = 0; k < 12; ++k) {
+      inr::Frame frame = Around(view, glm::dvec3(Cube), k, 40);
+      frame.timeLimit = 1;
+      const inr::WorkDone work = scene.render(frame);
+      EXPECT_FALSE(scene.statistics.complete);
+      EXPECT_EQ(work.bricks.bytes, bytes * work.bricks.bricks);
+      came += work.bricks.bricks;
+    }
+    EXPECT_GT(came, 30);
+  }
+}
+
 } // namespace
