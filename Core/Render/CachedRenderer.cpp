@@ -268,11 +268,10 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
   // Tiles go on with bricks that come in, not with samples that are chosen anew.
   const bool mayKeep = !contested && scene.settings.cellSampling == nullptr;
   const std::unique_ptr<KeptPicture> kept = std::move(this->Kept);
-  MarchedTiles tiles(scene.frame.width, scene.frame.height);
-  if (kept && mayKeep && kept->isOf(scene.frame, output)) {
-    kept->pixels.copyTo(output);
-    tiles = std::move(kept->tiles);
-  }
+  const bool again = kept && mayKeep && kept->isOf(scene.frame);
+  MarchedTiles tiles = again && kept->has(output)
+                           ? kept->take(output)
+                           : MarchedTiles(scene.frame.width, scene.frame.height);
   while (true) {
     RequestRanking requests;
     FrameStatistics statistics = this->march(scene, tiles, output, keepGoing, requests);
@@ -287,7 +286,8 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
                        keepGoing);
     if (statistics.complete || !fits || limit.endsWithin(statistics.marchSeconds)) {
       if (mayKeep && fits && !statistics.complete) {
-        this->Kept = std::make_unique<KeptPicture>(scene.frame, std::move(tiles), output);
+        this->Kept = again ? std::make_unique<KeptPicture>(scene.frame, std::move(tiles), output)
+                           : std::make_unique<KeptPicture>(scene.frame);
       }
       return statistics;
     }

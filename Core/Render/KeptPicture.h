@@ -5,25 +5,39 @@
 #include "Core/Render/MarchedTiles.h"
 #include "Core/Render/PictureCopy.h"
 
+#include <optional>
 #include <utility>
 
 namespace inr {
 
 /// A picture that lacks bricks, between two calls.
-struct KeptPicture
+class KeptPicture
 {
+public:
+  /// Of which nothing is kept but what was asked for: a view that moves asks for no picture twice.
+  explicit KeptPicture(const Frame& picture) : Picture(picture) {}
+  /// And how far it is.
   KeptPicture(const Frame& picture, MarchedTiles marched, const PassOutput& output)
-      : frame(picture), tiles(std::move(marched)), pixels(output)
+      : Picture(picture), Tiles(std::move(marched)), Pixels(output)
   {}
 
-  bool isOf(const Frame& picture, const PassOutput& output) const
+  bool isOf(const Frame& picture) const { return this->Picture.isOf(picture); }
+  /// Whether there is all that `output` takes.
+  bool has(const PassOutput& output) const
   {
-    return this->frame.isOf(picture) && this->pixels.isEnoughFor(output);
+    return this->Pixels && this->Pixels->isEnoughFor(output);
+  }
+  /// That, once: the pixels to `output`, and the tiles.
+  MarchedTiles take(const PassOutput& output)
+  {
+    this->Pixels->copyTo(output);
+    return std::move(*this->Tiles);
   }
 
-  KeptFrame frame;
-  MarchedTiles tiles;
-  PictureCopy pixels;
+private:
+  KeptFrame Picture;
+  std::optional<MarchedTiles> Tiles;
+  std::optional<PictureCopy> Pixels;
 };
 
 } // namespace inr

@@ -4,47 +4,51 @@
 #include "Core/Image/Image.h"
 #include "Core/Render/CachedPasses.h"
 
+#include <optional>
+
 namespace inr {
 
 /// The pixels of a picture, for a later call that goes on with them.
 class PictureCopy
 {
 public:
-  explicit PictureCopy(const PassOutput& from)
-      : Rgba(from.rgba),
-        Depth(from.depth != nullptr ? *from.depth : Image(from.rgba.width, from.rgba.height, 1)),
-        Samples(from.samples != nullptr ? *from.samples
-                                        : Image(from.rgba.width, from.rgba.height, 2)),
-        HasDepth(from.depth != nullptr), HasSamples(from.samples != nullptr)
-  {}
+  explicit PictureCopy(const PassOutput& from) : Rgba(from.rgba)
+  {
+    if (from.depth != nullptr) {
+      this->Depth = *from.depth;
+    }
+    if (from.samples != nullptr) {
+      this->Samples = *from.samples;
+    }
+  }
 
-  /// Whether `output` takes no more than the picture had.
+  /// Whether `output` takes no more than there is.
   bool isEnoughFor(const PassOutput& output) const
   {
-    return (output.depth == nullptr || this->HasDepth) &&
-           (output.samples == nullptr || this->HasSamples);
+    return (output.depth == nullptr || this->Depth) && (output.samples == nullptr || this->Samples);
   }
-  /// To be written to.
-
-  PassOutput output() { return {this->Rgba, &this->Depth, &this->Samples}; }
-
   void copyTo(const PassOutput& output) const
   {
     output.rgba = this->Rgba;
     if (output.depth != nullptr) {
-      *output.depth = this->Depth;
+      *output.depth = *this->Depth;
     }
     if (output.samples != nullptr) {
-      *output.samples = this->Samples;
+      *output.samples = *this->Samples;
     }
+  }
+
+  /// To be written to.
+  PassOutput output()
+  {
+    return {this->Rgba, this->Depth ? &*this->Depth : nullptr,
+            this->Samples ? &*this->Samples : nullptr};
   }
 
 private:
   Image Rgba;
-  Image Depth;
-  Image Samples;
-  bool HasDepth;
-  bool HasSamples;
+  std::optional<Image> Depth;
+  std::optional<Image> Samples;
 };
 
 } // namespace inr
