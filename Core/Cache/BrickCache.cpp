@@ -85,10 +85,10 @@ std::int64_t BrickCache::usedInFrame() const
   return std::count_if(this->LastUse.data(), this->LastUse.data() + this->mapped(), isUsed);
 }
 
-void BrickCache::touchThoseOf(std::uint64_t frame)
+void BrickCache::touchThoseSince(std::uint64_t frame)
 {
   for (std::int32_t slot = 0; slot < this->mapped(); ++slot) {
-    if (this->lastUse(slot) == frame) {
+    if (this->lastUse(slot) >= frame) {
       this->touch(slot);
     }
   }

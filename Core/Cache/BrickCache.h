@@ -59,8 +59,8 @@ public:
   /// Bricks touched or inserted from here on are not evicted until the next call. `frame`: later
   /// than all before, and 1.
   void beginFrame(std::uint64_t frame) { this->Frame = frame; }
-  /// Touches those last used in an earlier frame. Looks at all slots.
-  void touchThoseOf(std::uint64_t frame);
+  /// Touches those last used in an earlier frame or after it. Looks at all slots.
+  void touchThoseSince(std::uint64_t frame);
   std::uint64_t frame() const { return this->Frame; }
   /// Whether it knows less of a brick than it would with this part.
   bool lacks(const BrickPart& part) const;

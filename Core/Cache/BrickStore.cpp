@@ -77,7 +77,7 @@ std::uint64_t BrickStore::beginFrame(std::optional<std::uint64_t> continued)
   const std::lock_guard<std::mutex> lock(this->Budget->Mutex);
   this->Cache.beginFrame(++this->Budget->Clock);
   if (continued) {
-    this->Cache.touchThoseOf(*continued);
+    this->Cache.touchThoseSince(*continued);
   }
   return this->Cache.frame();
 }

@@ -42,7 +42,7 @@ public:
   std::int64_t capacity() const;
 
   /// A frame of its own, of which nothing is evicted until the next one begins; its place in time.
-  /// What was last used in frame `continued` is used in this one, too.
+  /// What was used in frame `continued` or after it is used in this one, too.
   std::uint64_t beginFrame(std::optional<std::uint64_t> continued = std::nullopt);
   std::uint64_t frame() const { return this->Cache.frame(); }
   /// Whether a brick is lost that was used in that frame or came in for it, or in a later one.

@@ -52,7 +52,7 @@ CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
       ShortestBlock(ShortestBlockOf(scene.format))
 {
   if (scene.settings.looksAtBothEnds()) {
-    this->Probe.emplace(scene, onMiss);
+    this->Probe.emplace(scene, onMiss, this->Absent);
   }
   if (scene.settings.preIntegrated != nullptr) {
     this->Integrals =

@@ -59,6 +59,8 @@ class CachedMarcher
 {
 public:
   CachedMarcher(const CachedScene& scene, OnMiss onMiss);
+  CachedMarcher(const CachedMarcher&) = delete;
+  CachedMarcher& operator=(const CachedMarcher&) = delete;
 
   /// The ray through the centre of pixel (x, y), at its start.
   CachedRay begin(int x, int y);

@@ -109,9 +109,9 @@ const SufficientBricks& CachedRenderer::bricksFor(const Majorants& majorants,
   return *this->Bricks;
 }
 
-RequestRanking CachedRenderer::inSteps(const RequestRanking& requests) const
+RequestRanking CachedRenderer::inSteps(const RequestRanking& requests, std::int64_t room) const
 {
-  if (!this->Options.preloading || requests.count() <= this->room()) {
+  if (!this->Options.preloading || requests.count() <= room) {
     return requests;
   }
   const Hierarchy& hierarchy = this->Store->cache().hierarchy();
@@ -191,6 +191,7 @@ FrameStatistics CachedRenderer::renderFrame(const CachedScene& scene, const Work
 FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const PassOutput& output,
                                                const std::function<bool()>& keepGoing)
 {
+  this->Kept.reset(); // its bricks are no longer those of the latest frame
   CompletePass pass(scene);
   double marching = 0;
   while (true) {
@@ -259,17 +260,22 @@ FrameStatistics CachedRenderer::march(const CachedScene& scene, MarchedTiles& ti
   return statistics;
 }
 
+std::unique_ptr<KeptPicture> CachedRenderer::takeKept(const CachedScene& scene)
+{
+  std::unique_ptr<KeptPicture> kept = std::move(this->Kept);
+  // Tiles go on with bricks that come in, not with samples that are chosen anew.
+  const bool goesOn = kept && kept->isOf(scene.frame) && scene.settings.cellSampling == nullptr;
+  return goesOn ? std::move(kept) : nullptr;
+}
+
 FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const WorkLimit& limit,
                                              const PassOutput& output,
                                              const std::function<bool()>& keepGoing)
 {
+  const std::unique_ptr<KeptPicture> kept = this->takeKept(scene);
   // Whoever takes from this picture what it has will do so again.
   const bool contested = this->Store->hasLostSince(this->Latest);
-  // Tiles go on with bricks that come in, not with samples that are chosen anew.
-  const bool mayKeep = !contested && scene.settings.cellSampling == nullptr;
-  const std::unique_ptr<KeptPicture> kept = std::move(this->Kept);
-  const bool again = kept && mayKeep && kept->isOf(scene.frame);
-  MarchedTiles tiles = again && kept->has(output)
+  MarchedTiles tiles = kept && kept->has(output) && !contested
                            ? kept->take(output)
                            : MarchedTiles(scene.frame.width, scene.frame.height);
   while (true) {
@@ -282,12 +288,12 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
       this->Unfinished.emplace(scene, output);
     }
     const std::int64_t most = std::min<std::int64_t>(room, this->Options.maximumRequests);
-    this->loadForFrame(this->inSteps(requests).ranked(most, this->Options.ranking), limit,
+    this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking), limit,
                        keepGoing);
     if (statistics.complete || !fits || limit.endsWithin(statistics.marchSeconds)) {
-      if (mayKeep && fits && !statistics.complete) {
-        this->Kept = again ? std::make_unique<KeptPicture>(scene.frame, std::move(tiles), output)
-                           : std::make_unique<KeptPicture>(scene.frame);
+      if (fits && !statistics.complete) {
+        this->Kept = kept ? std::make_unique<KeptPicture>(scene.frame, std::move(tiles), output)
+                          : std::make_unique<KeptPicture>(scene.frame);
       }
       return statistics;
     }
@@ -312,8 +318,8 @@ FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const W
       // Nothing goes that is shown, so every place of the picture only gets finer.
       const std::int64_t most =
           limit.isLimited() ? std::min<std::int64_t>(room, this->Options.maximumRequests) : room;
-      full = this->loadForFrame(this->inSteps(requests).ranked(most, this->Options.ranking), limit,
-                                keepGoing);
+      full = this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking),
+                                limit, keepGoing);
     }
     if (statistics.complete || limit.endsWithin(statistics.marchSeconds)) {
       return statistics;
@@ -356,6 +362,7 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
                                        const ColorTable& colors, const WorkLimit& limit,
                                        const std::function<bool()>& keepGoing)
 {
+  this->Kept.reset(); // its bricks are no longer those of the latest frame
   this->LoadsWhole = false;
   const bool hides = majorants.rangesHold() && colors.hidesAny();
   const SufficientBricks& bricks =
@@ -389,14 +396,16 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
       tile.missed = 0;
     }
   }
-  this->loadForPaths(onMiss == OnPathMiss::Approach ? this->inSteps(requests) : requests,
+  this->loadForPaths(onMiss == OnPathMiss::Approach ? this->inSteps(requests, this->room())
+                                                    : requests,
                      !round.first, limit, keepGoing);
   return traced;
 }
 
 std::int64_t CachedRenderer::room() const
 {
-  return this->Store->capacity() - this->Store->cache().usedInFrame();
+  // Below 0 where others have begun to share the memory meanwhile.
+  return std::max<std::int64_t>(this->Store->capacity() - this->Store->cache().usedInFrame(), 0);
 }
 
 void CachedRenderer::loadForPaths(const RequestRanking& requests, bool again,

@@ -95,12 +95,14 @@ private:
                                    bool rangesHold);
   /// `reach`: see VisibleBlocks; nothing: whole bricks.
   const SufficientBricks& bricksFor(const Majorants& majorants, std::optional<int> reach);
-  /// Where what was wished for has no room, level 1, which takes an eighth of it, in place of level
-  /// 0, unless it is there.
-  RequestRanking inSteps(const RequestRanking& requests) const;
+  /// Where there is no room for so many bricks, level 1, which takes an eighth of it, in place of
+  /// level 0, unless it is there.
+  RequestRanking inSteps(const RequestRanking& requests, std::int64_t room) const;
   std::vector<BrickPart> partsOf(const std::vector<BrickKey>& keys) const;
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
                                  const std::function<bool()>& keepGoing);
+  /// What is kept of the same picture, or null.
+  std::unique_ptr<KeptPicture> takeKept(const CachedScene& scene);
   FrameStatistics renderInTime(const CachedScene& scene, const WorkLimit& limit,
                                const PassOutput& output, const std::function<bool()>& keepGoing);
   FrameStatistics renderWhatFits(const CachedScene& scene, const WorkLimit& limit,
@@ -113,8 +115,7 @@ private:
   /// At most so many bricks.
   void loadForPass(CompletePass& pass, const RequestRanking& requests, std::int64_t most,
                    const std::function<bool()>& keepGoing);
-  /// Whether the cache is found to be full.
-  /// `part`: see WorkLimit::secondsForLoading.
+  /// Whether the cache is found to be full. `part`: see WorkLimit::secondsForLoading.
   bool loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing, double part = 0.25);
   /// Bricks that may come without any of the present frame having to go.
@@ -134,7 +135,7 @@ private:
   std::optional<BlockVisibility> Blocks;
   std::optional<SufficientBricks> Bricks; ///< of the latest frame
   bool LoadsWhole = false;                ///< as it will look at more later
-  /// The latest picture, where bricks of it have come in but not all.
+  /// The latest frame, where it lacks bricks that the cache has room for.
   std::unique_ptr<KeptPicture> Kept;
   /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
   std::optional<Refinement> Unfinished;

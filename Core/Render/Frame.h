@@ -148,11 +148,11 @@ struct FrameStatistics
   LevelSpan levels;       ///< of the cache, that samples came from
   /// Whether an accelerator has drawn it, or part of it; else the CPU did, of what that inferred.
   bool accelerated = false;
-  double seconds = 0;      ///< wall time
-  /// Of these, without what was loaded into the cache in between; where only some tiles were
-  /// marched, what all of them had taken before.
+  double seconds = 0; ///< wall time
+  /// Wall time of the rays or paths, without what was loaded into the cache in between. Where only
+  /// some tiles of a picture were marched again, the time that all of them had taken at first.
   double marchSeconds = 0;
-  WorkDone work;           ///< of the call
+  WorkDone work; ///< of the call
 
   /// Which part of the samples is not missed, those that are left out included; 1 of none.
   double hitRate() const

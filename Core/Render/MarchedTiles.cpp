@@ -44,7 +44,9 @@ FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, con
     sum.add(tile.statistics);
     requests.add(tile.missed);
   }
-  this->WholeSeconds = std::max(this->WholeSeconds, timer.seconds());
+  if (!this->begun()) {
+    this->WholeSeconds = timer.seconds();
+  }
   sum.marchSeconds = this->WholeSeconds;
   return sum;
 }

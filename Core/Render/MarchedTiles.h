@@ -38,7 +38,8 @@ private:
     RequestList absent{};
   };
 
-  /// Whether marching it would show something else.
+  /// Whether marching it may show something else than it did. (Not where a coarser brick has come
+  /// in once more, with more blocks: what was wished for in its place will.)
   static bool isDue(const MarchedTile& tile, const SufficientBricks& bricks);
 
   Tiling Tiles;

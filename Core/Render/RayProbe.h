@@ -12,7 +12,8 @@ namespace inr {
 class RayProbe
 {
 public:
-  RayProbe(const CachedScene& scene, OnMiss onMiss);
+  /// `absent`: takes the bricks in whose place a coarser one is read; must outlive the probe.
+  RayProbe(const CachedScene& scene, OnMiss onMiss, RequestList& absent);
 
   /// Another ray is next.
   void leave() { this->Run.close(); }
@@ -31,6 +32,7 @@ private:
 
   const CachedScene& Scene;
   bool Stops;
+  RequestList& Absent;
   BrickRun Run;
   BrickKey Brick = 0;
   SampleBatch Batch{}; ///< of one sample

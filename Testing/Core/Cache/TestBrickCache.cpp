@@ -46,6 +46,30 @@ TEST_F(BrickCacheTest, StaysWithinItsBudget)
   EXPECT_THROW(inr::BrickCache(this->Levels, inr::CachePrecision::Float32, 2000), inr::Error);
 }
 
+TEST_F(BrickCacheTest, TouchesWhatWasUsedSinceAFrame)
+{
+  inr::BrickCache cache(this->Levels, inr::CachePrecision::Float32, bytesFor(15));
+  for (std::uint64_t frame = 2; frame < 7; ++frame) { // 2, 3, ... bricks in each of them
+    cache.beginFrame(frame);
+    for (std::uint64_t k = 0; k < frame; ++k) {
+      this->insert(cache, static_cast<std::int64_t>(10 * frame + k));
+    }
+  }
+  ASSERT_EQ(cache.mapped(), cache.capacity()); // the first ones have gone
+  cache.beginFrame(7);
+  EXPECT_EQ(cache.usedInFrame(), 0);
+  cache.touchThoseSince(5);
+  EXPECT_EQ(cache.usedInFrame(), 5 + 6);
+  for (std::int64_t k = 0; k < cache.capacity() - 11; ++k) { // there is room for no more
+    this->insert(cache, 100 + k);
+  }
+  const std::vector<float> values(8 * 2 * 2);
+  EXPECT_FALSE(cache.insert(key(200), values.data()));
+  for (std::int64_t k = 0; k < 5; ++k) {
+    EXPECT_GE(cache.find(key(50 + k)), 0);
+  }
+}
+
 TEST(BrickCacheMessages, SayHowMuchIsEnough)
 {
   const inr::Hierarchy levels(glm::i64vec3(256), 40);

@@ -106,28 +106,6 @@ TEST(KeptTiles, AreSoInAllModes)
   EXPECT_LT(ShareOfWork(surfaces), 0.85);
 }
 
-/// Bricks that tiles show which nobody marches must not go for others of the same picture.
-TEST(KeptTiles, KeepTheirBricks)
-{
-  inr::RendererOptions options = FewAtATime();
-  RecordedScene whole(options, Waves, Dims);
-  inr::Frame frame = Limited();
-  frame.timeLimit = 0;
-  whole.render(frame);
-  const std::int64_t bricks = whole.renderer.cachedBricks();
-  // As many, some of coarser levels that stand for them meanwhile, and the tables.
-  options.cache.bytes = (bricks + bricks / 4) * (2 * 9 * 9 * 9 + 200);
-  RecordedScene scene(options, Waves, Dims);
-  int frames = 0;
-  do {
-    scene.render(Limited());
-    ++frames;
-  } while (!scene.statistics.complete && frames < 2000);
-  EXPECT_GT(frames, 10);
-  EXPECT_TRUE(scene.statistics.complete);
-  EXPECT_LT(scene.field->inGrids(), 1.3 * static_cast<double>(whole.field->inGrids()));
-}
-
 /// Whether the cache has room for all of it, or for so little that rays wait.
 TEST(KeptTiles, HaveWhatWasNotAskedForAtFirst)
 {

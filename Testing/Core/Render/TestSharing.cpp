@@ -285,6 +285,31 @@ TEST(Sharing, AnotherMayRenderOrGoInTheMiddleOfAPicture)
   EXPECT_EQ(Render(same, View(true)).pixels, Alone(fields[0], View(true)));
 }
 
+/// One that comes in the midst of a picture may leave it less room than it already uses.
+TEST(Sharing, OneThatComesInTheMidstTakesRoom)
+{
+  const Field fields[2] = {Field(1), Field(0.7f)};
+  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+    inr::Renderer renderer = fields[0].renderer(Cache(HalfOfAView));
+    for (int k = 0; k < 20; ++k) {
+      inr::Frame frame = View(false);
+      frame.mode = mode;
+      frame.clipToWorld[0][0] *= 1 + 0.003 * k;
+      frame.timeLimit = 1e-9;
+      std::optional<inr::Renderer> other;
+      const auto come = [&] {
+        if (!other && k > 4) {
+          other.emplace(fields[1].renderer(Cache(HalfOfAView)));
+        }
+        return true;
+      };
+      inr::Image image;
+      renderer.render(frame, image, nullptr, come);
+      EXPECT_EQ(image.width, frame.width);
+    }
+  }
+}
+
 // What ThreadSanitizer is to watch.
 TEST(Sharing, RenderersOnSeveralThreadsHaveTheirPictures)
 {
