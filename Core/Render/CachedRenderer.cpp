@@ -275,7 +275,7 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
   const std::unique_ptr<KeptPicture> kept = this->takeKept(scene);
   // Whoever takes from this picture what it has will do so again.
   const bool contested = this->Store->hasLostSince(this->Latest);
-  MarchedTiles tiles = kept && kept->has(output) && !contested
+  MarchedTiles tiles = kept && kept->has(output)
                            ? kept->take(output)
                            : MarchedTiles(scene.frame.width, scene.frame.height);
   while (true) {

@@ -84,7 +84,9 @@ public:
   std::int64_t majorantBuilds() const;
 
   /// Bytes in use by the caches of all renderers of the process, their tables and queues: at most
-  /// the largest of their CacheOptions::bytes. 0 without a cache or before the first frame.
+  /// the largest of their CacheOptions::bytes. (One that comes while the others draw with all of
+  /// it brings its empty tables, some hundred bytes, until they end.) 0 without a cache or before
+  /// the first frame.
   std::int64_t cacheBytes() const;
   /// Bricks in the cache of this renderer and those that it shares them with, 0 as above.
   std::int64_t cachedBricks() const;

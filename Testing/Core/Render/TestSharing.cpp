@@ -295,7 +295,7 @@ TEST(Sharing, OneThatComesInTheMidstTakesRoom)
       inr::Frame frame = View(false);
       frame.mode = mode;
       frame.clipToWorld[0][0] *= 1 + 0.003 * k;
-      frame.timeLimit = 1e-9;
+      frame.timeLimit = k <= 4 ? 0 : 1e-9;
       std::optional<inr::Renderer> other;
       const auto come = [&] {
         if (!other && k > 4) {
@@ -335,7 +335,8 @@ TEST(Sharing, RenderersOnSeveralThreadsHaveTheirPictures)
   work(2);
   first.join();
   second.join();
-  EXPECT_LE(most, HalfOfAView);
+  constexpr std::int64_t tables = 1000; // of who comes while all of it is in use
+  EXPECT_LE(most, HalfOfAView + tables);
 }
 
 /// Plays the steps of a series: each in a renderer of its own, of which the bricks are kept.
