@@ -59,7 +59,7 @@ public:
   /// Bricks touched or inserted from here on are not evicted until the next call. `frame`: later
   /// than all before, and 1.
   void beginFrame(std::uint64_t frame) { this->Frame = frame; }
-  /// Touches those last used in an earlier frame or after it. Looks at all slots.
+  /// Touches those used in an earlier frame or after that. Looks at all slots.
   void touchThoseSince(std::uint64_t frame);
   std::uint64_t frame() const { return this->Frame; }
   /// Whether it knows less of a brick than it would with this part.

@@ -13,7 +13,7 @@ MarchedTiles::MarchedTiles(int width, int height)
     : Tiles(width, height), Marched(static_cast<std::size_t>(this->Tiles.count()))
 {}
 
-bool MarchedTiles::isDue(const MarchedTile& tile, const SufficientBricks& bricks)
+bool MarchedTiles::isDue(const MarchedTile& tile, const SufficientBricks& bricks) const
 {
   const auto hasCome = [&](const Request& request) {
     return bricks.find(request.key) != PageTable::Unmapped;
@@ -21,7 +21,7 @@ bool MarchedTiles::isDue(const MarchedTile& tile, const SufficientBricks& bricks
   const auto anyHasCome = [&](const RequestList& list) {
     return std::any_of(list.entries().begin(), list.entries().end(), hasCome);
   };
-  return !tile.marched || anyHasCome(tile.missed) || anyHasCome(tile.absent);
+  return !this->begun() || anyHasCome(tile.missed) || anyHasCome(tile.absent);
 }
 
 FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
@@ -31,13 +31,13 @@ FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, con
   const Timer timer;
   ForEachTile(arena, this->Tiles.count(), keepGoing, [&](std::int64_t k) {
     MarchedTile& tile = this->Marched[static_cast<std::size_t>(k)];
-    if (!isDue(tile, scene.bricks)) {
+    if (!this->isDue(tile, scene.bricks)) {
       tile.statistics.work = {};
       return;
     }
     CachedMarcher marcher(scene, onMiss);
     MarchTile(scene, marcher, this->Tiles.tile(k), keepGoing, output);
-    tile = {true, marcher.statistics(), std::move(marcher.requests()), std::move(marcher.absent())};
+    tile = {marcher.statistics(), std::move(marcher.requests()), std::move(marcher.absent())};
   });
   FrameStatistics sum;
   for (const MarchedTile& tile : this->Marched) {

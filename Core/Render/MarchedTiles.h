@@ -32,7 +32,6 @@ public:
 private:
   struct MarchedTile
   {
-    bool marched = false;
     FrameStatistics statistics{};
     RequestList missed{};
     RequestList absent{};
@@ -40,11 +39,11 @@ private:
 
   /// Whether marching it may show something else than it did. (Not where a coarser brick has come
   /// in once more, with more blocks: what was wished for in its place will.)
-  static bool isDue(const MarchedTile& tile, const SufficientBricks& bricks);
+  bool isDue(const MarchedTile& tile, const SufficientBricks& bricks) const;
 
   Tiling Tiles;
   std::vector<MarchedTile> Marched;
-  double WholeSeconds = 0; ///< that marching all tiles took
+  double WholeSeconds = 0; ///< that marching all tiles took; 0 before
 };
 
 } // namespace inr

@@ -66,7 +66,7 @@ TEST(Requests, ForOthersInTheirPlaceAddUp)
   inr::RequestRanking ranking;
   inr::RequestList list;
   list.add(Brick(0, 4), 1.0f);
-  list.add(Brick(0, 7), 2.0f);
+  list.add(Brick(0, 7), 4.0f);
   list.add(Brick(0, 5), 1.5f);
   list.add(Brick(1, 9), 0.5f);
   ranking.add(list);
@@ -75,7 +75,7 @@ TEST(Requests, ForOthersInTheirPlaceAddUp)
   });
   using Keys = std::vector<inr::BrickKey>;
   EXPECT_EQ(halves.count(), 3);
-  EXPECT_EQ(halves.ranked(9, true), (Keys{Brick(1, 2), Brick(1, 3), Brick(1, 9)}));
+  EXPECT_EQ(halves.ranked(9, true), (Keys{Brick(1, 3), Brick(1, 2), Brick(1, 9)}));
   EXPECT_EQ(ranking.count(), 4);
 }
 
