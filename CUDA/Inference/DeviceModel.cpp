@@ -40,17 +40,25 @@ std::int64_t FeatureCountOf(const Model& model)
 const float* FeaturesOf(const Model& model) { return model.parameters.data() + WeightCount(model); }
 
 /// Beside which tables of levels and layers are nothing.
-void RequireRoom(const Model& model, int device, Precision precision)
+void RequireRoom(const Model& model, int device, bool half)
 {
   const auto parameters = static_cast<std::int64_t>(model.parameters.size());
-  const bool half = precision == Precision::Half;
   const auto size = static_cast<std::int64_t>(half ? sizeof(HalfBits) : sizeof(float));
   RequireFree(device, parameters * size, half ? "the model in half precision" : "the model");
 }
 
+/// Whether products of parts of float32 numbers are to be had.
+bool HasWideTiles(const Device& device)
+{
+  constexpr int first = 8; // compute capability 8.0
+  return device.major >= first;
+}
+
 } // namespace
 
-DeviceModel::HalfCopy::HalfCopy(PackedModel&& model, int device, const Stream& stream)
+template <class Numbers>
+DeviceModel::FusedCopy<Numbers>::FusedCopy(PackedModel<Numbers>&& model, int device,
+                                           const Stream& stream)
     : packed(std::move(model)), levels(Uploaded(this->packed.levels, device, stream)),
       features(Uploaded(this->packed.features, device, stream)),
       weights(Uploaded(this->packed.weights, device, stream)),
@@ -75,14 +83,23 @@ DeviceModel::DeviceModel(ModelPointer model, const Device& device, Precision pre
     : Source(std::move(model)), Where(device), Stores(std::make_unique<DeviceStores>())
 {
   const CurrentDevice current(device.ordinal);
-  RequireRoom(*this->Source, device.ordinal, precision);
+  const bool half = precision == Precision::Half;
+  RequireRoom(*this->Source, device.ordinal, half);
   const Stream stream(device.ordinal);
-  if (precision == Precision::Half) {
-    this->Half.emplace(PackedModel(*this->Source), device.ordinal, stream);
-  } else {
-    RequireValid(*this->Source);
-    this->Float.emplace(*this->Source, device.ordinal, stream);
+  if (half) {
+    this->Half.emplace(PackedModel<HalfNumbers>(*this->Source), device.ordinal, stream);
+    return;
   }
+  if (precision == Precision::Float32 && HasWideTiles(device) &&
+      WhyNotFused(*this->Source).empty()) {
+    PackedModel<FloatNumbers> packed(*this->Source);
+    if (FitsShared(packed, device.sharedPerBlock)) {
+      this->Wide.emplace(std::move(packed), device.ordinal, stream);
+      return;
+    }
+  }
+  RequireValid(*this->Source);
+  this->Plain.emplace(*this->Source, device.ordinal, stream);
 }
 
 DeviceModel::~DeviceModel() = default;
@@ -90,30 +107,34 @@ DeviceModel::~DeviceModel() = default;
 LaunchPlan DeviceModel::plan(bool bricks) const
 {
   const CurrentDevice current(this->Where.ordinal);
-  return this->Half ? this->planHalf(bricks) : this->planFloat(bricks);
+  if (this->Plain) {
+    return this->planPlain(bricks);
+  }
+  return this->Half ? this->planFused(*this->Half, bricks) : this->planFused(*this->Wide, bricks);
 }
 
-LaunchPlan DeviceModel::planHalf(bool bricks) const
+template <class Numbers>
+LaunchPlan DeviceModel::planFused(const FusedCopy<Numbers>& copy, bool bricks) const
 {
   // Two blocks per multiprocessor at least, where that does: one computes while the other waits.
   // The system takes 1 KiB of each.
   const std::int64_t roomy =
       std::min(this->Where.sharedPerBlock, this->Where.sharedPerMultiprocessor / 2 - (1 << 10));
   LaunchPlan plan{};
-  plan.shared = PlanShared(this->Half->packed, bricks, roomy, this->Where.sharedPerBlock);
+  plan.shared = PlanShared(copy.packed, bricks, roomy, this->Where.sharedPerBlock);
   plan.sharedBytes = plan.shared.latticeEnd;
-  WithTiles(this->Half->packed.neuronTiles, [&](auto tiles) {
+  WithTiles(copy.packed.neuronTiles, [&](auto tiles) {
     constexpr int count = decltype(tiles)::value;
-    plan.blocks = bricks ? PrepareKernel<FusedBricks<count>>(plan.sharedBytes)
-                         : PrepareKernel<FusedPoints<count>>(plan.sharedBytes);
+    plan.blocks = bricks ? PrepareKernel<FusedBricks<count, Numbers>>(plan.sharedBytes)
+                         : PrepareKernel<FusedPoints<count, Numbers>>(plan.sharedBytes);
   });
   return plan;
 }
 
-LaunchPlan DeviceModel::planFloat(bool bricks) const
+LaunchPlan DeviceModel::planPlain(bool bricks) const
 {
   LaunchPlan plan{};
-  const std::int64_t perBlock = ThreadsPerBlock * ScratchPerThread(this->Float->view);
+  const std::int64_t perBlock = ThreadsPerBlock * ScratchPerThread(this->Plain->view);
   plan.blocks = std::clamp<std::int64_t>(MostScratch / perBlock, 1,
                                          bricks ? PrepareKernel<FloatBricks>(0)
                                                 : PrepareKernel<FloatPoints>(0));
@@ -121,72 +142,84 @@ LaunchPlan DeviceModel::planFloat(bool bricks) const
   return plan;
 }
 
+template <class Numbers>
+void DeviceModel::beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& plan,
+                             const PointRun& run, std::int64_t blocks, const Stream& stream) const
+{
+  WithTiles(copy.packed.neuronTiles, [&](auto tiles) {
+    const FusedPoints<decltype(tiles)::value, Numbers> kernel{copy.view, plan.shared, run.positions,
+                                                              run.count, run.values,  run.end};
+    LaunchKernel(kernel, blocks, plan.sharedBytes, stream.get());
+  });
+}
+
+template <class Numbers>
+void DeviceModel::beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& plan,
+                             const BrickRun& run, std::int64_t blocks, const Stream& stream) const
+{
+  WithTiles(copy.packed.neuronTiles, [&](auto tiles) {
+    const FusedBricks<decltype(tiles)::value, Numbers> kernel{
+        copy.view, plan.shared, run.jobs, run.count, run.items, run.values, run.end};
+    LaunchKernel(kernel, blocks, plan.sharedBytes, stream.get());
+  });
+}
+
+void DeviceModel::begin(const LaunchPlan& plan, const PointRun& run, std::int64_t blocks,
+                        float* scratch, const Stream& stream) const
+{
+  const CurrentDevice current(this->Where.ordinal);
+  if (this->Plain) {
+    const FloatPoints kernel{this->Plain->view, run.positions, run.count,
+                             run.values,        scratch,       run.end};
+    LaunchKernel(kernel, blocks, 0, stream.get());
+  } else if (this->Half) {
+    this->beginFused(*this->Half, plan, run, blocks, stream);
+  } else {
+    this->beginFused(*this->Wide, plan, run, blocks, stream);
+  }
+}
+
+void DeviceModel::begin(const LaunchPlan& plan, const BrickRun& run, std::int64_t blocks,
+                        float* scratch, const Stream& stream) const
+{
+  const CurrentDevice current(this->Where.ordinal);
+  if (this->Plain) {
+    const FloatBricks kernel{this->Plain->view, run.jobs, run.count, run.values, scratch, run.end};
+    LaunchKernel(kernel, plan.blocks, 0, stream.get());
+  } else if (this->Half) {
+    this->beginFused(*this->Half, plan, run, blocks, stream);
+  } else {
+    this->beginFused(*this->Wide, plan, run, blocks, stream);
+  }
+}
+
 void DeviceModel::inferPoints(const LaunchPlan& plan, const float* positions, std::int64_t count,
                               float* values, float* scratch, const Stream& stream) const
 {
-  const CurrentDevice current(this->Where.ordinal);
   const std::int64_t blocks =
       std::min(plan.blocks, (count + ThreadsPerBlock - 1) / ThreadsPerBlock);
-  if (this->Float) {
-    const FloatPoints kernel{this->Float->view, positions, count, values, scratch};
-    LaunchKernel(kernel, blocks, 0, stream.get());
-    return;
-  }
-  WithTiles(this->Half->packed.neuronTiles, [&](auto tiles) {
-    const FusedPoints<decltype(tiles)::value> kernel{this->Half->view, plan.shared, positions,
-                                                     count, values};
-    LaunchKernel(kernel, blocks, plan.sharedBytes, stream.get());
-  });
+  this->begin(plan, PointRun{positions, count, nullptr, values}, blocks, scratch, stream);
 }
 
 void DeviceModel::inferPoints(const LaunchPlan& plan, const float* positions,
                               const std::uint64_t* end, float* values, float* scratch,
                               const Stream& stream) const
 {
-  const CurrentDevice current(this->Where.ordinal);
-  if (this->Float) {
-    const FloatPoints kernel{this->Float->view, positions, 0, values, scratch, end};
-    LaunchKernel(kernel, plan.blocks, 0, stream.get());
-    return;
-  }
-  WithTiles(this->Half->packed.neuronTiles, [&](auto tiles) {
-    const FusedPoints<decltype(tiles)::value> kernel{this->Half->view, plan.shared, positions, 0,
-                                                     values,           end};
-    LaunchKernel(kernel, plan.blocks, plan.sharedBytes, stream.get());
-  });
+  this->begin(plan, PointRun{positions, 0, end, values}, plan.blocks, scratch, stream);
 }
 
 void DeviceModel::inferBricks(const LaunchPlan& plan, const BrickJob* jobs, std::int64_t count,
                               std::int64_t items, float* values, float* scratch,
                               const Stream& stream) const
 {
-  const CurrentDevice current(this->Where.ordinal);
-  if (this->Float) {
-    const FloatBricks kernel{this->Float->view, jobs, count, values, scratch};
-    LaunchKernel(kernel, plan.blocks, 0, stream.get());
-    return;
-  }
-  WithTiles(this->Half->packed.neuronTiles, [&](auto tiles) {
-    const FusedBricks<decltype(tiles)::value> kernel{
-        this->Half->view, plan.shared, jobs, count, items, values};
-    LaunchKernel(kernel, std::min(plan.blocks, items), plan.sharedBytes, stream.get());
-  });
+  this->begin(plan, BrickRun{jobs, count, items, nullptr, values}, std::min(plan.blocks, items),
+              scratch, stream);
 }
 
 void DeviceModel::inferBricks(const LaunchPlan& plan, const BrickJob* jobs, const BrickEnd* end,
                               float* values, float* scratch, const Stream& stream) const
 {
-  const CurrentDevice current(this->Where.ordinal);
-  if (this->Float) {
-    const FloatBricks kernel{this->Float->view, jobs, 0, values, scratch, end};
-    LaunchKernel(kernel, plan.blocks, 0, stream.get());
-    return;
-  }
-  WithTiles(this->Half->packed.neuronTiles, [&](auto tiles) {
-    const FusedBricks<decltype(tiles)::value> kernel{this->Half->view, plan.shared, jobs, 0, 0,
-                                                     values,           end};
-    LaunchKernel(kernel, plan.blocks, plan.sharedBytes, stream.get());
-  });
+  this->begin(plan, BrickRun{jobs, 0, 0, end, values}, plan.blocks, scratch, stream);
 }
 
 std::shared_ptr<const DeviceModel> UploadModel(ModelPointer model, const Device& device,

@@ -7,6 +7,7 @@
 #include "CUDA/Inference/PackedModel.h"
 
 #include <optional>
+#include <string>
 
 namespace inr {
 namespace cuda {
@@ -33,8 +34,10 @@ public:
 
   const ModelPointer& source() const { return this->Source; }
   const Device& device() const { return this->Where; }
-  Precision precision() const { return this->Half ? Precision::Half : Precision::Float32; }
-  const char* name() const { return this->Half ? "cuda half" : "cuda float32"; }
+  const char* name() const
+  {
+    return this->Half ? "cuda half" : (this->Wide ? "cuda float32" : "cuda plain float32");
+  }
 
   /// For the kernel at points, or the one at bricks.
   LaunchPlan plan(bool bricks) const;
@@ -53,16 +56,33 @@ public:
                    float* scratch, const Stream& stream) const;
 
 private:
-  struct HalfCopy
+  /// What is to be inferred, and where to.
+  struct PointRun
+  {
+    const float* positions;
+    std::int64_t count;
+    const std::uint64_t* end; ///< where not null, of so many instead
+    float* values;
+  };
+  struct BrickRun
+  {
+    const BrickJob* jobs;
+    std::int64_t count;
+    std::int64_t items;
+    const BrickEnd* end; ///< where not null, of so many instead
+    float* values;
+  };
+
+  template <class Numbers> struct FusedCopy
   {
     /// `stream` has copied everything when `packed` loses its tables.
-    HalfCopy(PackedModel&& model, int device, const Stream& stream);
+    FusedCopy(PackedModel<Numbers>&& model, int device, const Stream& stream);
 
-    PackedModel packed; ///< its features are on the device only
+    PackedModel<Numbers> packed; ///< its features are on the device only
     Array<LevelView> levels;
-    Array<HalfBits> features;
-    Array<WeightShare> weights;
-    FusedModel view;
+    Array<typename Numbers::Feature> features;
+    Array<typename Numbers::Weight> weights;
+    FusedModel<Numbers> view;
   };
   struct FloatCopy
   {
@@ -76,13 +96,24 @@ private:
     FloatModel view;
   };
 
-  LaunchPlan planHalf(bool bricks) const;
-  LaunchPlan planFloat(bool bricks) const;
+  template <class Numbers> LaunchPlan planFused(const FusedCopy<Numbers>& copy, bool bricks) const;
+  LaunchPlan planPlain(bool bricks) const;
+  void begin(const LaunchPlan& plan, const PointRun& run, std::int64_t blocks, float* scratch,
+             const Stream& stream) const;
+  void begin(const LaunchPlan& plan, const BrickRun& run, std::int64_t blocks, float* scratch,
+             const Stream& stream) const;
+  template <class Numbers>
+  void beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& plan, const PointRun& run,
+                  std::int64_t blocks, const Stream& stream) const;
+  template <class Numbers>
+  void beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& plan, const BrickRun& run,
+                  std::int64_t blocks, const Stream& stream) const;
 
   ModelPointer Source;
   Device Where;
-  std::optional<HalfCopy> Half; ///< one of the two
-  std::optional<FloatCopy> Float;
+  std::optional<FusedCopy<HalfNumbers>> Half; ///< one of the three
+  std::optional<FusedCopy<FloatNumbers>> Wide;
+  std::optional<FloatCopy> Plain;
   std::unique_ptr<DeviceStores> Stores;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/Inference/PackedModel.h"
 
-#include "CUDA/Inference/Kernels/LatticeShare.h"
+#include "CUDA/Inference/Kernels/BrickInputs.h"
 #include "Core/Error.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace cuda {
 
 namespace {
 
-constexpr std::int64_t LatticeBytes = 24 << 10; // of what neighbouring samples share
+constexpr std::int64_t LatticeBytes = 40 << 10; // of what neighbouring samples share
 
 int TilesFor(int width) { return (width + TileSize - 1) / TileSize; }
 
@@ -46,28 +46,66 @@ private:
   const float* Weights;
 };
 
-WeightShare ShareOf(const PaddedLayer& layer, int inputTile, int outputTile, int lane)
+/// A lane's share of a tile of weights: of their first part, or of what that leaves out.
+void SetShare(const PaddedLayer& layer, int row, int column, int lane, bool /*second*/,
+              WeightShare& share)
 {
-  WeightShare share{};
   for (int r = 0; r < 4; ++r) {
-    const int row = outputTile * TileSize + RowOf(lane) + 8 * (r / 2);
-    const int column = inputTile * TileSize + ColumnOf(lane) + 8 * (r % 2);
-    share.pairs[r] = PackHalves(layer.at(row, column), layer.at(row, column + 1));
+    const int output = row + RowOf(lane) + 8 * (r / 2);
+    const int input = column + ColumnOf(lane) + 8 * (r % 2);
+    share.pairs[r] = PackHalves(layer.at(output, input), layer.at(output, input + 1));
   }
-  return share;
+}
+void SetShare(const PaddedLayer& layer, int row, int column, int lane, bool second,
+              WideWeightShare& share)
+{
+  for (int v = 0; v < 8; ++v) {
+    const float weight = layer.at(row + RowOf(lane) + 8 * (v / 4),
+                                  column + ColumnOf(lane) + v % 2 + 8 * (v / 2 % 2));
+    const float first = ToElevenBits(weight);
+    share.values[v] = second ? ToElevenBits(weight - first) : first;
+  }
 }
 
-void AppendLayer(const PaddedLayer& layer, int inputTiles, int outputTiles,
-                 std::vector<WeightShare>& weights)
+template <class Weight>
+void AppendLayer(const PaddedLayer& layer, int inputTiles, int outputTiles, bool second,
+                 std::vector<Weight>& weights)
 {
   for (int input = 0; input < inputTiles; ++input) {
     for (int output = 0; output < outputTiles; ++output) {
       for (int lane = 0; lane < WarpSize; ++lane) {
-        weights.push_back(ShareOf(layer, input, output, lane));
+        SetShare(layer, output * TileSize, input * TileSize, lane, second, weights.emplace_back());
       }
     }
   }
 }
+
+/// Whether some weight has more than 11 bits.
+bool HasMoreThanElevenBits(const float* weights, std::size_t count)
+{
+  return std::any_of(weights, weights + count, [](float w) { return ToElevenBits(w) != w; });
+}
+
+std::vector<HalfBits> FeaturesAs(const HalfBits& /*kind*/, const float* from, const float* end)
+{
+  std::vector<HalfBits> features;
+  features.reserve(static_cast<std::size_t>(end - from));
+  std::transform(from, end, std::back_inserter(features), ToHalf);
+  return features;
+}
+std::vector<float> FeaturesAs(float /*kind*/, const float* from, const float* end)
+{
+  return {from, end};
+}
+
+/// Of an operand that fits.
+std::string WhyNot(const HalfNumbers& /*numbers*/, const Model& model) { return WhyNotHalf(model); }
+std::string WhyNot(const FloatNumbers& /*numbers*/, const Model& model)
+{
+  return WhyNotFused(model);
+}
+const char* NameOf(const HalfNumbers& /*numbers*/) { return "in half precision"; }
+const char* NameOf(const FloatNumbers& /*numbers*/) { return "by tensor cores"; }
 
 } // namespace
 
@@ -88,13 +126,17 @@ void RequireValid(const Model& model)
   }
 }
 
-std::string WhyNotHalf(const Model& model)
+std::string WhyNotFused(const Model& model)
 {
   const NetworkDescription& network = model.description.network;
-  if (network.hiddenLayers > 0 && network.neurons > MostFusedNeurons) {
-    return "its layers have " + std::to_string(network.neurons) + " neurons, more than " +
-           std::to_string(MostFusedNeurons);
-  }
+  return network.hiddenLayers > 0 && network.neurons > MostFusedNeurons
+             ? "its layers have " + std::to_string(network.neurons) + " neurons, more than " +
+                   std::to_string(MostFusedNeurons)
+             : "";
+}
+
+std::string WhyNotHalf(const Model& model)
+{
   const auto large =
       std::find_if(model.parameters.begin(), model.parameters.end(),
                    [](float parameter) { return !(std::abs(parameter) <= LargestHalf); });
@@ -102,10 +144,11 @@ std::string WhyNotHalf(const Model& model)
     return "its parameter " + std::to_string(large - model.parameters.begin()) + " is " +
            std::to_string(*large) + ", beyond +-65504";
   }
-  return "";
+  return WhyNotFused(model);
 }
 
-PackedModel::PackedModel(const Model& model)
+template <class Numbers>
+PackedModel<Numbers>::PackedModel(const Model& model)
     : Features(model.description.grid.features),
       Interpolation(model.description.grid.interpolation),
       HiddenLayers(model.description.network.hiddenLayers),
@@ -113,57 +156,100 @@ PackedModel::PackedModel(const Model& model)
       Output(model.description.network.outputActivation)
 {
   RequireValid(model);
-  const std::string reason = WhyNotHalf(model);
+  const std::string reason = WhyNot(Numbers(), model);
   if (!reason.empty()) {
     throw Error(ErrorCode::Unsupported,
-                "the model cannot be evaluated in half precision: " + reason);
+                std::string("the model cannot be evaluated ") + NameOf(Numbers()) + ": " + reason);
   }
   const Layout layout(model.description);
-  const ModelViewStorage views(model.description, layout, model.parameters.data());
+  const float* const parameters = model.parameters.data();
+  const ModelViewStorage views(model.description, layout, parameters);
   this->levels.assign(views.view().levels, views.view().levels + views.view().levelCount);
-  this->features.reserve(model.parameters.size() - layout.gridOffset);
-  std::transform(model.parameters.begin() + static_cast<std::ptrdiff_t>(layout.gridOffset),
-                 model.parameters.end(), std::back_inserter(this->features), ToHalf);
+  this->features =
+      FeaturesAs(Feature(), parameters + layout.gridOffset, parameters + model.parameters.size());
   this->inputTiles = TilesFor(layout.encodedWidth);
   this->neuronTiles = this->HiddenLayers > 0 ? NeuronTiles(model.description.network) : 1;
+  this->hasSecond = Numbers::HasSecondWeights &&
+                    HasMoreThanElevenBits(parameters, static_cast<std::size_t>(layout.gridOffset));
   int inputs = this->inputTiles;
   for (const LayerShape& shape : layout.layers) {
     const bool last = &shape == &layout.layers.back();
     const int outputs = last ? 1 : this->neuronTiles;
-    const PaddedLayer layer(shape, last ? 1 : shape.rows, model.parameters.data());
-    AppendLayer(layer, inputs, outputs, this->weights);
+    const PaddedLayer layer(shape, last ? 1 : shape.rows, parameters);
+    for (int part = 0; part < (this->hasSecond ? 2 : 1); ++part) {
+      AppendLayer(layer, inputs, outputs, part == 1, this->weights);
+    }
     inputs = outputs;
   }
 }
 
-FusedModel PackedModel::view(const LevelView* levelViews, const HalfBits* table,
-                             const WeightShare* shares) const
+template <class Numbers>
+FusedModel<Numbers> PackedModel<Numbers>::view(const LevelView* levelViews, const Feature* table,
+                                               const Weight* shares) const
 {
   const auto count = static_cast<int>(this->levels.size());
   return {{levelViews, count, this->Features, this->Interpolation, table},
-          {shares, static_cast<std::int64_t>(this->weights.size()), this->inputTiles,
-           this->HiddenLayers, this->Hidden, this->Output}};
+          {shares, static_cast<std::int64_t>(this->weights.size()), this->hasSecond,
+           this->inputTiles, this->HiddenLayers, this->Hidden, this->Output}};
 }
 
-FusedShared PlanShared(const PackedModel& model, bool bricks, std::int64_t roomy, std::int64_t most)
+template struct PackedModel<HalfNumbers>;
+template struct PackedModel<FloatNumbers>;
+
+namespace {
+
+/// Bytes of a block's shared memory that cannot be left out.
+struct SharedParts
 {
-  const auto whole = [](std::int64_t bytes) { return (bytes + 15) / 16 * 16; };
-  const std::int64_t weights =
-      static_cast<std::int64_t>(model.weights.size() * sizeof(WeightShare));
-  const std::int64_t rows =
-      std::int64_t{ThreadsPerBlock} * RowStride(model.inputTiles) * sizeof(HalfBits);
-  const std::int64_t results = sizeof(float) * (bricks ? SamplesPerItem : ThreadsPerBlock);
-  const auto levels = static_cast<std::int64_t>(bricks ? model.levels.size() : 0);
-  const std::int64_t cells = whole(levels * static_cast<std::int64_t>(sizeof(LevelCells)));
-  const std::int64_t plans = whole(levels * static_cast<std::int64_t>(sizeof(LatticePlan)));
-  const std::int64_t least = rows + results + cells + plans;
-  if (least > most) {
-    throw Error(ErrorCode::Unsupported, "the model cannot be evaluated in half precision: its " +
-                                            std::to_string(model.levels.size()) +
-                                            " grid levels take " + std::to_string(least) +
-                                            " bytes of a block's shared memory, which has " +
-                                            std::to_string(most));
+  std::int64_t rows;
+  std::int64_t results;
+  std::int64_t cells;
+  std::int64_t plans;
+
+  template <class Numbers>
+  SharedParts(const PackedModel<Numbers>& model, bool bricks)
+      : rows(bricks ? 0
+                    : std::int64_t{ThreadsPerBlock} * RowStride(model.inputTiles) *
+                          static_cast<std::int64_t>(sizeof(typename Numbers::Staged))),
+        results(sizeof(float) * (bricks ? SamplesPerItem : ThreadsPerBlock)),
+        cells(bricks ? Whole(model.levels.size() * sizeof(LevelCells)) : 0),
+        plans(bricks ? Whole(model.levels.size() * sizeof(LatticePlan)) : 0)
+  {}
+
+  std::int64_t all() const { return this->rows + this->results + this->cells + this->plans; }
+
+private:
+  static std::int64_t Whole(std::size_t bytes)
+  {
+    return static_cast<std::int64_t>((bytes + 15) / 16 * 16);
   }
+};
+
+} // namespace
+
+template <class Numbers> bool FitsShared(const PackedModel<Numbers>& model, std::int64_t most)
+{
+  return SharedParts(model, false).all() <= most && SharedParts(model, true).all() <= most;
+}
+
+template bool FitsShared(const PackedModel<HalfNumbers>&, std::int64_t);
+template bool FitsShared(const PackedModel<FloatNumbers>&, std::int64_t);
+
+template <class Numbers>
+FusedShared PlanShared(const PackedModel<Numbers>& model, bool bricks, std::int64_t roomy,
+                       std::int64_t most)
+{
+  const SharedParts parts(model, bricks);
+  const std::int64_t least = parts.all();
+  if (least > most) {
+    throw Error(ErrorCode::Unsupported,
+                std::string("the model cannot be evaluated ") + NameOf(Numbers()) + ": its " +
+                    std::to_string(model.levels.size()) + " grid levels take " +
+                    std::to_string(least) + " bytes of a block's shared memory, which has " +
+                    std::to_string(most));
+  }
+  const auto weights =
+      static_cast<std::int64_t>(model.weights.size() * sizeof(typename Numbers::Weight));
   const std::int64_t lattice =
       bricks ? std::clamp<std::int64_t>((roomy - least) / 16 * 16, 0, LatticeBytes) : 0;
   FusedShared shared{};
@@ -173,14 +259,17 @@ FusedShared PlanShared(const PackedModel& model, bool bricks, std::int64_t roomy
     end += bytes;
     return static_cast<std::int32_t>(end - bytes);
   };
-  shared.rows = place(rows);
-  shared.results = place(results);
-  shared.cells = place(cells);
-  shared.plans = place(plans);
+  shared.rows = place(parts.rows);
+  shared.results = place(parts.results);
+  shared.cells = place(parts.cells);
+  shared.plans = place(parts.plans);
   shared.lattice = place(lattice);
   shared.latticeEnd = place(0);
   return shared;
 }
+
+template FusedShared PlanShared(const PackedModel<HalfNumbers>&, bool, std::int64_t, std::int64_t);
+template FusedShared PlanShared(const PackedModel<FloatNumbers>&, bool, std::int64_t, std::int64_t);
 
 FloatTables::FloatTables(const Model& model, const float* weights, const float* features)
 {

@@ -15,28 +15,36 @@ namespace cuda {
 /// the description or a parameter is NaN or infinite.
 void RequireValid(const Model& model);
 
-/// Why a model cannot be evaluated in half precision, or nothing: layers of more than
-/// MostFusedNeurons, or a parameter beyond +-65504.
+/// Why a fused kernel cannot evaluate a model, or nothing: layers of more than MostFusedNeurons.
+std::string WhyNotFused(const Model& model);
+
+/// Why a model cannot be evaluated in half precision, or nothing: that, or a parameter beyond
+/// +-65504.
 std::string WhyNotHalf(const Model& model);
 
-/// A model as the fused kernel wants it, in the host's memory. Parameters are rounded to halves:
-/// without loss where the file stored them so; what is below 2^-25 becomes zero.
-struct PackedModel
+/// A model as the fused kernels want it, in the host's memory. As HalfNumbers, parameters are
+/// rounded to halves: without loss where the file stored them so; what is below 2^-25 becomes zero.
+/// As FloatNumbers, weights lose 2^-22 of themselves at most.
+template <class Numbers> struct PackedModel
 {
-  /// Throws what RequireValid throws, and Error(Unsupported) with WhyNotHalf.
+  using Feature = typename Numbers::Feature;
+  using Weight = typename Numbers::Weight;
+
+  /// Throws what RequireValid throws, and Error(Unsupported) with WhyNotHalf, or WhyNotFused.
   explicit PackedModel(const Model& model);
 
   /// Its view; the tables may lie elsewhere.
-  FusedModel view(const LevelView* levels, const HalfBits* features,
-                  const WeightShare* weights) const;
-  FusedModel view() const
+  FusedModel<Numbers> view(const LevelView* levels, const Feature* features,
+                           const Weight* weights) const;
+  FusedModel<Numbers> view() const
   {
     return this->view(this->levels.data(), this->features.data(), this->weights.data());
   }
 
   std::vector<LevelView> levels;
-  std::vector<HalfBits> features;
-  std::vector<WeightShare> weights; ///< see FusedNetwork
+  std::vector<Feature> features;
+  std::vector<Weight> weights; ///< see FusedNetwork
+  bool hasSecond;              ///< the same
   int inputTiles;
   int neuronTiles; ///< of a hidden layer: 1, 2, 4 or 8
 
@@ -48,10 +56,18 @@ private:
   Activation Output;
 };
 
+extern template struct PackedModel<HalfNumbers>;
+extern template struct PackedModel<FloatNumbers>;
+
+/// Whether the fused kernels have enough shared memory where a block has `most` bytes of it: for
+/// models of very many levels there is none.
+template <class Numbers> bool FitsShared(const PackedModel<Numbers>& model, std::int64_t most);
+
 /// Where a fused kernel has what in shared memory. Fills up to `roomy` bytes where that does; what
 /// cannot be left out may take up to `most`. Throws Error(Unsupported) where even that is too
-/// little: models with very many features per sample.
-FusedShared PlanShared(const PackedModel& model, bool bricks, std::int64_t roomy,
+/// little.
+template <class Numbers>
+FusedShared PlanShared(const PackedModel<Numbers>& model, bool bricks, std::int64_t roomy,
                        std::int64_t most);
 
 /// Calls `function(FeatureCount<T>())` for the T that is `tiles`: 1, 2, 4 or 8.

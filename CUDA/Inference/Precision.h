@@ -6,8 +6,9 @@ namespace cuda {
 
 /// What a GPU computes with.
 enum class Precision {
-  Half,   ///< parameters and layers' results are halves, sums are floats: tensor cores, fused
-  Float32 ///< everything float32: any model, slower
+  Half,    ///< parameters and layers' results are halves, sums are floats
+  Float32, ///< everything is float32; in parts by tensor cores where model and GPU allow that
+  Plain    ///< the same without tensor cores: for any model and any GPU, slower
 };
 
 } // namespace cuda

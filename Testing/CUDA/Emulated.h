@@ -49,16 +49,24 @@ public:
   EmulatedModel(inr::ModelPointer model, inr::cuda::Precision precision, HostLaunch launch)
       : Source(std::move(model)), Launch(launch)
   {
-    if (precision == inr::cuda::Precision::Half) {
-      this->Half = std::make_unique<inr::cuda::PackedModel>(*this->Source);
+    using inr::cuda::Precision;
+    if (precision == Precision::Half) {
+      this->Half = std::make_unique<HalfModel>(*this->Source);
       return;
+    }
+    if (precision == Precision::Float32 && inr::cuda::WhyNotFused(*this->Source).empty()) {
+      auto wide = std::make_unique<WideModel>(*this->Source);
+      if (inr::cuda::FitsShared(*wide, MostShared)) {
+        this->Wide = std::move(wide);
+        return;
+      }
     }
     inr::cuda::RequireValid(*this->Source);
     const inr::Layout layout(this->Source->description);
     const inr::AlignedVector<float>& parameters = this->Source->parameters;
     this->Features.assign(parameters.begin() + static_cast<std::ptrdiff_t>(layout.gridOffset),
                           parameters.end());
-    this->Float = std::make_unique<inr::cuda::FloatTables>(*this->Source, parameters.data(),
+    this->Plain = std::make_unique<inr::cuda::FloatTables>(*this->Source, parameters.data(),
                                                            this->Features.data());
   }
 
@@ -86,62 +94,82 @@ public:
   }
 
 private:
+  static constexpr std::int64_t MostShared = 227 << 10; ///< of a block
+
+  using HalfModel = inr::cuda::PackedModel<inr::cuda::HalfNumbers>;
+  using WideModel = inr::cuda::PackedModel<inr::cuda::FloatNumbers>;
+
   void inferPoints(const float* positions, std::int64_t count, const std::uint64_t* end,
                    float* values) const
   {
-    if (this->Float) {
+    if (this->Plain) {
       std::vector<float> scratch = this->scratch();
-      const inr::cuda::FloatPoints kernel{this->floatView(), positions, count, values,
+      const inr::cuda::FloatPoints kernel{this->plainView(), positions, count, values,
                                           scratch.data(),    end};
       this->Launch.run(kernel, 0);
       return;
     }
-    const inr::cuda::FusedShared shared = this->plan(false);
-    inr::cuda::WithTiles(this->Half->neuronTiles, [&](auto tiles) {
-      const inr::cuda::FusedPoints<decltype(tiles)::value> kernel{
-          this->Half->view(), shared, positions, count, values, end};
-      this->Launch.run(kernel, shared.latticeEnd);
+    this->withFused([&](const auto& model, auto numbers) {
+      const inr::cuda::FusedShared shared = this->plan(model, false);
+      inr::cuda::WithTiles(model.neuronTiles, [&](auto tiles) {
+        const inr::cuda::FusedPoints<decltype(tiles)::value, decltype(numbers)> kernel{
+            model.view(), shared, positions, count, values, end};
+        this->Launch.run(kernel, shared.latticeEnd);
+      });
     });
   }
 
   void inferBricks(const inr::cuda::BrickJob* jobs, std::int64_t count, std::int64_t items,
                    const inr::cuda::BrickEnd* end, float* values) const
   {
-    if (this->Float) {
+    if (this->Plain) {
       std::vector<float> scratch = this->scratch();
-      const inr::cuda::FloatBricks kernel{this->floatView(), jobs, count, values,
+      const inr::cuda::FloatBricks kernel{this->plainView(), jobs, count, values,
                                           scratch.data(),    end};
       this->Launch.run(kernel, 0);
       return;
     }
-    const inr::cuda::FusedShared shared = this->plan(true);
-    inr::cuda::WithTiles(this->Half->neuronTiles, [&](auto tiles) {
-      const inr::cuda::FusedBricks<decltype(tiles)::value> kernel{
-          this->Half->view(), shared, jobs, count, items, values, end};
-      this->Launch.run(kernel, shared.latticeEnd);
+    this->withFused([&](const auto& model, auto numbers) {
+      const inr::cuda::FusedShared shared = this->plan(model, true);
+      inr::cuda::WithTiles(model.neuronTiles, [&](auto tiles) {
+        const inr::cuda::FusedBricks<decltype(tiles)::value, decltype(numbers)> kernel{
+            model.view(), shared, jobs, count, items, values, end};
+        this->Launch.run(kernel, shared.latticeEnd);
+      });
     });
   }
 
-  inr::cuda::FusedShared plan(bool bricks) const
+  /// Calls function(model, numbers) with the packed one.
+  template <class Function> void withFused(const Function& function) const
   {
-    return inr::cuda::PlanShared(*this->Half, bricks, this->Launch.shared, 227 << 10);
+    if (this->Half) {
+      function(*this->Half, inr::cuda::HalfNumbers());
+    } else {
+      function(*this->Wide, inr::cuda::FloatNumbers());
+    }
   }
-  inr::cuda::FloatModel floatView() const
+
+  template <class Packed> inr::cuda::FusedShared plan(const Packed& model, bool bricks) const
   {
-    return this->Float->view(this->Float->levels.data(), this->Float->layers.data());
+    return inr::cuda::PlanShared(model, bricks, this->Launch.shared, MostShared);
+  }
+  inr::cuda::FloatModel plainView() const
+  {
+    return this->Plain->view(this->Plain->levels.data(), this->Plain->layers.data());
   }
   std::vector<float> scratch() const
   {
     const std::int64_t threads = std::int64_t{this->Launch.blocks} * inr::cuda::ThreadsPerBlock;
     return std::vector<float>(
-        static_cast<std::size_t>(threads * inr::cuda::ScratchPerThread(this->floatView())));
+        static_cast<std::size_t>(threads * inr::cuda::ScratchPerThread(this->plainView())));
   }
 
   inr::ModelPointer Source;
   HostLaunch Launch;
-  std::unique_ptr<inr::cuda::PackedModel> Half; ///< one of the two
+  std::unique_ptr<HalfModel> Half; ///< one of the three
+  std::unique_ptr<WideModel> Wide;
   std::vector<float> Features;
-  std::unique_ptr<inr::cuda::FloatTables> Float;
+  std::unique_ptr<inr::cuda::FloatTables> Plain;
 };
 
 class EmulatedEvaluator : public inr::Evaluator

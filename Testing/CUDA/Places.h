@@ -52,7 +52,9 @@ struct Setting
 
 inline std::ostream& operator<<(std::ostream& stream, const Setting& setting)
 {
-  return stream << TextOf(setting.place) << (setting.half() ? "Half" : "Float32");
+  const bool plain = setting.precision == inr::cuda::Precision::Plain;
+  return stream << TextOf(setting.place)
+                << (setting.half() ? "Half" : (plain ? "Plain" : "Float32"));
 }
 
 inline std::string NameOf(const testing::TestParamInfo<Setting>& info)
@@ -63,10 +65,9 @@ inline std::string NameOf(const testing::TestParamInfo<Setting>& info)
 inline std::vector<Setting> AllSettings()
 {
   using inr::cuda::Precision;
-  return {{Place::Host, Precision::Half},
-          {Place::Host, Precision::Float32},
-          {Place::Gpu, Precision::Half},
-          {Place::Gpu, Precision::Float32}};
+  return {{Place::Host, Precision::Half},   {Place::Host, Precision::Float32},
+          {Place::Host, Precision::Plain},  {Place::Gpu, Precision::Half},
+          {Place::Gpu, Precision::Float32}, {Place::Gpu, Precision::Plain}};
 }
 
 /// The same in every precision.

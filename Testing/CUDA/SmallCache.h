@@ -4,6 +4,7 @@
 #pragma once
 
 #include "CUDA/Cache/CacheLayout.h"
+#include "CUDA/Inference/PackedModel.h"
 #include "Testing/CUDA/DrawingScene.h"
 
 #include <algorithm>
@@ -28,14 +29,24 @@ inline std::int64_t BytesFor(std::int64_t bricks, std::int64_t inference)
   }
 }
 
+/// What a single block of threads infers in, where that is not registers.
+inline std::int64_t BytesToInferIn(const inr::cuda::Device& device)
+{
+  const inr::cuda::FloatTables tables(*TrainedModel(), nullptr, nullptr);
+  const std::int64_t perThread =
+      device.major < 8 ? inr::cuda::ScratchPerThread(tables.view(nullptr, nullptr)) : 0;
+  return inr::cuda::ThreadsPerBlock * static_cast<std::int64_t>(sizeof(float)) * perThread;
+}
+
 /// With a cache for so many on the device; 0: for all.
 inline inr::RendererOptions RoomFor(Place place, std::int64_t bricks, HostLaunch launch = {})
 {
   inr::RendererOptions options = OptionsWith(DeviceIn(place));
   options.cache.brickSize = SmallBrick;
   if (bricks > 0 && place == Place::Gpu) { // where inferring takes something, and the CPU's is no
-    const std::int64_t oneBlock = 128 * 2 * 64 * 4; // smaller: threads, sides, neurons, bytes
-    options.cache.bytes = BytesFor(std::max<std::int64_t>(bricks, 32), oneBlock);
+                                           // smaller
+    options.cache.bytes =
+        BytesFor(std::max<std::int64_t>(bricks, 32), BytesToInferIn(inr::cuda::ChooseDevice()));
   } else if (bricks > 0) {
     options.accelerator = std::make_shared<EmulatedAccelerator>(
         inr::cuda::Precision::Float32, Duty::InfersAndDraws, launch, BytesFor(bricks, 0));

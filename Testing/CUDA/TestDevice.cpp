@@ -2,7 +2,7 @@
 //
 // What is said of GPUs and of models that they cannot have.
 #include "CUDA/Engine.h"
-#include "CUDA/Inference/Kernels/LatticeShare.h"
+#include "CUDA/Inference/Kernels/BrickInputs.h"
 #include "CUDA/Inference/PackedModel.h"
 #include "Core/Error.h"
 #include "Testing/Core/RandomModel.h"
@@ -81,7 +81,9 @@ TEST(HalfPrecision, IsRefusedForWhatItCannotHold)
   inr::Description wide = SmallDescription();
   wide.network.neurons = 129;
   EXPECT_NE(WhyNotHalf(*RandomModel(wide)).find("129 neurons"), std::string::npos);
-  EXPECT_NE(Refusal(inr::ErrorCode::Unsupported, [&] { PackedModel{*RandomModel(wide)}; }), "");
+  EXPECT_NE(
+      Refusal(inr::ErrorCode::Unsupported, [&] { PackedModel<HalfNumbers>{*RandomModel(wide)}; }),
+      "");
   wide.network.hiddenLayers = 0; // and so none of them
   EXPECT_EQ(WhyNotHalf(*RandomModel(wide)), "");
 }
@@ -89,16 +91,16 @@ TEST(HalfPrecision, IsRefusedForWhatItCannotHold)
 /// Parts follow each other, aligned, and end where the plan says.
 TEST(SharedMemory, IsSharedOutWithinItsLimits)
 {
-  const PackedModel model(*RandomModel(SmallDescription()));
+  const PackedModel<HalfNumbers> model(*RandomModel(SmallDescription()));
   const auto weights = static_cast<std::int32_t>(model.weights.size() * sizeof(WeightShare));
   for (const bool bricks : {false, true}) {
     for (const std::int64_t roomy : {4 << 10, 16 << 10, 28 << 10, 48 << 10, 100 << 10}) {
       const FusedShared plan = PlanShared(model, bricks, roomy, 100 << 10);
       EXPECT_EQ(plan.rows, plan.keepsWeights ? weights : 0);
-      EXPECT_EQ(plan.results, plan.rows + 128 * 24 * 2);
+      EXPECT_EQ(plan.results, plan.rows + (bricks ? 0 : 128 * 24 * 2));
       EXPECT_EQ(plan.cells, plan.results + 4 * (bricks ? 512 : 128));
       EXPECT_GE(plan.plans, plan.cells + (bricks ? 4 * 3 * 8 * 8 : 0));
-      EXPECT_GE(plan.lattice, plan.plans + (bricks ? 4 * 28 : 0));
+      EXPECT_GE(plan.lattice, plan.plans + (bricks ? 4 * 20 : 0));
       EXPECT_EQ(plan.lattice % 16, 0);
       EXPECT_GE(plan.latticeEnd, plan.lattice);
       EXPECT_TRUE(plan.latticeEnd <= roomy || !plan.keepsWeights);
@@ -108,7 +110,38 @@ TEST(SharedMemory, IsSharedOutWithinItsLimits)
   }
   EXPECT_EQ(PlanShared(model, true, 100 << 10, 100 << 10).latticeEnd -
                 PlanShared(model, true, 100 << 10, 100 << 10).lattice,
-            24 << 10);
+            40 << 10);
+}
+
+/// Weights that are halves are whole in their first parts; others are, but for 2^-22, in two.
+TEST(WideWeights, AreTheSumOfTheirParts)
+{
+  for (const bool halves : {true, false}) {
+    auto model = RandomModel(SmallDescription());
+    for (float& parameter : model->parameters) {
+      parameter = halves ? ToFloat(ToHalf(parameter)) : parameter;
+    }
+    const PackedModel<FloatNumbers> packed(*model);
+    EXPECT_EQ(packed.hasSecond, !halves);
+    const inr::Layout layout(model->description);
+    const inr::LayerShape& shape = layout.layers[0]; // 16 x 16: its tile comes first
+    ASSERT_EQ(packed.inputTiles * packed.neuronTiles, 1);
+    for (int lane = 0; lane < WarpSize; ++lane) {
+      for (int v = 0; v < 8; ++v) {
+        const int row = lane / 4 + 8 * (v / 4);
+        const int column = lane % 4 * 2 + v % 2 + 8 * (v / 2 % 2);
+        const float weight = model->parameters[shape.offset + row * shape.columns + column];
+        float sum = packed.weights[lane].values[v];
+        EXPECT_EQ(CutToElevenBits(sum), sum);
+        if (!halves) {
+          const float second = packed.weights[WarpSize + lane].values[v];
+          EXPECT_EQ(CutToElevenBits(second), second);
+          sum += second;
+        }
+        EXPECT_NEAR(sum, weight, halves ? 0.0f : std::abs(weight) * 0x1p-22f);
+      }
+    }
+  }
 }
 
 TEST(SharedMemory, IsNotEnoughForAnyNumberOfLevels)
@@ -117,9 +150,11 @@ TEST(SharedMemory, IsNotEnoughForAnyNumberOfLevels)
   description.grid.levels = 64;
   description.grid.features = 8;
   description.grid.perLevelScale = 1.1f;
-  const PackedModel model(*RandomModel(description));
+  const PackedModel<HalfNumbers> model(*RandomModel(description));
   const std::string refusal =
-      Refusal(inr::ErrorCode::Unsupported, [&] { PlanShared(model, true, 48 << 10, 64 << 10); });
+      Refusal(inr::ErrorCode::Unsupported, [&] { PlanShared(model, false, 48 << 10, 64 << 10); });
+  EXPECT_FALSE(FitsShared(model, 64 << 10));
+  EXPECT_TRUE(FitsShared(model, 227 << 10));
   EXPECT_NE(refusal.find("64 grid levels"), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("65536"), std::string::npos) << refusal;
 }
@@ -131,7 +166,7 @@ TEST(Lattice, OfFarCellsIsNotKept)
   for (auto& axis : cells.axes) {
     axis[ItemSize - 1].cell = (1u << 30) - 2;
   }
-  EXPECT_GT(LatticePoints(cells), MostLatticePoints);
+  EXPECT_GT(RowsOf(cells), MostLatticeRows);
   EXPECT_LT(PlanLattice(&cells, 0, std::int64_t{1} << 40).first, 0);
 }
 

@@ -115,8 +115,8 @@ TEST(Tiles, ResultsBecomeInputs)
           Small(4, group + (v % 4 >= 2 ? 8 : 0), 2 * thread + (v & 1) + (v >= 4 ? 8 : 0));
     }
   }
-  KeptInputs<1, 1, HostWarp> kept;
-  kept.take(warp, inr::Activation::None, sums);
+  KeptInputs<HalfNumbers, 1, 1, HostWarp> kept(warp);
+  kept.take(inr::Activation::None, sums);
   kept.forEachTile(1, [&](int, const auto& ofHalf) {
     for (int lane = 0; lane < WarpSize; ++lane) {
       const InputShare expected = InputsOf(4, lane);

@@ -15,7 +15,7 @@
 // same source runs in both places, and tests run it where there is no GPU.
 #pragma once
 
-#include "CUDA/Device/Kernels/Tiles.h"
+#include "CUDA/Device/Kernels/WideTiles.h"
 
 #include <cstddef>
 
@@ -56,8 +56,30 @@ public:
                   [&](int lane) -> const WeightShare& { return weights[lane]; },
                   [&](int lane) -> SumShare& { return sums[lane]; });
   }
+  /// The same of float32 numbers; see WideTiles.h.
+  static void multiplyAdd(const PerLane<WideInputShare>& inputs,
+                          const PerLane<WideWeightShare>& weights, PerLane<SumShare>& sums)
+  {
+    multiplyWide(inputs, weights, sums, BothParts);
+  }
+  /// Of the inputs' first parts only.
+  static void multiplyAddFirst(const PerLane<WideInputShare>& inputs,
+                               const PerLane<WideWeightShare>& weights, PerLane<SumShare>& sums)
+  {
+    multiplyWide(inputs, weights, sums, FirstPart);
+  }
 
 private:
+  template <class ValueOf>
+  static void multiplyWide(const PerLane<WideInputShare>& inputs,
+                           const PerLane<WideWeightShare>& weights, PerLane<SumShare>& sums,
+                           const ValueOf& valueOf)
+  {
+    MultiplyWideTiles([&](int lane) -> const WideInputShare& { return inputs[lane]; },
+                      [&](int lane) -> const WideWeightShare& { return weights[lane]; },
+                      [&](int lane) -> SumShare& { return sums[lane]; }, valueOf);
+  }
+
   int Index;
   bool Backward;
 };
@@ -147,6 +169,19 @@ public:
                                           PerLane<SumShare>& sums)
   {
     MultiplyShares(inputs[0], weights[0], sums[0]);
+  }
+  INR_HOST_DEVICE static void multiplyAdd(const PerLane<WideInputShare>& inputs,
+                                          const PerLane<WideWeightShare>& weights,
+                                          PerLane<SumShare>& sums)
+  {
+    MultiplyWideShares(inputs[0].second, weights[0], sums[0]);
+    MultiplyWideShares(inputs[0].first, weights[0], sums[0]);
+  }
+  INR_HOST_DEVICE static void multiplyAddFirst(const PerLane<WideInputShare>& inputs,
+                                               const PerLane<WideWeightShare>& weights,
+                                               PerLane<SumShare>& sums)
+  {
+    MultiplyWideShares(inputs[0].first, weights[0], sums[0]);
   }
 };
 

@@ -97,6 +97,25 @@ INR_HOST_DEVICE inline std::uint32_t PackHalves(float low, float high)
 #endif
 }
 
+/// The same of numbers of which what is below zero becomes zero.
+INR_HOST_DEVICE inline std::uint32_t PackRectified(float low, float high)
+{
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+  const __half2 pair = __floats2half2_rn(low, high);
+  const __half2 rectified = __hfma2_relu(pair, __float2half2_rn(0.0f), pair);
+  std::uint32_t word;
+  memcpy(&word, &rectified, sizeof(word));
+  return word;
+#else
+  const std::uint32_t pair = PackHalves(low, high);
+  const auto rectified = [](std::uint32_t half) {
+    const bool isNaN = (half & 0x7fffu) > 0x7c00u;
+    return (half & 0x8000u) != 0 && !isNaN ? 0u : half;
+  };
+  return rectified(pair & 0xffffu) | rectified(pair >> 16) << 16;
+#endif
+}
+
 INR_HOST_DEVICE inline float LowHalf(std::uint32_t pair)
 {
   return ToFloat(static_cast<HalfBits>(pair & 0xffffu));

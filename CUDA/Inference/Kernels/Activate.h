@@ -9,6 +9,9 @@
 namespace inr {
 namespace cuda {
 
+/// NaN where a number is infinite: so that an overflow cannot hide behind an activation.
+INR_HOST_DEVICE inline float Sticky(float value) { return fmaf(value, 0.0f, value); }
+
 /// The activations that cost more than an instruction. Not inlined on the device: 64 copies of nine
 /// functions would be most of a kernel.
 #ifdef __CUDACC__
@@ -38,19 +41,48 @@ __noinline__
   }
 }
 
-/// A NaN stays one.
-INR_HOST_DEVICE inline float Activate(Activation activation, float x)
+/// Activations as functions, of which loops are made that do not choose again for each number. A
+/// NaN stays one.
+struct Unchanged
+{
+  INR_HOST_DEVICE float operator()(float x) const { return x; }
+};
+struct Rectified
+{
+  INR_HOST_DEVICE float operator()(float x) const { return x < 0.0f ? 0.0f : x; }
+};
+struct LeakilyRectified
+{
+  INR_HOST_DEVICE float operator()(float x) const { return x < 0.0f ? 0.01f * x : x; }
+};
+struct SlowlyActivated
+{
+  Activation activation;
+
+  INR_HOST_DEVICE float operator()(float x) const { return ActivateSlowly(this->activation, x); }
+};
+
+/// Calls function(activate) with one of these.
+template <class Function>
+INR_HOST_DEVICE inline void WithActivation(Activation activation, const Function& function)
 {
   switch (activation) {
   case Activation::None:
-    return x;
+    return function(Unchanged());
   case Activation::ReLU:
-    return x < 0.0f ? 0.0f : x;
+    return function(Rectified());
   case Activation::LeakyReLU:
-    return x < 0.0f ? 0.01f * x : x;
+    return function(LeakilyRectified());
   default:
-    return ActivateSlowly(activation, x);
+    return function(SlowlyActivated{activation});
   }
+}
+
+INR_HOST_DEVICE inline float Activate(Activation activation, float x)
+{
+  float result = 0.0f;
+  WithActivation(activation, [&](const auto& activate) { result = activate(x); });
+  return result;
 }
 
 /// Whether the slope can be told from the result, so that nobody has to keep what it came from.

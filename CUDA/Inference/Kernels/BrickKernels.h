@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Voxels of bricks, many bricks in one launch: fused in half precision, and in float32.
+// Voxels of bricks, many bricks in one launch: fused, and by a thread each.
 #pragma once
 
-#include "CUDA/Inference/Kernels/LatticeShare.h"
+#include "CUDA/Inference/Kernels/BrickInputs.h"
 #include "CUDA/Inference/Kernels/PointKernels.h"
 
 namespace inr {
@@ -11,16 +11,16 @@ namespace cuda {
 
 /// A block works on one cube of samples after another. Values are the same, to the last bit, as
 /// FusedPoints gives at the same positions.
-template <int Tiles> struct FusedBricks
+template <int Tiles, class Numbers> struct FusedBricks
 {
-  static constexpr int Threads = ThreadsPerBlock;
+  static constexpr int Threads = 256;
 
-  FusedModel model;
+  FusedModel<Numbers> model;
   FusedShared shared;
   const BrickJob* jobs;
   std::int64_t jobCount;
   std::int64_t items;            ///< of all jobs
-  float* values;                 ///< normalised; NaN where a number left the range of halves
+  float* values;                 ///< normalised; NaN where a number left the range of `Numbers`
   const BrickEnd* end = nullptr; ///< where not null, of so many jobs and items instead
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
@@ -30,17 +30,13 @@ template <int Tiles> struct FusedBricks
     if (block.index() >= items) {
       return;
     }
-    const FusedNetwork network =
-        ShareWeights(block, this->model.network, this->shared.keepsWeights);
+    const FusedNetwork<Numbers> network =
+        ShareWeights(block, Threads, this->model.network, this->shared.keepsWeights);
     for (std::int64_t k = block.index(); k < items; k += block.count()) {
       const BrickItem item = FindItem(this->jobs, jobs, k);
       this->locate(block, item);
-      this->fetch(block);
-      block.warps([&](auto& warp) {
-        for (int batch = warp.index(); batch < SamplesPerItem / WarpSize; batch += WarpsPerBlock) {
-          this->infer(block.shared(), warp, network, batch * WarpSize);
-        }
-      });
+      this->findRows(block);
+      block.warps([&](auto& warp) { this->infer(block.shared(), warp, network); });
       this->write(block, item);
     }
   }
@@ -49,7 +45,7 @@ private:
   /// Cells of all samples' coordinates, and from them what of the lattice is kept. Two phases.
   template <class Block> INR_HOST_DEVICE void locate(Block& block, const BrickItem& item) const
   {
-    const GridView<HalfBits>& grid = this->model.grid;
+    const auto& grid = this->model.grid;
     LevelCells* const cells = this->cells(block.shared());
     block.threads([&](int thread) {
       constexpr int coordinates = 3 * ItemSize;
@@ -63,57 +59,42 @@ private:
     });
     LatticePlan* const plans = this->plans(block.shared());
     const int bytes = this->shared.latticeEnd - this->shared.lattice;
-    const int bytesPerPoint = grid.features * static_cast<int>(sizeof(HalfBits));
+    const int bytesPerRow = RowPlace(1, 0, grid.features) * static_cast<int>(sizeof(float));
     block.threads([&](int thread) {
       for (int l = thread; l < grid.levelCount; l += Threads) {
-        plans[l] = PlanLattice(cells, l, bytes / bytesPerPoint);
+        plans[l] = PlanLattice(cells, l, bytes / bytesPerRow);
       }
     });
   }
 
-  /// The part of the lattice that is kept. A phase.
-  template <class Block> INR_HOST_DEVICE void fetch(Block& block) const
+  /// A phase.
+  template <class Block> INR_HOST_DEVICE void findRows(Block& block) const
   {
-    const GridView<HalfBits>& grid = this->model.grid;
-    const LatticePlan* const plans = this->plans(block.shared());
     block.threads([&](int thread) {
-      WithFeatures(grid.features, [&](auto features) {
-        constexpr int count = decltype(features)::value;
-        for (int l = 0; l < grid.levelCount; ++l) {
-          FetchLattice<count>(grid, l, plans[l], this->template lattice<count>(block.shared()),
-                              thread, Threads);
-        }
+      WithFeatures(this->model.grid.features, [&](auto features) {
+        FindRows<decltype(features)::value>(this->model.grid, this->cells(block.shared()),
+                                            this->plans(block.shared()),
+                                            this->lattice(block.shared()), thread, Threads);
       });
     });
   }
 
-  /// 32 samples, from number `first` of the item on.
+  /// A warp's share of the item's samples.
   template <class Warp>
-  INR_HOST_DEVICE void infer(unsigned char* memory, Warp& warp, const FusedNetwork& network,
-                             int first) const
+  INR_HOST_DEVICE void infer(unsigned char* memory, Warp& warp,
+                             const FusedNetwork<Numbers>& network) const
   {
-    const int stride = RowStride(network.inputTiles);
-    HalfBits* const rows =
-        reinterpret_cast<HalfBits*>(memory + this->shared.rows) + warp.index() * WarpSize * stride;
-    warp.exchange([&](int lane) {
-      const int k = first + lane;
-      const int sample[3] = {k % ItemSize, k / ItemSize % ItemSize, k / (ItemSize * ItemSize)};
-      this->encode(memory, sample, rows + lane * stride);
-    });
-    RunNetwork<Tiles>(warp, network, rows, stride, this->results(memory) + first);
-  }
-
-  INR_HOST_DEVICE void encode(unsigned char* memory, const int (&sample)[3], HalfBits* row) const
-  {
-    const GridView<HalfBits>& grid = this->model.grid;
-    WithFeatures(grid.features, [&](auto features) {
-      constexpr int count = decltype(features)::value;
-      const auto encodeLevel = [&](int l, float(&sums)[count]) {
-        InterpolateShared<count>(grid, l, this->cells(memory)[l], this->plans(memory)[l],
-                                 this->template lattice<count>(memory), sample, sums);
-      };
-      EncodeRow<count>(grid.levelCount, encodeLevel, row);
-    });
+    constexpr int halves = Numbers::halves(Tiles);
+    constexpr int layer = ItemSize * ItemSize;
+    const ItemGrid<Numbers> item{this->model.grid, this->cells(memory), this->plans(memory),
+                                 this->lattice(memory)};
+    for (int tile = halves * warp.index(); tile < SamplesPerItem / TileSize;
+         tile += halves * (Threads / WarpSize)) {
+      const int first = tile * TileSize;
+      const BrickInputs<Numbers, halves, Warp> inputs(warp, item, first % layer / ItemSize,
+                                                      first / layer);
+      RunNetwork<Numbers, Tiles, halves>(warp, network, inputs, this->results(memory) + first);
+    }
   }
 
   /// The item's voxels. A phase.
@@ -159,10 +140,9 @@ private:
   {
     return reinterpret_cast<LatticePlan*>(memory + this->shared.plans);
   }
-  template <int Features>
-  INR_HOST_DEVICE Entry<HalfBits, Features>* lattice(unsigned char* memory) const
+  INR_HOST_DEVICE float* lattice(unsigned char* memory) const
   {
-    return reinterpret_cast<Entry<HalfBits, Features>*>(memory + this->shared.lattice);
+    return reinterpret_cast<float*>(memory + this->shared.lattice);
   }
   INR_HOST_DEVICE float* results(unsigned char* memory) const ///< of all the item's samples
   {
@@ -170,7 +150,7 @@ private:
   }
 };
 
-/// The same in float32, by the voxel.
+/// The same in float32 without tensor cores, by the voxel.
 struct FloatBricks
 {
   static constexpr int Threads = ThreadsPerBlock;

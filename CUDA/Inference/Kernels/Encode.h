@@ -4,6 +4,7 @@
 // Core's kernels.
 #pragma once
 
+#include "CUDA/Device/Kernels/Mix.h"
 #include "CUDA/Device/Kernels/Tiles.h"
 #include "Core/Inference/ModelView.h"
 #include "Core/Model/GridIndex.h"
@@ -124,10 +125,11 @@ struct CellWeights
   }
 };
 
-/// Interpolated features; entryOf(c) is corner c's entry, bit 0 of c for x.
+/// Interpolated features; entryOf(c) is corner c's entry, bit 0 of c for x. Along x, then z, then
+/// y: kernels of bricks share what they find along the first ones, and come to the same bits.
 template <int Features, class Number, class EntryOfCorner>
 INR_HOST_DEVICE inline void Interpolate(const CellWeights& weights, const EntryOfCorner& entryOf,
-                                        float (&sums)[Features])
+                                        float (&features)[Features])
 {
   Entry<Number, Features> entries[8]; // all of them on their way before the first is used
   INR_UNROLL
@@ -136,15 +138,14 @@ INR_HOST_DEVICE inline void Interpolate(const CellWeights& weights, const EntryO
   }
   INR_UNROLL
   for (int f = 0; f < Features; ++f) {
-    sums[f] = 0.0f;
-  }
-  INR_UNROLL
-  for (int corner = 0; corner < 8; ++corner) {
-    const float weight = weights.ofCorner(corner);
+    float rows[2]; // of y
     INR_UNROLL
-    for (int f = 0; f < Features; ++f) {
-      sums[f] = fmaf(weight, entries[corner][f], sums[f]);
+    for (int y = 0; y < 2; ++y) {
+      const float front = Mix(entries[2 * y][f], entries[2 * y + 1][f], weights.x);
+      const float back = Mix(entries[2 * y + 4][f], entries[2 * y + 5][f], weights.x);
+      rows[y] = Mix(front, back, weights.z);
     }
+    features[f] = Mix(rows[0], rows[1], weights.y);
   }
 }
 
@@ -180,9 +181,19 @@ INR_HOST_DEVICE inline void InterpolateAt(const GridView<Number>& grid, const Le
                   LocateOnAxis(level.scale, grid.interpolation, point.z), sums);
 }
 
-/// Writes features as halves; `to` is aligned to as many bytes.
+/// Writes features to `to`, aligned to as many bytes as they are, up to 16.
 template <int Features>
-INR_HOST_DEVICE inline void StoreHalves(const float (&values)[Features], HalfBits* to)
+INR_HOST_DEVICE inline void Store(const float (&values)[Features], float* to)
+{
+  Entry<float, Features> entry;
+  INR_UNROLL
+  for (int f = 0; f < Features; ++f) {
+    entry.features[f] = values[f];
+  }
+  *reinterpret_cast<Entry<float, Features>*>(to) = entry;
+}
+template <int Features>
+INR_HOST_DEVICE inline void Store(const float (&values)[Features], HalfBits* to)
 {
   if constexpr (Features == 1) {
     *to = static_cast<HalfBits>(PackHalves(values[0], 0.0f));
@@ -216,17 +227,17 @@ INR_HOST_DEVICE inline void WithFeatures(int features, const Function& function)
   }
 }
 
-/// A row of halves for the network: features of all levels, and zeros up to a whole tile.
-/// `encodeLevel(l, sums)` gives those of level l.
-template <int Features, class EncodeLevel>
-INR_HOST_DEVICE inline void EncodeRow(int levelCount, const EncodeLevel& encodeLevel, HalfBits* row)
+/// A row for the network: features of all levels, and zeros up to a whole tile. `encodeLevel(l,
+/// features)` gives those of level l.
+template <int Features, class Staged, class EncodeLevel>
+INR_HOST_DEVICE inline void EncodeRow(int levelCount, const EncodeLevel& encodeLevel, Staged* row)
 {
   for (int l = 0; l < levelCount; ++l) {
-    float sums[Features];
-    encodeLevel(l, sums);
-    StoreHalves(sums, row + l * Features);
+    float features[Features];
+    encodeLevel(l, features);
+    Store(features, row + l * Features);
   }
-  for (int column = levelCount * Features; column % 16 != 0; ++column) {
+  for (int column = levelCount * Features; column % TileSize != 0; ++column) {
     row[column] = 0;
   }
 }

@@ -49,9 +49,6 @@ private:
   float* Memory;
 };
 
-/// NaN where a number is infinite: so that an overflow cannot hide behind an activation.
-INR_HOST_DEVICE inline float Sticky(float value) { return fmaf(value, 0.0f, value); }
-
 INR_HOST_DEVICE inline void EncodeFloat(const FloatModel& model, const Point& point,
                                         const ThreadScratch& scratch)
 {

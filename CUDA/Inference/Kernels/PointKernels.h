@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Values at scattered points: fused in half precision, and in float32.
+// Values at scattered points: fused, and by a thread each.
 #pragma once
 
 #include "CUDA/Inference/Kernels/Encode.h"
@@ -10,41 +10,41 @@
 namespace inr {
 namespace cuda {
 
-/// A model in half precision, in the memory of whoever runs the kernel.
-struct FusedModel
+/// A model in the memory of whoever runs the kernel.
+template <class Numbers> struct FusedModel
 {
-  GridView<HalfBits> grid;
-  FusedNetwork network;
+  GridView<typename Numbers::Feature> grid;
+  FusedNetwork<Numbers> network;
 };
 
-constexpr int ThreadsPerBlock = 128;
+constexpr int ThreadsPerBlock = 128; ///< of kernels at points
 constexpr int WarpsPerBlock = ThreadsPerBlock / WarpSize;
 
-/// Halves from one encoded row to the next; see LoadInputs.
+/// Numbers from one encoded row to the next; see LoadInputs.
 INR_HOST_DEVICE constexpr int RowStride(int inputTiles) { return inputTiles * TileSize + 8; }
 
 /// Where a fused kernel has what in its block's shared memory, in bytes.
 struct FusedShared
 {
   bool keepsWeights;       ///< a copy of them comes first
-  std::int32_t rows;       ///< 32 encoded rows per warp
-  std::int32_t results;    ///< one per thread
+  std::int32_t rows;       ///< points only: 32 encoded rows per warp
+  std::int32_t results;    ///< one per sample
   std::int32_t cells;      ///< bricks only: 24 AxisCells per level
   std::int32_t plans;      ///< and a LatticePlan per level
-  std::int32_t lattice;    ///< and the features of a part of the lattice
+  std::int32_t lattice;    ///< and some rows of the lattice
   std::int32_t latticeEnd; ///< = all that is needed
 };
 
 /// The weights, from the copy in shared memory where there is one. A phase.
-template <class Block>
-INR_HOST_DEVICE inline FusedNetwork ShareWeights(Block& block, const FusedNetwork& network,
-                                                 bool keepsWeights)
+template <class Block, class Numbers>
+INR_HOST_DEVICE inline FusedNetwork<Numbers>
+ShareWeights(Block& block, int threads, const FusedNetwork<Numbers>& network, bool keepsWeights)
 {
-  FusedNetwork shared = network;
+  FusedNetwork<Numbers> shared = network;
   if (keepsWeights) {
-    auto* const copy = reinterpret_cast<WeightShare*>(block.shared());
+    auto* const copy = reinterpret_cast<typename Numbers::Weight*>(block.shared());
     block.threads([&](int thread) {
-      for (std::int64_t k = thread; k < network.weightShares; k += ThreadsPerBlock) {
+      for (std::int64_t k = thread; k < network.weightShares; k += threads) {
         copy[k] = network.weights[k];
       }
     });
@@ -54,15 +54,15 @@ INR_HOST_DEVICE inline FusedNetwork ShareWeights(Block& block, const FusedNetwor
 }
 
 /// `Tiles`: of 16 neurons, of a hidden layer.
-template <int Tiles> struct FusedPoints
+template <int Tiles, class Numbers> struct FusedPoints
 {
   static constexpr int Threads = ThreadsPerBlock;
 
-  FusedModel model;
+  FusedModel<Numbers> model;
   FusedShared shared;
   const float* positions; ///< x, y, z; clamped to [0, 1], a NaN is 0
   std::int64_t count;
-  float* values;                      ///< NaN where a number left the range of halves
+  float* values;                      ///< NaN where a number left the range of `Numbers`
   const std::uint64_t* end = nullptr; ///< where not null, of so many points instead
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
@@ -73,8 +73,8 @@ template <int Tiles> struct FusedPoints
     if (std::int64_t{block.index()} * WarpsPerBlock >= batches) {
       return;
     }
-    const FusedNetwork network =
-        ShareWeights(block, this->model.network, this->shared.keepsWeights);
+    const FusedNetwork<Numbers> network =
+        ShareWeights(block, Threads, this->model.network, this->shared.keepsWeights);
     block.warps([&](auto& warp) {
       const std::int64_t first = std::int64_t{block.index()} * WarpsPerBlock + warp.index();
       const std::int64_t step = std::int64_t{block.count()} * WarpsPerBlock;
@@ -85,13 +85,16 @@ template <int Tiles> struct FusedPoints
   }
 
 private:
+  using Staged = typename Numbers::Staged;
+
   template <class Warp>
-  INR_HOST_DEVICE void infer(unsigned char* memory, Warp& warp, const FusedNetwork& network,
-                             std::int64_t first, std::int64_t count) const
+  INR_HOST_DEVICE void infer(unsigned char* memory, Warp& warp,
+                             const FusedNetwork<Numbers>& network, std::int64_t first,
+                             std::int64_t count) const
   {
     const int stride = RowStride(network.inputTiles);
-    HalfBits* const rows =
-        reinterpret_cast<HalfBits*>(memory + this->shared.rows) + warp.index() * WarpSize * stride;
+    Staged* const rows =
+        reinterpret_cast<Staged*>(memory + this->shared.rows) + warp.index() * WarpSize * stride;
     float* const results =
         reinterpret_cast<float*>(memory + this->shared.results) + warp.index() * WarpSize;
     warp.exchange([&](int lane) {
@@ -100,7 +103,12 @@ private:
       const Point point{ClampToUnit(xyz[0]), ClampToUnit(xyz[1]), ClampToUnit(xyz[2])};
       this->encode(point, rows + lane * stride);
     });
-    RunNetwork<Tiles>(warp, network, rows, stride, results);
+    constexpr int halves = Numbers::halves(Tiles);
+    for (int tile = 0; tile < WarpSize / TileSize; tile += halves) {
+      const StagedInputs<Numbers, halves, Warp> inputs(warp, rows + tile * TileSize * stride,
+                                                       stride);
+      RunNetwork<Numbers, Tiles, halves>(warp, network, inputs, results + tile * TileSize);
+    }
     warp.lanes([&](int lane) {
       if (first + lane < count) {
         this->values[first + lane] = results[lane];
@@ -108,20 +116,21 @@ private:
     });
   }
 
-  INR_HOST_DEVICE void encode(const Point& point, HalfBits* row) const
+  INR_HOST_DEVICE void encode(const Point& point, Staged* row) const
   {
-    const GridView<HalfBits>& grid = this->model.grid;
+    const auto& grid = this->model.grid;
     WithFeatures(grid.features, [&](auto features) {
       constexpr int count = decltype(features)::value;
-      const auto encodeLevel = [&](int l, float(&sums)[count]) {
-        InterpolateAt(grid, grid.levels[l], point, sums);
+      const auto encodeLevel = [&](int l, float(&found)[count]) {
+        InterpolateAt(grid, grid.levels[l], point, found);
       };
       EncodeRow<count>(grid.levelCount, encodeLevel, row);
     });
   }
 };
 
-/// The same in float32: slower, for any model, and what the fused kernel is judged by.
+/// The same in float32 without tensor cores: slower, for any model and any GPU, and what the fused
+/// kernels are judged by.
 struct FloatPoints
 {
   static constexpr int Threads = ThreadsPerBlock;

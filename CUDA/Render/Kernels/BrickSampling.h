@@ -5,6 +5,7 @@
 #pragma once
 
 #include "CUDA/Cache/Kernels/CacheView.h"
+#include "CUDA/Device/Kernels/Mix.h"
 #include "Core/Render/BrickPath.h"
 
 #include <cmath>
@@ -19,8 +20,6 @@ INR_HOST_DEVICE inline float PlaceOn(const BrickPath& path, int axis, float alon
   const float above = place > 0.0f ? place : 0.0f;
   return above < path.last[axis] ? above : path.last[axis];
 }
-
-INR_HOST_DEVICE inline float Mix(float a, float b, float weight) { return fmaf(b - a, weight, a); }
 
 /// A place in a brick: the first corner of its cell, and where it is from there.
 struct CellPlace
