@@ -13,6 +13,7 @@ INR_INSTANTIATE(TrainEncode);
 INR_INSTANTIATE(TrainNetwork);
 INR_INSTANTIATE(TrainWeights);
 INR_INSTANTIATE(TrainScatter);
+INR_INSTANTIATE(TrainSumShards);
 INR_INSTANTIATE(TrainUpdateLayers);
 INR_INSTANTIATE(TrainUpdateWeights);
 INR_INSTANTIATE(TrainUpdateGrid);

@@ -24,7 +24,7 @@ namespace cuda {
 
 /// A training on a machine (CUDA/Device/Machine.h).
 ///
-/// A step is eight launches, seven where Adam updates all, and two more for each further piece of a
+/// A step is nine launches, eight where Adam updates all, and two more for each further piece of a
 /// batch whose layers would take more than 256 MiB: draw or copy the samples, encode them, then
 /// through the network and back, weights' gradients, grid's gradients, update. The host waits for
 /// it once, for the loss.
@@ -231,11 +231,13 @@ private:
 
   void update(std::uint64_t number, float learningRate)
   {
+    this->Place->run(
+        TrainSumShards{this->ShardGradients.data(), this->WeightCount, this->Plan.shards},
+        this->WeightCount);
     if (this->Orthogonalised > 0) {
       this->Place->run(
           TrainUpdateLayers{this->Layers.data(), this->Orthogonalised, this->Weights.data(),
-                            this->FirstMoments.data(), this->ShardGradients.data(),
-                            this->WeightCount, this->Plan.shards, MomentumKept,
+                            this->FirstMoments.data(), this->ShardGradients.data(), MomentumKept,
                             learningRate * OrthogonalRate(number), this->UpdateRows.data(),
                             LargestUpdate(this->Shape, this->Orthogonalised)},
           this->Orthogonalised * TrainUpdateLayers::Threads, TrainUpdateLayers::SharedBytes);
@@ -252,7 +254,7 @@ private:
     step.rate *= learningRate;
     const auto first = static_cast<std::int64_t>(
         this->Shape.layers[static_cast<std::size_t>(this->Orthogonalised)].offset);
-    this->Place->run(TrainUpdateWeights{run, first, this->WeightCount, this->Plan.shards, step},
+    this->Place->run(TrainUpdateWeights{run, first, this->WeightCount, step},
                      this->WeightCount - first);
     run.parameters = this->Features.data();
     run.gradients = nullptr;

@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t MostLayerFloats = std::int64_t{1} << 26;
 
 /// Samples of a shard at least; the more shards, the more warps share the weights' gradients.
-constexpr std::int64_t LeastShard = 512;
+constexpr std::int64_t LeastShard = 128;
 constexpr std::int64_t MostShardFloats = std::int64_t{1} << 24;
 
 std::string InMiB(std::int64_t bytes)

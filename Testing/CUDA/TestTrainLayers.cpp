@@ -2,6 +2,7 @@
 //
 // Updates of layers by the GPU's kernel, on the host, beside Core's.
 #include "CUDA/Training/Kernels/TrainLayers.h"
+#include "CUDA/Training/Kernels/TrainUpdate.h"
 #include "Core/Random.h"
 #include "Core/Training/TrainKernel.h"
 #include "Testing/CUDA/HostMachine.h"
@@ -52,19 +53,20 @@ struct Network
       ofLayer = std::max(ofLayer, inr::cuda::TallLayer(layer.rows, layer.columns).workspace());
     }
     std::vector<float> workspace(static_cast<std::size_t>(3 * ofLayer), NAN);
+    std::vector<float> sums = this->gradients;
+    const HostMachine machine(launch);
+    machine.run(inr::cuda::TrainSumShards{sums.data(), this->count, Shards}, this->count);
     const inr::cuda::TrainUpdateLayers kernel{this->layers.data(),
                                               3,
                                               this->weights.data(),
                                               this->momentum.data(),
-                                              this->gradients.data(),
-                                              this->count,
-                                              Shards,
+                                              sums.data(),
                                               Kept,
                                               Rate,
                                               workspace.data(),
                                               ofLayer};
-    HostMachine(launch).run(kernel, 3 * inr::cuda::TrainUpdateLayers::Threads,
-                            inr::cuda::TrainUpdateLayers::SharedBytes);
+    machine.run(kernel, 3 * inr::cuda::TrainUpdateLayers::Threads,
+                inr::cuda::TrainUpdateLayers::SharedBytes);
     for (std::int64_t l = 0; l < 3; ++l) {
       this->left.push_back(workspace[static_cast<std::size_t>(l * ofLayer)]);
     }

@@ -445,7 +445,7 @@ TEST(TrainingPlan, DividesWhatIsLarge)
   TrainPair whole(SmallDescription(), trainer, batches);
   trainer.change = [](inr::cuda::TrainingPlan& plan) {
     EXPECT_EQ(plan.pieceSize, 1300);
-    EXPECT_EQ(plan.shards, 3);
+    EXPECT_EQ(plan.shards, 11);
     plan.pieceSize = 256;
     plan.shardSize = 128;
     plan.shards = 2;

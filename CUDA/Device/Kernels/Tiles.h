@@ -13,8 +13,11 @@
 
 #ifdef __CUDA_ARCH__
 #define INR_UNROLL _Pragma("unroll")
+#define INR_UNROLL_BY(count) INR_PRAGMA(unroll count)
+#define INR_PRAGMA(text) _Pragma(#text)
 #else
 #define INR_UNROLL
+#define INR_UNROLL_BY(count)
 #endif
 
 namespace inr {

@@ -47,10 +47,8 @@ struct TrainUpdateLayers
   int count;      ///< of those that are updated, from the first on
   float* weights; ///< all of the network
   float* momentum;
-  const float* gradients; ///< `weightCount` of each shard, one after the other
-  std::int64_t weightCount;
-  std::int64_t shards;
-  float kept; ///< share of the momentum
+  const float* gradients; ///< of all weights
+  float kept;             ///< share of the momentum
   float rate;
   float* workspace;
   std::int64_t workspaceOfLayer; ///< floats, as many as the largest takes
@@ -96,10 +94,7 @@ private:
     block.threads([&](int thread) {
       std::uint32_t any = 0;
       for (std::int64_t k = thread; k < shape.size(); k += Threads) {
-        float gradient = 0.0f;
-        for (std::int64_t shard = 0; shard < this->shards; ++shard) {
-          gradient += this->gradients[shard * this->weightCount + layer.firstWeight + k];
-        }
+        const float gradient = this->gradients[layer.firstWeight + k];
         any |= MagnitudeBits(gradient);
         const float added = (1.0f - this->kept) * gradient;
         float& moved = this->momentum[layer.firstWeight + k];

@@ -31,15 +31,41 @@ INR_HOST_DEVICE inline void UpdateParameter(const AdamPlace& place, float gradie
   place.second = second;
 }
 
+/// Adds up what shards of samples have found of the weights' gradients, in place of the first's; a
+/// thread for a weight.
+struct TrainSumShards
+{
+  static constexpr int Threads = 128;
+
+  float* gradients; ///< `count` of each shard, one after the other
+  std::int64_t count;
+  std::int64_t shards;
+
+  template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
+  {
+    block.threads([&](int thread) {
+      const std::int64_t stride = std::int64_t{block.count()} * Threads;
+      const std::int64_t begin = std::int64_t{block.index()} * Threads + thread;
+      for (std::int64_t k = begin; k < this->count; k += stride) {
+        float sum = 0.0f;
+        INR_UNROLL_BY(16)
+        for (std::int64_t shard = 0; shard < this->shards; ++shard) {
+          sum += this->gradients[shard * this->count + k];
+        }
+        this->gradients[k] = sum;
+      }
+    });
+  }
+};
+
 /// Weights of the network, a thread each.
 struct TrainUpdateWeights
 {
   static constexpr int Threads = 128;
 
-  AdamRun run;        ///< `gradients`: `count` of each shard, one after the other
+  AdamRun run;
   std::int64_t first; ///< weight that is updated, and so are all behind it
   std::int64_t count;
-  std::int64_t shards;
   AdamStep step;
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
@@ -48,11 +74,7 @@ struct TrainUpdateWeights
       const std::int64_t stride = std::int64_t{block.count()} * Threads;
       const std::int64_t begin = this->first + std::int64_t{block.index()} * Threads + thread;
       for (std::int64_t k = begin; k < this->count; k += stride) {
-        float gradient = 0.0f;
-        for (std::int64_t shard = 0; shard < this->shards; ++shard) {
-          gradient += this->run.gradients[shard * this->count + k];
-        }
-        gradient = gradient + this->run.decay * this->run.parameters[k];
+        const float gradient = this->run.gradients[k] + this->run.decay * this->run.parameters[k];
         UpdateParameter(
             {this->run.parameters[k], this->run.firstMoments[k], this->run.secondMoments[k]},
             gradient, this->run.beta1, this->run.epsilon, this->step);

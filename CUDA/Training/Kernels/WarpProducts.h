@@ -50,28 +50,33 @@ INR_HOST_DEVICE inline std::int64_t TilesOf(std::int64_t size)
   return (size + ProductTile - 1) / ProductTile;
 }
 
-/// The calling lane's share of a panel: from(i, k) for i < size, k < depth. `AlongDepth`: numbers
-/// lie side by side in memory along k, else along i.
+/// The calling lane's share of a panel: from(i, k) for i < size, k < depth, and zeros beyond.
+/// `AlongDepth`: numbers lie side by side in memory along k, else along i.
 template <bool AlongDepth, class From>
 INR_HOST_DEVICE inline void StagePanel(int lane, float* panel, int size, int depth,
                                        const From& from)
 {
-  if constexpr (AlongDepth) {
-    const int k = lane % ProductDepth;
-    for (int i = lane / ProductDepth; i < size && k < depth; i += WarpSize / ProductDepth) {
-      panel[k * ProductStride + i] = from(i, k);
-    }
-  } else {
-    for (int k = 0; k < depth && lane < size; ++k) {
-      panel[k * ProductStride + lane] = from(lane, k);
-    }
+  constexpr int count = ProductTile * ProductDepth / WarpSize;
+  const auto rowOf = [&](int n) {
+    return AlongDepth ? n * (WarpSize / ProductDepth) + lane / ProductDepth : lane;
+  };
+  const auto stepOf = [&](int n) { return AlongDepth ? lane % ProductDepth : n; };
+  float numbers[count]; // all of them on their way before the first is written
+  INR_UNROLL
+  for (int n = 0; n < count; ++n) {
+    const bool is = rowOf(n) < size && stepOf(n) < depth;
+    numbers[n] = is ? from(rowOf(n), stepOf(n)) : 0.0f;
+  }
+  INR_UNROLL
+  for (int n = 0; n < count; ++n) {
+    panel[stepOf(n) * ProductStride + rowOf(n)] = numbers[n];
   }
 }
 
-INR_HOST_DEVICE inline void AddPanels(const float* left, const float* right, int depth,
-                                      ProductSums& sums)
+INR_HOST_DEVICE inline void AddPanels(const float* left, const float* right, ProductSums& sums)
 {
-  for (int k = 0; k < depth; ++k) {
+  INR_UNROLL
+  for (int k = 0; k < ProductDepth; ++k) {
     const auto* const a = reinterpret_cast<const FourFloats*>(left + k * ProductStride);
     const FourFloats rows[2] = {a[0], a[1]};
     const FourFloats b = *reinterpret_cast<const FourFloats*>(right + k * ProductStride);
@@ -109,7 +114,7 @@ INR_HOST_DEVICE inline void MultiplyTile(Warp& warp, float* shared, int rows, in
       const int row = lane / across * ProductRows;
       const int column = lane % across * ProductColumns;
       if (row < rows && column < columns) {
-        AddPanels(shared + row, others + column, deep, sums[lane]);
+        AddPanels(shared + row, others + column, sums[lane]);
       }
     });
   }
