@@ -8,6 +8,13 @@
 #define INR_HOST_DEVICE
 #endif
 
+/// Marks one of which a kernel has a single copy, however often it calls it.
+#ifdef __CUDACC__
+#define INR_CALLED __noinline__
+#else
+#define INR_CALLED
+#endif
+
 #include <limits>
 
 namespace inr {

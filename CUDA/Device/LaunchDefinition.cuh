@@ -8,11 +8,21 @@
 #include "CUDA/Device/Launch.h"
 #include "CUDA/Device/Runtime.h"
 
+#include <type_traits>
+
 namespace inr {
 namespace cuda {
 
+/// Blocks of a kernel that a multiprocessor's registers are to hold at once, where it says that by
+/// a member LeastBlocks: it then has no more of them for a thread.
+template <class Kernel, class = void> constexpr int LeastBlocksOf = 0;
 template <class Kernel>
-__global__ void __launch_bounds__(Kernel::Threads) Run(const __grid_constant__ Kernel kernel)
+constexpr int LeastBlocksOf<Kernel, std::void_t<decltype(Kernel::LeastBlocks)>> =
+    Kernel::LeastBlocks;
+
+template <class Kernel>
+__global__ void __launch_bounds__(Kernel::Threads, LeastBlocksOf<Kernel>)
+    Run(const __grid_constant__ Kernel kernel)
 {
   DeviceBlock block;
   kernel(block);

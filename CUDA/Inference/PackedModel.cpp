@@ -46,35 +46,38 @@ private:
   const float* Weights;
 };
 
-/// A lane's share of a tile of weights: of their first part, or of what that leaves out.
-void SetShare(const PaddedLayer& layer, int row, int column, int lane, bool /*second*/,
-              WeightShare& share)
+/// A lane's share of a tile of weights from (row, column) on.
+void AppendShare(const PaddedLayer& layer, int row, int column, int lane, bool /*second*/,
+                 std::vector<WeightShare>& weights)
 {
+  WeightShare& share = weights.emplace_back();
   for (int r = 0; r < 4; ++r) {
     const int output = row + RowOf(lane) + 8 * (r / 2);
     const int input = column + ColumnOf(lane) + 8 * (r % 2);
     share.pairs[r] = PackHalves(layer.at(output, input), layer.at(output, input + 1));
   }
 }
-void SetShare(const PaddedLayer& layer, int row, int column, int lane, bool second,
-              WideWeightShare& share)
+/// The same of the weights' first parts, or of what these leave out.
+void AppendShare(const PaddedLayer& layer, int row, int column, int lane, bool second,
+                 std::vector<WideWeightShare>& weights)
 {
-  for (int v = 0; v < 8; ++v) {
-    const float weight = layer.at(row + RowOf(lane) + 8 * (v / 4),
-                                  column + ColumnOf(lane) + v % 2 + 8 * (v / 2 % 2));
+  WideWeightShare& share = weights.emplace_back();
+  for (int v = 0; v < 4; ++v) {
+    const float weight = layer.at(row + RowOf(lane), column + ColumnOf(lane) + v % 2 + 8 * (v / 2));
     const float first = ToElevenBits(weight);
     share.values[v] = second ? ToElevenBits(weight - first) : first;
   }
 }
 
-template <class Weight>
+template <class Numbers>
 void AppendLayer(const PaddedLayer& layer, int inputTiles, int outputTiles, bool second,
-                 std::vector<Weight>& weights)
+                 std::vector<typename Numbers::Weight>& weights)
 {
+  constexpr int rows = TileSize / Numbers::WeightShares; // of a share
   for (int input = 0; input < inputTiles; ++input) {
-    for (int output = 0; output < outputTiles; ++output) {
+    for (int output = 0; output < outputTiles * Numbers::WeightShares; ++output) {
       for (int lane = 0; lane < WarpSize; ++lane) {
-        SetShare(layer, output * TileSize, input * TileSize, lane, second, weights.emplace_back());
+        AppendShare(layer, output * rows, input * TileSize, lane, second, weights);
       }
     }
   }
@@ -177,7 +180,7 @@ PackedModel<Numbers>::PackedModel(const Model& model)
     const int outputs = last ? 1 : this->neuronTiles;
     const PaddedLayer layer(shape, last ? 1 : shape.rows, parameters);
     for (int part = 0; part < (this->hasSecond ? 2 : 1); ++part) {
-      AppendLayer(layer, inputs, outputs, part == 1, this->weights);
+      AppendLayer<Numbers>(layer, inputs, outputs, part == 1, this->weights);
     }
     inputs = outputs;
   }
@@ -203,8 +206,8 @@ struct SharedParts
 {
   std::int64_t rows;
   std::int64_t results;
-  std::int64_t cells;
-  std::int64_t plans;
+  std::int64_t coordinates;
+  std::int64_t parts;
 
   template <class Numbers>
   SharedParts(const PackedModel<Numbers>& model, bool bricks)
@@ -212,11 +215,11 @@ struct SharedParts
                     : std::int64_t{ThreadsPerBlock} * RowStride(model.inputTiles) *
                           static_cast<std::int64_t>(sizeof(typename Numbers::Staged))),
         results(sizeof(float) * (bricks ? SamplesPerItem : ThreadsPerBlock)),
-        cells(bricks ? Whole(model.levels.size() * sizeof(LevelCells)) : 0),
-        plans(bricks ? Whole(model.levels.size() * sizeof(LatticePlan)) : 0)
+        coordinates(bricks ? Whole(3 * ItemSize * sizeof(float)) : 0),
+        parts(bricks ? Whole(model.levels.size() * sizeof(LevelPart)) : 0)
   {}
 
-  std::int64_t all() const { return this->rows + this->results + this->cells + this->plans; }
+  std::int64_t all() const { return this->rows + this->results + this->coordinates + this->parts; }
 
 private:
   static std::int64_t Whole(std::size_t bytes)
@@ -261,8 +264,8 @@ FusedShared PlanShared(const PackedModel<Numbers>& model, bool bricks, std::int6
   };
   shared.rows = place(parts.rows);
   shared.results = place(parts.results);
-  shared.cells = place(parts.cells);
-  shared.plans = place(parts.plans);
+  shared.coordinates = place(parts.coordinates);
+  shared.parts = place(parts.parts);
   shared.lattice = place(lattice);
   shared.latticeEnd = place(0);
   return shared;

@@ -209,6 +209,15 @@ json BenchBricks(const std::shared_ptr<const DeviceModel>& model, int level)
   return {result, whole};
 }
 
+/// With parameters as files have them.
+inr::ModelPointer HalvesOf(const std::shared_ptr<inr::Model>& model)
+{
+  for (float& parameter : model->parameters) {
+    parameter = ToFloat(ToHalf(parameter));
+  }
+  return model;
+}
+
 void Print(const json& line) { std::cout << line << std::endl; }
 
 /// Prints what there is as it comes: something may fail behind it.
@@ -217,7 +226,7 @@ void BenchAll(const Device& device)
   const CurrentDevice current(device.ordinal);
   Print({{"device", DescribeDevice(device)}});
   Print({{"ceilings", Ceilings(device)}});
-  const inr::ModelPointer model = RandomModel(DefaultDescription());
+  const inr::ModelPointer model = HalvesOf(RandomModel(DefaultDescription()));
   const auto printAll = [](const json& results) {
     for (const json& result : results) {
       Print(result);

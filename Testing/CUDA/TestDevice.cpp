@@ -98,9 +98,9 @@ TEST(SharedMemory, IsSharedOutWithinItsLimits)
       const FusedShared plan = PlanShared(model, bricks, roomy, 100 << 10);
       EXPECT_EQ(plan.rows, plan.keepsWeights ? weights : 0);
       EXPECT_EQ(plan.results, plan.rows + (bricks ? 0 : 128 * 24 * 2));
-      EXPECT_EQ(plan.cells, plan.results + 4 * (bricks ? 512 : 128));
-      EXPECT_GE(plan.plans, plan.cells + (bricks ? 4 * 3 * 8 * 8 : 0));
-      EXPECT_GE(plan.lattice, plan.plans + (bricks ? 4 * 20 : 0));
+      EXPECT_EQ(plan.coordinates, plan.results + 4 * (bricks ? 512 : 128));
+      EXPECT_EQ(plan.parts, plan.coordinates + (bricks ? 3 * 8 * 4 : 0));
+      EXPECT_GE(plan.lattice, plan.parts + (bricks ? 4 * (3 * 8 * 8 + 5 * 4) : 0));
       EXPECT_EQ(plan.lattice % 16, 0);
       EXPECT_GE(plan.latticeEnd, plan.lattice);
       EXPECT_TRUE(plan.latticeEnd <= roomy || !plan.keepsWeights);
@@ -130,11 +130,12 @@ TEST(WideWeights, AreTheSumOfTheirParts)
       for (int v = 0; v < 8; ++v) {
         const int row = lane / 4 + 8 * (v / 4);
         const int column = lane % 4 * 2 + v % 2 + 8 * (v / 2 % 2);
+        const int share = v / 4 * WarpSize + lane; // of the first part
         const float weight = model->parameters[shape.offset + row * shape.columns + column];
-        float sum = packed.weights[lane].values[v];
+        float sum = packed.weights[share].values[v % 4];
         EXPECT_EQ(CutToElevenBits(sum), sum);
         if (!halves) {
-          const float second = packed.weights[WarpSize + lane].values[v];
+          const float second = packed.weights[2 * WarpSize + share].values[v % 4];
           EXPECT_EQ(CutToElevenBits(second), second);
           sum += second;
         }
@@ -162,12 +163,19 @@ TEST(SharedMemory, IsNotEnoughForAnyNumberOfLevels)
 /// Cells that are very far apart are not taken for few.
 TEST(Lattice, OfFarCellsIsNotKept)
 {
-  LevelCells cells{};
-  for (auto& axis : cells.axes) {
-    axis[ItemSize - 1].cell = (1u << 30) - 2;
+  const float coordinates[3 * ItemSize] = {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0,
+                                           0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1};
+  inr::LevelView level{};
+  LevelPart parts[2] = {};
+  for (const float scale : {2.0f, 1.0e9f}) {
+    level.scale = scale;
+    SetExtent(SamplePlaces(coordinates, level, inr::GridInterpolation::Linear), parts[1]);
+    SetFirst(parts, 1, 1 << 20);
+    EXPECT_EQ(parts[1].rows <= MostLatticeRows, scale == 2.0f);
+    EXPECT_EQ(parts[1].first >= 0, scale == 2.0f);
+    SetFirst(parts, 1, parts[1].rows - 1);
+    EXPECT_LT(parts[1].first, 0) << "where there is no room";
   }
-  EXPECT_GT(RowsOf(cells), MostLatticeRows);
-  EXPECT_LT(PlanLattice(&cells, 0, std::int64_t{1} << 40).first, 0);
 }
 
 } // namespace

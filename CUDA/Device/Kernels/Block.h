@@ -56,27 +56,29 @@ public:
                   [&](int lane) -> const WeightShare& { return weights[lane]; },
                   [&](int lane) -> SumShare& { return sums[lane]; });
   }
-  /// The same of float32 numbers; see WideTiles.h.
+  /// The same of float32 numbers, for one half of the outputs; see WideTiles.h.
   static void multiplyAdd(const PerLane<WideInputShare>& inputs,
-                          const PerLane<WideWeightShare>& weights, PerLane<SumShare>& sums)
+                          const PerLane<WideWeightShare>& weights, int half,
+                          PerLane<SumShare>& sums)
   {
-    multiplyWide(inputs, weights, sums, BothParts);
+    multiplyWide(inputs, weights, half, sums, BothParts);
   }
   /// Of the inputs' first parts only.
   static void multiplyAddFirst(const PerLane<WideInputShare>& inputs,
-                               const PerLane<WideWeightShare>& weights, PerLane<SumShare>& sums)
+                               const PerLane<WideWeightShare>& weights, int half,
+                               PerLane<SumShare>& sums)
   {
-    multiplyWide(inputs, weights, sums, FirstPart);
+    multiplyWide(inputs, weights, half, sums, FirstPart);
   }
 
 private:
   template <class ValueOf>
   static void multiplyWide(const PerLane<WideInputShare>& inputs,
-                           const PerLane<WideWeightShare>& weights, PerLane<SumShare>& sums,
-                           const ValueOf& valueOf)
+                           const PerLane<WideWeightShare>& weights, int half,
+                           PerLane<SumShare>& sums, const ValueOf& valueOf)
   {
     MultiplyWideTiles([&](int lane) -> const WideInputShare& { return inputs[lane]; },
-                      [&](int lane) -> const WideWeightShare& { return weights[lane]; },
+                      [&](int lane) -> const WideWeightShare& { return weights[lane]; }, half,
                       [&](int lane) -> SumShare& { return sums[lane]; }, valueOf);
   }
 
@@ -171,17 +173,17 @@ public:
     MultiplyShares(inputs[0], weights[0], sums[0]);
   }
   INR_HOST_DEVICE static void multiplyAdd(const PerLane<WideInputShare>& inputs,
-                                          const PerLane<WideWeightShare>& weights,
+                                          const PerLane<WideWeightShare>& weights, int half,
                                           PerLane<SumShare>& sums)
   {
-    MultiplyWideShares(inputs[0].second, weights[0], sums[0]);
-    MultiplyWideShares(inputs[0].first, weights[0], sums[0]);
+    MultiplyWideShares(inputs[0].second, weights[0], half, sums[0]);
+    MultiplyWideShares(inputs[0].first, weights[0], half, sums[0]);
   }
   INR_HOST_DEVICE static void multiplyAddFirst(const PerLane<WideInputShare>& inputs,
-                                               const PerLane<WideWeightShare>& weights,
+                                               const PerLane<WideWeightShare>& weights, int half,
                                                PerLane<SumShare>& sums)
   {
-    MultiplyWideShares(inputs[0].first, weights[0], sums[0]);
+    MultiplyWideShares(inputs[0].first, weights[0], half, sums[0]);
   }
 };
 

@@ -22,10 +22,11 @@ struct WideInputShare
   float second[8];
 };
 
-/// Value v of lane L: output RowOf(L) + 8 * (v / 4), input ColumnOf(L) + v % 2 + 8 * (v / 2 % 2).
+/// Value v of lane L for one half of a tile's outputs, the first or the last eight: output RowOf(L)
+/// of these, input ColumnOf(L) + v % 2 + 8 * (v / 2).
 struct alignas(16) WideWeightShare
 {
-  float values[8];
+  float values[4];
 };
 
 constexpr std::uint32_t BeyondElevenBits = 0x1fffu;
@@ -68,32 +69,34 @@ INR_HOST_DEVICE inline SumShare LoadWideInputs(const float* rows, int stride, in
   return share;
 }
 
-/// sums += inputs * weights, as MultiplyTiles of Tiles.h; `valueOf(share, v)` is value v of a
-/// lane's input.
+/// sums += inputs * weights, as MultiplyTiles of Tiles.h, for one half of the outputs;
+/// `valueOf(share, v)` is value v of a lane's input.
 template <class Inputs, class Weights, class Sums, class ValueOf>
-void MultiplyWideTiles(const Inputs& inputs, const Weights& weights, const Sums& sums,
+void MultiplyWideTiles(const Inputs& inputs, const Weights& weights, int half, const Sums& sums,
                        const ValueOf& valueOf)
 {
-  double a[TileSize][TileSize]; // of sample and input
-  double b[TileSize][TileSize]; // of output and input
+  double a[TileSize][TileSize];     // of sample and input
+  double b[TileSize / 2][TileSize]; // of output and input
   for (int lane = 0; lane < WarpSize; ++lane) {
     const int row = RowOf(lane);
     const int column = ColumnOf(lane);
     for (int v = 0; v < 8; ++v) {
       a[row + 8 * (v / 2 % 2)][column + v % 2 + 8 * (v / 4)] = valueOf(inputs(lane), v);
-      b[row + 8 * (v / 4)][column + v % 2 + 8 * (v / 2 % 2)] =
-          static_cast<double>(weights(lane).values[v]);
+    }
+    for (int v = 0; v < 4; ++v) {
+      b[row][column + v % 2 + 8 * (v / 2)] = static_cast<double>(weights(lane).values[v]);
     }
   }
   for (int lane = 0; lane < WarpSize; ++lane) {
-    for (int v = 0; v < 8; ++v) {
-      const double* const from = a[RowOf(lane) + 8 * (v / 2 % 2)];
-      const double* const factors = b[ColumnOf(lane) + v % 2 + 8 * (v / 4)];
-      double sum = static_cast<double>(sums(lane).values[v]);
+    for (int v = 0; v < 4; ++v) {
+      const double* const from = a[RowOf(lane) + 8 * (v / 2)];
+      const double* const factors = b[ColumnOf(lane) + v % 2];
+      float& sum = sums(lane).values[4 * half + v];
+      double exact = static_cast<double>(sum);
       for (int k = 0; k < TileSize; ++k) {
-        sum += from[k] * factors[k];
+        exact += from[k] * factors[k];
       }
-      sums(lane).values[v] = static_cast<float>(sum);
+      sum = static_cast<float>(exact);
     }
   }
 }
@@ -111,29 +114,29 @@ inline double FirstPart(const WideInputShare& share, int v)
 
 #ifdef __CUDACC__
 
-/// sums += inputs * weights by the calling lane's warp; one part of the inputs.
+/// sums += inputs * weights by the calling lane's warp, for one half of the outputs; one part of
+/// the inputs.
 INR_HOST_DEVICE inline void MultiplyWideShares(const float (&inputs)[8],
-                                               const WideWeightShare& weights, SumShare& sums)
+                                               const WideWeightShare& weights, int half,
+                                               SumShare& sums)
 {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+  float* const c = sums.values + 4 * half;
   INR_UNROLL
-  for (int half = 0; half < 2; ++half) { // of the outputs
-    float* const c = sums.values + 4 * half;
-    INR_UNROLL
-    for (int part = 0; part < 2; ++part) { // of the inputs
-      const float* const a = inputs + 4 * part;
-      const float* const b = weights.values + 4 * half + 2 * part;
-      asm volatile(
-          "mma.sync.aligned.m16n8k8.row.col.f32.tf32.tf32.f32 {%0, %1, %2, %3}, {%4, %5, %6, %7}, "
-          "{%8, %9}, {%0, %1, %2, %3};"
-          : "+f"(c[0]), "+f"(c[1]), "+f"(c[2]), "+f"(c[3])
-          : "r"(__float_as_uint(a[0])), "r"(__float_as_uint(a[2])), "r"(__float_as_uint(a[1])),
-            "r"(__float_as_uint(a[3])), "r"(__float_as_uint(b[0])), "r"(__float_as_uint(b[1])));
-    }
+  for (int part = 0; part < 2; ++part) { // of the inputs
+    const float* const a = inputs + 4 * part;
+    const float* const b = weights.values + 2 * part;
+    asm volatile(
+        "mma.sync.aligned.m16n8k8.row.col.f32.tf32.tf32.f32 {%0, %1, %2, %3}, {%4, %5, %6, %7}, "
+        "{%8, %9}, {%0, %1, %2, %3};"
+        : "+f"(c[0]), "+f"(c[1]), "+f"(c[2]), "+f"(c[3])
+        : "r"(__float_as_uint(a[0])), "r"(__float_as_uint(a[2])), "r"(__float_as_uint(a[1])),
+          "r"(__float_as_uint(a[3])), "r"(__float_as_uint(b[0])), "r"(__float_as_uint(b[1])));
   }
 #else // nobody begins such a kernel there
   static_cast<void>(inputs);
   static_cast<void>(weights);
+  static_cast<void>(half);
   static_cast<void>(sums);
 #endif
 }

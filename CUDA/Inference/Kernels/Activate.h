@@ -12,13 +12,9 @@ namespace cuda {
 /// NaN where a number is infinite: so that an overflow cannot hide behind an activation.
 INR_HOST_DEVICE inline float Sticky(float value) { return fmaf(value, 0.0f, value); }
 
-/// The activations that cost more than an instruction. Not inlined on the device: 64 copies of nine
-/// functions would be most of a kernel.
-#ifdef __CUDACC__
-__noinline__
-#endif
-    INR_HOST_DEVICE inline float
-    ActivateSlowly(Activation activation, float x)
+/// The activations that cost more than an instruction. 64 copies of nine functions would be most of
+/// a kernel.
+INR_HOST_DEVICE INR_CALLED inline float ActivateSlowly(Activation activation, float x)
 {
   const float y = 10.0f * x;
   switch (activation) {
@@ -92,11 +88,7 @@ INR_HOST_DEVICE inline bool SlopeFromResult(Activation activation)
          activation != Activation::Softplus;
 }
 
-#ifdef __CUDACC__
-__noinline__
-#endif
-    INR_HOST_DEVICE inline float
-    SlopeSlowly(Activation activation, float x, float h)
+INR_HOST_DEVICE INR_CALLED inline float SlopeSlowly(Activation activation, float x, float h)
 {
   const float y = 10.0f * x;
   switch (activation) {

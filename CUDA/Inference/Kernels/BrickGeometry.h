@@ -36,7 +36,8 @@ INR_HOST_DEVICE inline float SampleCoordinate(const BrickJob& job, int axis, int
 }
 
 /// Side of the cube of samples that a block works on at once.
-constexpr int ItemSize = 8;
+constexpr int ItemPower = 3;
+constexpr int ItemSize = 1 << ItemPower;
 constexpr int SamplesPerItem = ItemSize * ItemSize * ItemSize;
 
 INR_HOST_DEVICE inline int ItemsAlong(const BrickJob& job, int axis)
@@ -90,6 +91,14 @@ struct BrickItem
   INR_HOST_DEVICE int firstSample(int axis) const { return this->at[axis] * ItemSize; }
 };
 
+/// `item` of all jobs', which is one of this job's.
+INR_HOST_DEVICE inline BrickItem ItemOf(const BrickJob& job, std::int64_t item)
+{
+  const int along[2] = {ItemsAlong(job, 0), ItemsAlong(job, 1)};
+  const auto within = static_cast<std::int32_t>(item - job.firstItem);
+  return {&job, {within % along[0], within / along[0] % along[1], within / (along[0] * along[1])}};
+}
+
 /// `item` of those of `count` jobs, whose items follow each other.
 INR_HOST_DEVICE inline BrickItem FindItem(const BrickJob* jobs, std::int64_t count,
                                           std::int64_t item)
@@ -99,10 +108,15 @@ INR_HOST_DEVICE inline BrickItem FindItem(const BrickJob* jobs, std::int64_t cou
     const std::int64_t middle = low + (high - low) / 2;
     (jobs[middle].firstItem <= item ? low : high) = middle;
   }
-  const BrickJob& job = jobs[low];
-  const int along[2] = {ItemsAlong(job, 0), ItemsAlong(job, 1)};
-  const auto within = static_cast<std::int32_t>(item - job.firstItem);
-  return {&job, {within % along[0], within / along[0] % along[1], within / (along[0] * along[1])}};
+  return ItemOf(jobs[low], item);
+}
+
+/// The one behind `before`, number `item`, of jobs that end at `end`.
+INR_HOST_DEVICE inline BrickItem NextItem(const BrickItem& before, const BrickJob* end,
+                                          std::int64_t item)
+{
+  const BrickJob* const next = before.job + 1;
+  return ItemOf(next < end && next->firstItem <= item ? *next : *before.job, item);
 }
 
 /// The network's output as Core's caches keep it; a NaN stays one.

@@ -15,48 +15,44 @@ namespace cuda {
 template <class Numbers> struct ItemGrid
 {
   const GridView<typename Numbers::Feature>& grid;
-  const LevelCells* cells; ///< of each level, like the plans
-  const LatticePlan* plans;
-  const float* rows; ///< see FindRows
+  const LevelPart* parts; ///< of each level
+  const float* rows;      ///< see FindRows
 };
 
-/// `Width` features of a level, from feature `f` on, at the samples of an item with the same x and
-/// z, one y after another: neighbours share what is found along x and z.
-template <class Numbers, int Features, int Width> class SampleColumn
+/// `Width` features of a level whose rows are kept, at samples of an item with the same x and z.
+template <int Features, int Width> class SampleColumn
 {
 public:
-  INR_HOST_DEVICE SampleColumn(const ItemGrid<Numbers>& item, int l, int f, int x, int z)
-      : Item(item), Level(l), First(f), X(x), Z(z), AxisX(item.cells[l].axes[0][x]),
-        AxisZ(item.cells[l].axes[2][z])
+  /// From feature `first` on.
+  INR_HOST_DEVICE SampleColumn(const LevelPart& part, const float* rows, int first, int x, int z)
+      : Along(part.axes[1]), Weight(part.axes[2][z].weight), Back(RowPlace(part.down, 0, Features)),
+        Front(
+            rows + first +
+            RowPlace(part.first + static_cast<int>(part.axes[2][z].cell) * part.down, x, Features))
   {}
 
-  /// Those of `Count` samples from `y` on: found(k, features) for each.
-  template <int Count, class Found> INR_HOST_DEVICE void find(int y, const Found& found) const
+  /// Those of `Count` samples from `y` on: neighbours share what is found along z.
+  template <int Count> INR_HOST_DEVICE void find(int y, float (&features)[Count][Width]) const
   {
-    const AxisCell* const along = this->Item.cells[this->Level].axes[1] + y;
-    std::uint32_t at = along[0].cell;
+    std::uint32_t at = this->Along[y].cell;
     Row lower = this->row(at);
     Row upper = this->row(at + 1);
     INR_UNROLL
     for (int k = 0; k < Count; ++k) {
-      const AxisCell cell = along[k];
+      const AxisCell cell = this->Along[y + k];
       if (cell.cell != at) {
-        lower = cell.cell == at + 1 ? upper : this->row(cell.cell);
-        upper = this->row(cell.cell + 1);
         at = cell.cell;
+        lower = this->row(at);
+        upper = this->row(at + 1);
       }
-      float features[Width];
       INR_UNROLL
       for (int f = 0; f < Width; ++f) {
-        features[f] = Mix(lower.features[f], upper.features[f], cell.weight);
+        features[k][f] = Mix(lower.features[f], upper.features[f], cell.weight);
       }
-      found(k, features);
     }
   }
 
 private:
-  using Feature = typename Numbers::Feature;
-
   /// At a lattice point's y.
   struct Row
   {
@@ -65,65 +61,50 @@ private:
 
   INR_HOST_DEVICE Row row(std::uint32_t y) const
   {
-    const LatticePlan& plan = this->Item.plans[this->Level];
-    return plan.first < 0 ? this->gathered(y) : this->kept(plan, y);
-  }
-
-  INR_HOST_DEVICE Row kept(const LatticePlan& plan, std::uint32_t y) const
-  {
-    const int layer = static_cast<int>(this->AxisZ.cell - plan.lower[1]);
-    const int number = plan.first + layer * plan.down + static_cast<int>(y - plan.lower[0]);
-    const auto* const front = this->Item.rows + RowPlace(number, this->X, Features) + this->First;
-    const auto* const back = front + RowPlace(plan.down, 0, Features);
-    return this->mixed(*reinterpret_cast<const Entry<float, Width>*>(front),
-                       *reinterpret_cast<const Entry<float, Width>*>(back));
-  }
-
-  INR_HOST_DEVICE Row gathered(std::uint32_t y) const
-  {
-    Entry<Feature, Width> corners[4]; // all of them on their way before the first is used
-    INR_UNROLL
-    for (std::uint32_t corner = 0; corner < 4; ++corner) {
-      corners[corner] =
-          this->entry(this->AxisX.cell + (corner & 1u), y, this->AxisZ.cell + (corner >> 1));
-    }
+    const float* const front = this->Front + RowPlace(static_cast<int>(y), 0, Features);
+    const auto near = *reinterpret_cast<const Entry<float, Width>*>(front);
+    const auto far = *reinterpret_cast<const Entry<float, Width>*>(front + this->Back);
     Row row;
     INR_UNROLL
     for (int f = 0; f < Width; ++f) {
-      row.features[f] =
-          Mix(Mix(corners[0][f], corners[1][f], this->AxisX.weight),
-              Mix(corners[2][f], corners[3][f], this->AxisX.weight), this->AxisZ.weight);
+      row.features[f] = Mix(near[f], far[f], this->Weight);
     }
     return row;
   }
 
-  INR_HOST_DEVICE Entry<Feature, Width> entry(std::uint32_t x, std::uint32_t y,
-                                              std::uint32_t z) const
-  {
-    const LevelView& level = this->Item.grid.levels[this->Level];
-    const Feature* const table = this->Item.grid.table + level.offset + this->First;
-    const std::uint64_t place = std::uint64_t{EntryOf(level, x, y, z)} * Features;
-    return *reinterpret_cast<const Entry<Feature, Width>*>(table + place);
-  }
-
-  INR_HOST_DEVICE Row mixed(const Entry<float, Width>& front, const Entry<float, Width>& back) const
-  {
-    Row row;
-    INR_UNROLL
-    for (int f = 0; f < Width; ++f) {
-      row.features[f] = Mix(front[f], back[f], this->AxisZ.weight);
-    }
-    return row;
-  }
-
-  const ItemGrid<Numbers>& Item;
-  int Level;
-  int First;
-  int X;
-  int Z;
-  AxisCell AxisX;
-  AxisCell AxisZ;
+  const AxisCell* Along; ///< y
+  float Weight;          ///< along z
+  int Back;              ///< from a layer of rows to the next
+  const float* Front;
 };
+
+/// The same of a level of which no rows are kept, of `count` samples from `y` on, to found[0 ...].
+template <class Numbers, int Features, int Width>
+INR_HOST_DEVICE INR_CALLED void GatherColumn(ItemGrid<Numbers> item, int level, int first, int x,
+                                             int y, int z, int count, float* found)
+{
+  using Feature = typename Numbers::Feature;
+  const LevelView& view = item.grid.levels[level];
+  const LevelPart& part = item.parts[level];
+  const auto* const table = item.grid.table + view.offset + first;
+  const AxisCell cellX = part.axes[0][x];
+  const AxisCell cellZ = part.axes[2][z];
+  for (int k = y; k < y + count; ++k) {
+    const AxisCell cellY = part.axes[1][k];
+    const auto entryOf = [&](int corner) {
+      const auto bits = static_cast<std::uint32_t>(corner);
+      const std::uint64_t entry =
+          EntryOf(view, cellX.cell + (bits & 1u), part.lower[0] + cellY.cell + (bits >> 1 & 1u),
+                  part.lower[1] + cellZ.cell + (bits >> 2));
+      return *reinterpret_cast<const Entry<Feature, Width>*>(table + entry * Features);
+    };
+    float features[Width];
+    Interpolate<Width, Feature>({cellX.weight, cellY.weight, cellZ.weight}, entryOf, features);
+    for (int f = 0; f < Width; ++f) {
+      *found++ = features[f];
+    }
+  }
+}
 
 /// Inputs of the network, see FusedNetwork.h: 16 * Halves samples of an item, from (0, y, z) on.
 template <class Numbers, int Halves, class Warp> class BrickInputs
@@ -140,13 +121,13 @@ public:
       typename Warp::template PerLane<typename Numbers::Input> shares[Halves];
       this->Self.exchange([&](int lane) { // lanes part in there, and multiply together
         SumShare values[Halves];
-        INR_UNROLL
-        for (int half = 0; half < 2; ++half) { // of the tile's inputs
-          const int column = k * TileSize + 8 * half + ColumnOf(lane);
-          WithFeatures(this->Item.grid.features, [&](auto features) {
-            this->encode<decltype(features)::value>(lane, column, 4 * half, values);
-          });
-        }
+        WithFeatures(this->Item.grid.features, [&](auto features) {
+          INR_UNROLL
+          for (int half = 0; half < 2; ++half) { // of the tile's inputs
+            this->encode<decltype(features)::value>(lane, k * TileSize + 8 * half + ColumnOf(lane),
+                                                    4 * half, values);
+          }
+        });
         INR_UNROLL
         for (int h = 0; h < Halves; ++h) {
           shares[h][lane] = Numbers::inputOf(Numbers::keep(values[h]));
@@ -158,6 +139,8 @@ public:
   }
 
 private:
+  static constexpr int Samples = 2 * Halves; ///< of a lane
+
   /// Inputs number `column` and the next, to the values of each share from `first` on.
   template <int Features>
   INR_HOST_DEVICE void encode(int lane, int column, int first, SumShare (&values)[Halves]) const
@@ -165,25 +148,37 @@ private:
     constexpr int width = Features < 2 ? 1 : 2;
     INR_UNROLL
     for (int part = 0; part < 2; part += width) {
-      const int l = (column + part) / Features;
-      const int f = (column + part) % Features;
-      const auto put = [&](int k, const auto& features) {
+      float features[Samples][width];
+      this->find<Features>((column + part) / Features, (column + part) % Features, RowOf(lane),
+                           features);
+      INR_UNROLL
+      for (int k = 0; k < Samples; ++k) {
         INR_UNROLL
         for (int w = 0; w < width; ++w) {
-          values[k / 2].values[first + 2 * (k % 2) + part + w] = features[w];
-        }
-      };
-      if (l < this->Item.grid.levelCount) {
-        const SampleColumn<Numbers, Features, width> samples(this->Item, l, f, RowOf(lane),
-                                                             this->Z);
-        samples.template find<2 * Halves>(this->Y, put);
-      } else {
-        const float zeros[width] = {};
-        INR_UNROLL
-        for (int k = 0; k < 2 * Halves; ++k) {
-          put(k, zeros);
+          values[k / 2].values[first + 2 * (k % 2) + part + w] = features[k][w];
         }
       }
+    }
+  }
+
+  /// Zeros beyond the last level.
+  template <int Features, int Width>
+  INR_HOST_DEVICE void find(int level, int first, int x, float (&features)[Samples][Width]) const
+  {
+    const LevelPart* const part = this->Item.parts + level;
+    if (level < this->Item.grid.levelCount && part->first >= 0) {
+      SampleColumn<Features, Width>(*part, this->Item.rows, first, x, this->Z)
+          .find(this->Y, features);
+      return;
+    }
+    float found[Samples * Width] = {}; // in memory, where `features` need not be
+    if (level < this->Item.grid.levelCount) {
+      GatherColumn<Numbers, Features, Width>(this->Item, level, first, x, this->Y, this->Z, Samples,
+                                             found);
+    }
+    INR_UNROLL
+    for (int k = 0; k < Samples * Width; ++k) {
+      features[k / Width][k % Width] = found[k];
     }
   }
 

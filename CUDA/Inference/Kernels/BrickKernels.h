@@ -14,6 +14,8 @@ namespace cuda {
 template <int Tiles, class Numbers> struct FusedBricks
 {
   static constexpr int Threads = 256;
+  /// One computes while the other waits, unless layers are wide.
+  static constexpr int LeastBlocks = Tiles < 8 ? 2 : 1;
 
   FusedModel<Numbers> model;
   FusedShared shared;
@@ -25,57 +27,68 @@ template <int Tiles, class Numbers> struct FusedBricks
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
-    const std::int64_t jobs = this->end != nullptr ? this->end->jobs : this->jobCount;
+    const std::int64_t count = this->end != nullptr ? this->end->jobs : this->jobCount;
     const std::int64_t items = this->end != nullptr ? this->end->items : this->items;
-    if (block.index() >= items) {
+    const std::int64_t first = items * block.index() / block.count();
+    const std::int64_t last = items * (block.index() + 1) / block.count();
+    if (first == last) {
       return;
     }
     const FusedNetwork<Numbers> network =
         ShareWeights(block, Threads, this->model.network, this->shared.keepsWeights);
-    for (std::int64_t k = block.index(); k < items; k += block.count()) {
-      const BrickItem item = FindItem(this->jobs, jobs, k);
-      this->locate(block, item);
-      this->findRows(block);
+    BrickItem item = FindItem(this->jobs, count, first);
+    block.threads([&](int thread) { this->place(block.shared(), item, thread); });
+    for (std::int64_t k = first; k < last; ++k) {
+      block.threads([&](int thread) { this->locate(block.shared(), thread); });
+      block.threads([&](int thread) { this->findRows(block.shared(), thread); });
       block.warps([&](auto& warp) { this->infer(block.shared(), warp, network); });
-      this->write(block, item);
+      const BrickItem next = k + 1 < last ? NextItem(item, this->jobs + count, k + 1) : item;
+      block.threads([&](int thread) {
+        this->place(block.shared(), next, thread);
+        this->write(block.shared(), item, thread);
+      });
+      item = next;
     }
   }
 
 private:
-  /// Cells of all samples' coordinates, and from them what of the lattice is kept. Two phases.
-  template <class Block> INR_HOST_DEVICE void locate(Block& block, const BrickItem& item) const
+  /// The samples' coordinates.
+  INR_HOST_DEVICE void place(unsigned char* memory, const BrickItem& item, int thread) const
   {
-    const auto& grid = this->model.grid;
-    LevelCells* const cells = this->cells(block.shared());
-    block.threads([&](int thread) {
-      constexpr int coordinates = 3 * ItemSize;
-      for (int k = thread; k < grid.levelCount * coordinates; k += Threads) {
-        const int axis = k % coordinates / ItemSize;
-        const int sample = k % ItemSize;
-        const float u = SampleCoordinate(*item.job, axis, item.firstSample(axis) + sample);
-        cells[k / coordinates].axes[axis][sample] =
-            LocateOnAxis(grid.levels[k / coordinates].scale, grid.interpolation, u);
-      }
-    });
-    LatticePlan* const plans = this->plans(block.shared());
-    const int bytes = this->shared.latticeEnd - this->shared.lattice;
-    const int bytesPerRow = RowPlace(1, 0, grid.features) * static_cast<int>(sizeof(float));
-    block.threads([&](int thread) {
-      for (int l = thread; l < grid.levelCount; l += Threads) {
-        plans[l] = PlanLattice(cells, l, bytes / bytesPerRow);
-      }
-    });
+    const int k = Threads - 1 - thread; // the last ones have less to write
+    if (k < 3 * ItemSize) {
+      const int axis = k / ItemSize;
+      this->coordinates(memory)[k] =
+          SampleCoordinate(*item.job, axis, item.firstSample(axis) + k % ItemSize);
+    }
   }
 
-  /// A phase.
-  template <class Block> INR_HOST_DEVICE void findRows(Block& block) const
+  INR_HOST_DEVICE void locate(unsigned char* memory, int thread) const
   {
-    block.threads([&](int thread) {
-      WithFeatures(this->model.grid.features, [&](auto features) {
-        FindRows<decltype(features)::value>(this->model.grid, this->cells(block.shared()),
-                                            this->plans(block.shared()),
-                                            this->lattice(block.shared()), thread, Threads);
-      });
+    const auto& grid = this->model.grid;
+    const auto placesIn = [&](int level) {
+      return SamplePlaces(this->coordinates(memory), grid.levels[level], grid.interpolation);
+    };
+    constexpr int cells = 3 * ItemSize;
+    for (int k = thread; k < grid.levelCount * cells; k += Threads) {
+      SetCell(placesIn(k / cells), k % cells, this->parts(memory)[k / cells]);
+    }
+    for (int l = Threads - 1 - thread; l < grid.levelCount; l += Threads) {
+      SetExtent(placesIn(l), this->parts(memory)[l]);
+    }
+  }
+
+  INR_HOST_DEVICE void findRows(unsigned char* memory, int thread) const
+  {
+    const auto& grid = this->model.grid;
+    const int bytes = this->shared.latticeEnd - this->shared.lattice;
+    const int capacity = bytes / (RowPlace(1, 0, grid.features) * static_cast<int>(sizeof(float)));
+    for (int l = thread; l < grid.levelCount; l += Threads) {
+      SetFirst(this->parts(memory), l, capacity);
+    }
+    WithFeatures(grid.features, [&](auto features) {
+      FindRows<decltype(features)::value>(grid, this->parts(memory), capacity,
+                                          this->lattice(memory), thread, Threads);
     });
   }
 
@@ -86,8 +99,7 @@ private:
   {
     constexpr int halves = Numbers::halves(Tiles);
     constexpr int layer = ItemSize * ItemSize;
-    const ItemGrid<Numbers> item{this->model.grid, this->cells(memory), this->plans(memory),
-                                 this->lattice(memory)};
+    const ItemGrid<Numbers> item{this->model.grid, this->parts(memory), this->lattice(memory)};
     for (int tile = halves * warp.index(); tile < SamplesPerItem / TileSize;
          tile += halves * (Threads / WarpSize)) {
       const int first = tile * TileSize;
@@ -97,26 +109,25 @@ private:
     }
   }
 
-  /// The item's voxels. A phase.
-  template <class Block> INR_HOST_DEVICE void write(Block& block, const BrickItem& item) const
+  /// A thread's share of the item's voxels.
+  INR_HOST_DEVICE void write(unsigned char* memory, const BrickItem& item, int thread) const
   {
     const BrickJob& job = *item.job;
-    const float* const results = this->results(block.shared());
-    const int side = ItemSize / job.points; // voxels
-    block.threads([&](int thread) {
-      for (int k = thread; k < side * side * side; k += Threads) {
-        const int within[3] = {k % side, k / side % side, k / (side * side)};
-        std::int64_t at[3];
-        for (int axis = 0; axis < 3; ++axis) {
-          at[axis] = std::int64_t{item.at[axis]} * side + within[axis];
-        }
-        if (at[0] < job.voxels[0] && at[1] < job.voxels[1] && at[2] < job.voxels[2]) {
-          const std::int64_t row = at[2] * job.voxels[1] + at[1];
-          this->values[job.firstValue + row * job.voxels[0] + at[0]] =
-              job.points == 1 ? Normalised(results[k]) : Mean(results, within);
-        }
+    const float* const results = this->results(memory);
+    const int power = job.points == 1 ? ItemPower : ItemPower - 1;
+    const int side = 1 << power; // voxels
+    for (int k = thread; k < 1 << 3 * power; k += Threads) {
+      const int within[3] = {k & (side - 1), k >> power & (side - 1), k >> 2 * power};
+      std::int64_t at[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        at[axis] = std::int64_t{item.at[axis]} * side + within[axis];
       }
-    });
+      if (at[0] < job.voxels[0] && at[1] < job.voxels[1] && at[2] < job.voxels[2]) {
+        const std::int64_t row = at[2] * job.voxels[1] + at[1];
+        this->values[job.firstValue + row * job.voxels[0] + at[0]] =
+            job.points == 1 ? Normalised(results[k]) : Mean(results, within);
+      }
+    }
   }
 
   /// Over a voxel's 2 x 2 x 2 samples.
@@ -132,13 +143,13 @@ private:
     return sum / 8;
   }
 
-  INR_HOST_DEVICE LevelCells* cells(unsigned char* memory) const
+  INR_HOST_DEVICE float* coordinates(unsigned char* memory) const ///< of each axis
   {
-    return reinterpret_cast<LevelCells*>(memory + this->shared.cells);
+    return reinterpret_cast<float*>(memory + this->shared.coordinates);
   }
-  INR_HOST_DEVICE LatticePlan* plans(unsigned char* memory) const
+  INR_HOST_DEVICE LevelPart* parts(unsigned char* memory) const ///< of each level
   {
-    return reinterpret_cast<LatticePlan*>(memory + this->shared.plans);
+    return reinterpret_cast<LevelPart*>(memory + this->shared.parts);
   }
   INR_HOST_DEVICE float* lattice(unsigned char* memory) const
   {

@@ -136,16 +136,19 @@ INR_HOST_DEVICE inline void Interpolate(const CellWeights& weights, const EntryO
   for (int corner = 0; corner < 8; ++corner) {
     entries[corner] = entryOf(corner);
   }
+  float rows[2][Features]; // of y
   INR_UNROLL
-  for (int f = 0; f < Features; ++f) {
-    float rows[2]; // of y
+  for (int y = 0; y < 2; ++y) {
     INR_UNROLL
-    for (int y = 0; y < 2; ++y) {
+    for (int f = 0; f < Features; ++f) {
       const float front = Mix(entries[2 * y][f], entries[2 * y + 1][f], weights.x);
       const float back = Mix(entries[2 * y + 4][f], entries[2 * y + 5][f], weights.x);
-      rows[y] = Mix(front, back, weights.z);
+      rows[y][f] = Mix(front, back, weights.z);
     }
-    features[f] = Mix(rows[0], rows[1], weights.y);
+  }
+  INR_UNROLL
+  for (int f = 0; f < Features; ++f) {
+    features[f] = Mix(rows[0][f], rows[1][f], weights.y);
   }
 }
 

@@ -16,11 +16,12 @@ namespace cuda {
 constexpr int MostFusedNeurons = 128;
 
 /// Weights in tiles, in the order in which they are used: layer by layer, the last one of a single
-/// column of tiles; within a layer by tile of inputs, then by tile of outputs; 32 shares each.
+/// column of tiles; within a layer by tile of inputs, then by tile of outputs, then, of float32
+/// numbers, by half of these; 32 shares each.
 template <class Numbers> struct FusedNetwork
 {
   const typename Numbers::Weight* weights;
-  std::int64_t weightShares; ///< 32 per tile and part
+  std::int64_t weightShares; ///< of all layers
   bool hasSecond;            ///< a layer's tiles are followed by those of its weights' second parts
   int inputTiles;            ///< of the first layer
   int hiddenLayers;
@@ -28,19 +29,24 @@ template <class Numbers> struct FusedNetwork
   Activation outputActivation;
 };
 
-/// Reads the weights of one tile of inputs, and calls multiply(h, n, share) for each tile of
-/// samples and of outputs.
+/// Reads the weights of one tile of inputs, and calls multiply(h, n, share, part) for each tile of
+/// samples and of outputs, and each share of its weights.
 template <class Numbers, int OutputTiles, int Halves, class Warp, class Multiply>
 INR_HOST_DEVICE inline void MultiplyTile(Warp& warp, const typename Numbers::Weight* tiles,
                                          const Multiply& multiply)
 {
   INR_UNROLL
   for (int n = 0; n < OutputTiles; ++n) {
-    typename Warp::template PerLane<typename Numbers::Weight> share;
-    warp.lanes([&](int lane) { share[lane] = tiles[n * WarpSize + lane]; });
     INR_UNROLL
-    for (int h = 0; h < Halves; ++h) {
-      multiply(h, n, share);
+    for (int part = 0; part < Numbers::WeightShares; ++part) {
+      typename Warp::template PerLane<typename Numbers::Weight> share;
+      warp.lanes([&](int lane) {
+        share[lane] = tiles[(n * Numbers::WeightShares + part) * WarpSize + lane];
+      });
+      INR_UNROLL
+      for (int h = 0; h < Halves; ++h) {
+        multiply(h, n, share, part);
+      }
     }
   }
 }
@@ -61,20 +67,26 @@ MultiplyLayer(Warp& warp, const FusedNetwork<Numbers>& network,
       warp.lanes([&](int lane) { sums[h][n][lane] = SumShare{}; });
     }
   }
-  const int all = inputTiles * OutputTiles * WarpSize;
+  constexpr int shares = OutputTiles * Numbers::WeightShares * WarpSize; // of a tile of inputs
+  const int all = inputTiles * shares;
   inputs.forEachTile(inputTiles, [&](int k, const auto& ofHalf) {
-    const auto* const tiles = weights + k * OutputTiles * WarpSize;
+    const auto* const tiles = weights + k * shares;
     if constexpr (Numbers::HasSecondWeights) {
       if (network.hasSecond) {
         MultiplyTile<Numbers, OutputTiles, Halves>(
-            warp, tiles + all, [&](int h, int n, const auto& share) {
-              warp.multiplyAddFirst(ofHalf(h), share, sums[h][n]);
+            warp, tiles + all, [&](int h, int n, const auto& share, int part) {
+              warp.multiplyAddFirst(ofHalf(h), share, part, sums[h][n]);
             });
       }
     }
-    MultiplyTile<Numbers, OutputTiles, Halves>(warp, tiles, [&](int h, int n, const auto& share) {
-      warp.multiplyAdd(ofHalf(h), share, sums[h][n]);
-    });
+    MultiplyTile<Numbers, OutputTiles, Halves>(
+        warp, tiles, [&](int h, int n, const auto& share, int part) {
+          if constexpr (Numbers::WeightShares > 1) {
+            warp.multiplyAdd(ofHalf(h), share, part, sums[h][n]);
+          } else {
+            warp.multiplyAdd(ofHalf(h), share, sums[h][n]);
+          }
+        });
   });
   return weights + (network.hasSecond ? 2 : 1) * all;
 }

@@ -11,60 +11,84 @@
 namespace inr {
 namespace cuda {
 
-/// Cells of a level for an item's samples, along each axis.
-struct LevelCells
+/// Where an item's samples are in a level of the grid.
+struct LevelPart
 {
-  AxisCell axes[3][ItemSize];
-};
-
-/// The part of a level's lattice that an item's samples touch.
-struct LatticePlan
-{
-  std::uint32_t lower[2]; ///< of its rows: y, z
-  std::int32_t down;      ///< rows of a layer
-  std::int32_t first;     ///< of its rows, y fastest; negative where they are not kept
-  std::int32_t end;       ///< of the rows of this level and those before it
+  AxisCell axes[3][ItemSize]; ///< cells of y and z are counted from the first sample's on
+  std::uint32_t lower[2];     ///< those of the first sample
+  std::int32_t down;          ///< lattice points between the first and the last sample, along y
+  std::int32_t rows;          ///< of such points, along x; more than MostLatticeRows: very many
+  std::int32_t first;         ///< of its rows among those that are kept; negative where its are not
 };
 
 /// Rows of a level that are kept at most: beyond, samples lie in cells of their own.
 constexpr int MostLatticeRows = (ItemSize + 1) * (ItemSize + 1);
 
-/// Lattice points along y (axis 1) or z between the first and the last sample's cells.
-INR_HOST_DEVICE inline std::int64_t PointsAlong(const LevelCells& cells, int axis)
+/// Rows that are kept of a level with so many, where there is room for `left` more.
+INR_HOST_DEVICE inline std::int32_t KeptRows(std::int32_t rows, std::int32_t left)
 {
-  const AxisCell* const along = cells.axes[axis];
-  return std::int64_t{along[ItemSize - 1].cell} - std::int64_t{along[0].cell} + 2;
+  return rows <= MostLatticeRows && rows <= left ? rows : 0;
 }
 
-/// Rows of such points; more than MostLatticeRows where they are too many to be counted.
-INR_HOST_DEVICE inline std::int32_t RowsOf(const LevelCells& cells)
+/// A sample's coordinates along an axis, and the level's cells there.
+class SamplePlaces
 {
-  const std::int64_t down = PointsAlong(cells, 1);
-  const std::int64_t deep = PointsAlong(cells, 2);
+public:
+  /// `coordinates`: ItemSize of each axis.
+  INR_HOST_DEVICE SamplePlaces(const float* coordinates, const LevelView& level,
+                               GridInterpolation interpolation)
+      : Coordinates(coordinates), Scale(level.scale), Interpolation(interpolation)
+  {}
+
+  INR_HOST_DEVICE AxisCell cell(int axis, int sample) const
+  {
+    return LocateOnAxis(this->Scale, this->Interpolation,
+                        this->Coordinates[axis * ItemSize + sample]);
+  }
+  /// Lattice points between the first and the last sample.
+  INR_HOST_DEVICE std::int64_t pointsAlong(int axis) const
+  {
+    return std::int64_t{this->cell(axis, ItemSize - 1).cell} -
+           std::int64_t{this->cell(axis, 0).cell} + 2;
+  }
+
+private:
+  const float* Coordinates;
+  float Scale;
+  GridInterpolation Interpolation;
+};
+
+/// Cell number k of the 3 * ItemSize of a level.
+INR_HOST_DEVICE inline void SetCell(const SamplePlaces& places, int k, LevelPart& part)
+{
+  const int axis = k / ItemSize;
+  AxisCell cell = places.cell(axis, k % ItemSize);
+  if (axis > 0) {
+    cell.cell -= places.cell(axis, 0).cell;
+  }
+  part.axes[axis][k % ItemSize] = cell;
+}
+
+/// All but the cells, and `first`.
+INR_HOST_DEVICE inline void SetExtent(const SamplePlaces& places, LevelPart& part)
+{
+  const std::int64_t down = places.pointsAlong(1);
+  const std::int64_t deep = places.pointsAlong(2);
   const bool few = down <= MostLatticeRows && deep <= MostLatticeRows;
-  return few ? static_cast<std::int32_t>(down * deep) : MostLatticeRows + 1;
+  part.lower[0] = places.cell(1, 0).cell;
+  part.lower[1] = places.cell(2, 0).cell;
+  part.down = few ? static_cast<std::int32_t>(down) : 0;
+  part.rows = few ? static_cast<std::int32_t>(down * deep) : MostLatticeRows + 1;
 }
 
-/// Of level l, after those of the levels before it that are kept; `capacity` rows fit.
-INR_HOST_DEVICE inline LatticePlan PlanLattice(const LevelCells* cells, int l,
-                                               std::int64_t capacity)
+/// Sets `first` of level l, behind those before it that are kept; `capacity` rows fit.
+INR_HOST_DEVICE inline void SetFirst(LevelPart* parts, int l, std::int32_t capacity)
 {
-  std::int32_t end = 0;
-  bool kept = false;
-  std::int32_t rows = 0;
-  for (int k = 0; k <= l; ++k) {
-    rows = RowsOf(cells[k]);
-    kept = rows <= MostLatticeRows && end + rows <= capacity;
-    end += kept ? rows : 0;
+  std::int32_t first = 0;
+  for (int k = 0; k < l; ++k) {
+    first += KeptRows(parts[k].rows, capacity - first);
   }
-  LatticePlan plan{};
-  for (int axis = 1; axis < 3; ++axis) {
-    plan.lower[axis - 1] = cells[l].axes[axis][0].cell;
-  }
-  plan.down = kept ? static_cast<std::int32_t>(PointsAlong(cells[l], 1)) : 0;
-  plan.first = kept ? end - rows : -1;
-  plan.end = end;
-  return plan;
+  parts[l].first = KeptRows(parts[l].rows, capacity - first) > 0 ? first : -1;
 }
 
 /// Where a sample's features are, of row `row` of all.
@@ -73,35 +97,45 @@ INR_HOST_DEVICE inline int RowPlace(int row, int sample, int features)
   return (row * ItemSize + sample) * features;
 }
 
+/// A row at one sample's x.
+template <int Features, class Number>
+INR_HOST_DEVICE inline void FindRow(const GridView<Number>& grid, const LevelView& level,
+                                    const LevelPart& part, int row, int sample, float* to)
+{
+  const auto* const table = TableOf<Number, Features>(grid, level);
+  const std::uint32_t y = part.lower[0] + static_cast<std::uint32_t>(row % part.down);
+  const std::uint32_t z = part.lower[1] + static_cast<std::uint32_t>(row / part.down);
+  const AxisCell& x = part.axes[0][sample];
+  const Entry<Number, Features> left = table[EntryOf(level, x.cell, y, z)];
+  const Entry<Number, Features> right = table[EntryOf(level, x.cell + 1, y, z)];
+  float features[Features];
+  INR_UNROLL
+  for (int f = 0; f < Features; ++f) {
+    features[f] = Mix(left[f], right[f], x.weight);
+  }
+  Store(features, to);
+}
+
 /// A thread's share of all rows that are kept: an item's samples of each, features fastest.
 template <int Features, class Number>
-INR_HOST_DEVICE inline void FindRows(const GridView<Number>& grid, const LevelCells* cells,
-                                     const LatticePlan* plans, float* rows, int thread, int threads)
+INR_HOST_DEVICE inline void FindRows(const GridView<Number>& grid, const LevelPart* parts,
+                                     std::int32_t capacity, float* rows, int thread, int threads)
 {
-  int l = 0;
-  const int all = plans[grid.levelCount - 1].end * ItemSize;
-  for (int k = thread; k < all; k += threads) {
+  int next = 0; // level
+  std::int32_t first = 0;
+  std::int32_t end = 0;
+  for (int k = thread;; k += threads) {
     const int row = k / ItemSize;
-    const int sample = k % ItemSize;
-    while (row >= plans[l].end) {
-      ++l;
+    while (row >= end) {
+      if (next == grid.levelCount) {
+        return;
+      }
+      first = end;
+      end += KeptRows(parts[next].rows, capacity - end);
+      ++next;
     }
-    const LevelView& level = grid.levels[l];
-    const auto* const table = TableOf<Number, Features>(grid, level);
-    const LatticePlan& plan = plans[l];
-    const std::uint32_t y =
-        plan.lower[0] + static_cast<std::uint32_t>((row - plan.first) % plan.down);
-    const std::uint32_t z =
-        plan.lower[1] + static_cast<std::uint32_t>((row - plan.first) / plan.down);
-    const AxisCell& x = cells[l].axes[0][sample];
-    const Entry<Number, Features> left = table[EntryOf(level, x.cell, y, z)];
-    const Entry<Number, Features> right = table[EntryOf(level, x.cell + 1, y, z)];
-    float features[Features];
-    INR_UNROLL
-    for (int f = 0; f < Features; ++f) {
-      features[f] = Mix(left[f], right[f], x.weight);
-    }
-    Store(features, rows + RowPlace(row, sample, Features));
+    FindRow<Features>(grid, grid.levels[next - 1], parts[next - 1], row - first, k % ItemSize,
+                      rows + RowPlace(row, k % ItemSize, Features));
   }
 }
 

@@ -17,6 +17,7 @@ struct HalfNumbers
   using Weight = WeightShare;
   using Kept = InputShare; ///< a tile of a layer's results
   using Input = InputShare;
+  static constexpr int WeightShares = 1; ///< of a tile, for each lane
   static constexpr bool HasSecondWeights = false;
 
   /// Tiles of samples that a warp takes through the network at once, of 16 * tiles neurons.
@@ -64,6 +65,7 @@ struct FloatNumbers
   using Weight = WideWeightShare;
   using Kept = SumShare;
   using Input = WideInputShare;
+  static constexpr int WeightShares = 2;
   static constexpr bool HasSecondWeights = true;
 
   INR_HOST_DEVICE static constexpr int halves(int /*tiles*/) { return 1; }

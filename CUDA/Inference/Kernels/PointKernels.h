@@ -26,13 +26,13 @@ INR_HOST_DEVICE constexpr int RowStride(int inputTiles) { return inputTiles * Ti
 /// Where a fused kernel has what in its block's shared memory, in bytes.
 struct FusedShared
 {
-  bool keepsWeights;       ///< a copy of them comes first
-  std::int32_t rows;       ///< points only: 32 encoded rows per warp
-  std::int32_t results;    ///< one per sample
-  std::int32_t cells;      ///< bricks only: 24 AxisCells per level
-  std::int32_t plans;      ///< and a LatticePlan per level
-  std::int32_t lattice;    ///< and some rows of the lattice
-  std::int32_t latticeEnd; ///< = all that is needed
+  bool keepsWeights;        ///< a copy of them comes first
+  std::int32_t rows;        ///< points only: 32 encoded rows per warp
+  std::int32_t results;     ///< one per sample
+  std::int32_t coordinates; ///< bricks only: of samples along each axis
+  std::int32_t parts;       ///< and a LevelPart per level
+  std::int32_t lattice;     ///< and some rows of the lattice
+  std::int32_t latticeEnd;  ///< = all that is needed
 };
 
 /// The weights, from the copy in shared memory where there is one. A phase.
@@ -57,6 +57,8 @@ ShareWeights(Block& block, int threads, const FusedNetwork<Numbers>& network, bo
 template <int Tiles, class Numbers> struct FusedPoints
 {
   static constexpr int Threads = ThreadsPerBlock;
+  /// Else entries that are on their way would take the way through memory once more.
+  static constexpr int LeastBlocks = Tiles == 4 ? 3 : 0;
 
   FusedModel<Numbers> model;
   FusedShared shared;
