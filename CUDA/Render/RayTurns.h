@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 
 namespace inr {
 namespace cuda {
@@ -39,9 +38,9 @@ public:
   /// Rays that wait for bricks, since run.
   std::int64_t waiting() const { return this->Waiting; }
 
-  /// Runs a kernel with members lists, most and begin as of MarchRays, turn by turn: few samples
-  /// first, so that rays which end soon leave no idle threads behind, and then more and more. Waits
-  /// once, to be told how many rays wait: if none, all is done.
+  /// Runs a kernel with members lists and begin as of MarchRays, by as many launches as its Turns
+  /// are; none may end the last one. Waits once, to be told how many rays wait: if none, all is
+  /// done.
   template <class Kernel> void run(Kernel kernel)
   {
     const std::int64_t now = this->limit();
@@ -55,14 +54,15 @@ public:
                             nullptr,
                             nullptr,
                             this->Waiters[next].data(),
-                            this->count(WaitingOf + next)};
+                            this->count(WaitingOf + next),
+                            0};
     kernel.begin = this->Begins;
     int out = 0;
-    for (const int most : Turns) {
+    for (const int most : Kernel::Turns) {
       this->clear(LaterOf + out);
       kernel.lists.later = this->Later[out].data();
       kernel.lists.laterCount = this->count(LaterOf + out);
-      kernel.most = most;
+      kernel.lists.most = most;
       this->Where.run(kernel, now);
       kernel.lists.now = kernel.lists.later;
       kernel.lists.nowCount = kernel.lists.laterCount;
@@ -77,7 +77,6 @@ public:
   }
 
 private:
-  static constexpr int Turns[] = {32, 64, 128, 256, 1024, std::numeric_limits<int>::max()};
   enum Count { Now, LaterOf, WaitingOf = LaterOf + 2, CountOfCounts = WaitingOf + 2 };
 
   using List = typename Machine::template Array<std::uint32_t>;

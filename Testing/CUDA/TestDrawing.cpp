@@ -123,6 +123,16 @@ TEST_P(Drawing, NeedsNoMoreThanTheSmallestCache)
   }
 }
 
+/// Where a ray waits for one of two bricks, it does not matter that it opens the other one anew.
+TEST_P(Drawing, MixesLevelsTheSameWhereverItWaits)
+{
+  inr::Frame frame = SmallFrame(inr::RenderMode::RayMarching);
+  frame.levelOfDetailScale = 2.5;
+  const inr::Image truth = DrawnInTheEnd(frame, RoomFor(GetParam(), 0));
+  EXPECT_EQ(DrawnInTheEnd(frame, RoomFor(GetParam(), 8)).pixels, truth.pixels);
+  EXPECT_EQ(Draw(frame, RoomFor(GetParam(), 0)).rgba.pixels, truth.pixels);
+}
+
 TEST_P(Drawing, ComesToTheSamePictureInTime)
 {
   for (const bool deterministic : {true, false}) {

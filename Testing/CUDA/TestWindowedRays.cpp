@@ -85,10 +85,10 @@ struct Stage
 struct CountSamples
 {
   static constexpr int Threads = 4;
+  static constexpr int Turns[] = {32, 64, inr::cuda::RayLists::NoLimit};
 
   FewBricks* cache;
   inr::cuda::RayLists lists;
-  int most;
   bool begin;
   Stage* progress;
   std::vector<int>* ended; ///< of each pixel, how often
@@ -109,7 +109,7 @@ private:
     }
     EXPECT_EQ(stage.pixel, pixel) << "another ray's progress";
     for (int taken = 0; stage.samples < Needed * Samples; ++stage.samples, ++taken) {
-      if (taken == this->most) {
+      if (taken == this->lists.most) {
         this->lists.list(ray, false);
         return;
       }

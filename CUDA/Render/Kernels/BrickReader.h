@@ -4,6 +4,7 @@
 #include "CUDA/Render/Kernels/BrickSampling.h"
 #include "Core/Render/BrickWay.h"
 #include "Core/Render/OnMiss.h"
+#include "Core/Render/SampleWalker.h"
 
 #include <cmath>
 
@@ -15,10 +16,13 @@ namespace cuda {
 class BrickReader
 {
 public:
-  /// Whether a sample of `level` at a place is read from the brick that is open.
-  INR_HOST_DEVICE bool covers(int level, double place) const
+  /// How many of at most `most` samples of `level`, from `place` on and `spacing` = 1 / inverse
+  /// apart, are read from the brick that is open.
+  INR_HOST_DEVICE int covered(int level, double place, double inverse, int most) const
   {
-    return level == this->Level && place >= this->Enter && place < this->Exit;
+    return level == this->Level && place < this->Exit
+               ? CountBelow((this->Exit - place) * inverse, most)
+               : 0;
   }
 
   /// Opens the brick of such a sample or, unless the ray is to stop where that is not there, the
@@ -81,7 +85,6 @@ private:
   {
     cache.touch(slot);
     const double inverse = 1.0 / step;
-    this->Enter = glm::max(this->Wanted.enter(), served.enter()) * inverse;
     this->Exit = glm::min(this->Wanted.exit(), served.exit()) * inverse;
     this->Reference = std::floor(served.enter() * inverse);
     this->Served = served.brick();
@@ -95,8 +98,7 @@ private:
 
   BrickWay Wanted;
   BrickPath Path{};
-  double Enter = 0; ///< places
-  double Exit = 0;
+  double Exit = 0;      ///< a place
   double Reference = 0; ///< where the path begins, a whole number
   BrickKey Served = 0;
   BrickKey Wish = 0;

@@ -6,6 +6,7 @@
 
 #include "CUDA/Cache/Kernels/CacheView.h"
 #include "CUDA/Device/Kernels/Mix.h"
+#include "CUDA/Render/Kernels/ReadOnly.h"
 #include "Core/Render/BrickPath.h"
 
 #include <cmath>
@@ -17,14 +18,13 @@ namespace cuda {
 INR_HOST_DEVICE inline float PlaceOn(const BrickPath& path, int axis, float along)
 {
   const float place = fmaf(along, path.direction[axis], path.origin[axis]);
-  const float above = place > 0.0f ? place : 0.0f;
-  return above < path.last[axis] ? above : path.last[axis];
+  return fminf(fmaxf(place, 0.0f), path.last[axis]);
 }
 
 /// A place in a brick: the first corner of its cell, and where it is from there.
 struct CellPlace
 {
-  std::int64_t first; ///< voxel
+  std::int32_t first; ///< voxel; the largest brick has 2^30
   float x, y, z;      ///< weights of the far neighbours
 };
 
@@ -40,48 +40,86 @@ INR_HOST_DEVICE inline CellPlace FindCell(const CacheView& cache, const Place& p
     cell[axis] = floor < dims[axis] - 2 ? floor : dims[axis] - 2;
     weight[axis] = static_cast<float>(place[axis] - cell[axis]);
   }
-  return {cell[0] + cache.rowStride * cell[1] + cache.layerStride * cell[2], weight[0], weight[1],
-          weight[2]};
+  const auto row = static_cast<int>(cache.rowStride);
+  const auto layer = static_cast<int>(cache.layerStride);
+  return {cell[0] + row * cell[1] + layer * cell[2], weight[0], weight[1], weight[2]};
 }
 
-template <class Voxel>
-INR_HOST_DEVICE inline float InterpolateStored(const CacheView& cache, const void* voxels,
-                                               const CellPlace& at)
+/// Of a cell on a path.
+INR_HOST_DEVICE inline CellPlace FindCellOn(const CacheView& cache, const BrickPath& path,
+                                            float along)
 {
-  const Voxel* const near = static_cast<const Voxel*>(voxels) + at.first;
-  const auto row = [&](std::int64_t offset) {
-    return Mix(static_cast<float>(near[offset]), static_cast<float>(near[offset + 1]), at.x);
-  };
-  const float front = Mix(row(0), row(cache.rowStride), at.y);
-  const float back = Mix(row(cache.layerStride), row(cache.layerStride + cache.rowStride), at.y);
-  return Mix(front, back, at.z);
+  const float place[3] = {PlaceOn(path, 0, along), PlaceOn(path, 1, along),
+                          PlaceOn(path, 2, along)};
+  return FindCell(cache, place);
+}
+
+/// A place among a brick's voxels.
+struct StoredPlace
+{
+  const void* voxels;
+  CellPlace at;
+};
+
+/// Between the voxels around some places: all of these are read before one is waited for.
+template <class Voxel, int Count>
+INR_HOST_DEVICE inline void InterpolateStored(const CacheView& cache,
+                                              const StoredPlace (&places)[Count],
+                                              float (&stored)[Count])
+{
+  constexpr int rows = 4;
+  const std::int64_t offsets[rows] = {0, cache.rowStride, cache.layerStride,
+                                      cache.layerStride + cache.rowStride};
+  Voxel read[Count][rows][2];
+  for (int k = 0; k < Count; ++k) {
+    const Voxel* const near = static_cast<const Voxel*>(places[k].voxels) + places[k].at.first;
+    for (int row = 0; row < rows; ++row) {
+      read[k][row][0] = ReadOnly(near + offsets[row]);
+      read[k][row][1] = ReadOnly(near + offsets[row] + 1);
+    }
+  }
+  for (int k = 0; k < Count; ++k) {
+    const CellPlace& at = places[k].at;
+    const auto along = [&](int row) {
+      return Mix(static_cast<float>(read[k][row][0]), static_cast<float>(read[k][row][1]), at.x);
+    };
+    stored[k] = Mix(Mix(along(0), along(1), at.y), Mix(along(2), along(3), at.y), at.z);
+  }
+}
+
+/// Trilinear, of bricks' values as they are stored.
+template <int Count>
+INR_HOST_DEVICE inline void FindStored(const CacheView& cache, const StoredPlace (&places)[Count],
+                                       float (&stored)[Count])
+{
+  switch (cache.precision) {
+  case CachePrecision::Float32:
+    InterpolateStored<float>(cache, places, stored);
+    break;
+  case CachePrecision::Bits16:
+    InterpolateStored<std::uint16_t>(cache, places, stored);
+    break;
+  case CachePrecision::Bits8:
+    InterpolateStored<std::uint8_t>(cache, places, stored);
+    break;
+  }
 }
 
 /// Trilinear, of a brick's values.
 INR_HOST_DEVICE inline float Interpolated(const CacheView& cache, const BrickView& brick,
                                           const CellPlace& at)
 {
-  float stored = 0.0f;
-  switch (cache.precision) {
-  case CachePrecision::Float32:
-    stored = InterpolateStored<float>(cache, brick.voxels, at);
-    break;
-  case CachePrecision::Bits16:
-    stored = InterpolateStored<std::uint16_t>(cache, brick.voxels, at);
-    break;
-  case CachePrecision::Bits8:
-    stored = InterpolateStored<std::uint8_t>(cache, brick.voxels, at);
-    break;
-  }
-  return fmaf(stored, brick.step, brick.low);
+  const StoredPlace place[1] = {{brick.voxels, at}};
+  float stored[1] = {};
+  FindStored(cache, place, stored);
+  return fmaf(stored[0], brick.step, brick.low);
 }
 
 /// At a place on a path.
 INR_HOST_DEVICE inline float ValueOn(const CacheView& cache, const BrickPath& path, float along)
 {
-  const float place[3] = {PlaceOn(path, 0, along), PlaceOn(path, 1, along),
-                          PlaceOn(path, 2, along)};
-  return Interpolated(cache, {path.voxels, path.base, path.quantum}, FindCell(cache, place));
+  return Interpolated(cache, {path.voxels, path.base, path.quantum},
+                      FindCellOn(cache, path, along));
 }
 
 } // namespace cuda

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The rays of a picture, a thread each, launch by launch: those that have ended are written, the
-// others are listed for the next launch, so that its warps are full.
+// The rays of a picture, a thread each: those that have ended are written, and those that wait for
+// bricks are listed for the launch that has them.
 #pragma once
 
 #include "CUDA/Device/Kernels/Block.h"
@@ -15,12 +15,15 @@ namespace cuda {
 struct MarchRays
 {
   static constexpr int Threads = 128;
+  static constexpr int LeastBlocks = 5; ///< what one waits for, others have time for
+  /// A single one: threads whose rays have ended cost less than to part those that were neighbours,
+  /// which meet the same bricks at the same time.
+  static constexpr int Turns[] = {RayLists::NoLimit};
 
   const RenderScene* scene;
   CacheView cache;
   RayLists lists;
   OnMiss onMiss;
-  int most;              ///< samples that a ray may come past before it is another one's turn
   bool begin;            ///< else rays go on from where they are
   RayProgress* progress; ///< of each ray of the window
   PictureView picture;
@@ -42,12 +45,11 @@ private:
     }
     RayMarch march(*this->scene, this->cache, this->onMiss, static_cast<int>(pixel % width),
                    static_cast<int>(pixel / width), state);
-    const RayMarch::Outcome outcome = march.advance(this->most);
-    if (outcome == RayMarch::Outcome::Ends) {
+    if (march.advance()) {
       march.write(this->picture, pixel);
     } else {
       this->progress[ray] = state;
-      this->lists.list(ray, outcome == RayMarch::Outcome::Waits);
+      this->lists.list(ray, true);
     }
     this->counts->add(march.counts());
   }

@@ -30,13 +30,15 @@ struct PathProgress
 struct TracePaths
 {
   static constexpr int Threads = 128;
+  /// Few values of the field first, so that paths which end soon leave no idle threads behind, and
+  /// then more and more.
+  static constexpr int Turns[] = {32, 64, 128, 256, 1024, RayLists::NoLimit};
 
   const PathScene* scene;
   CacheView cache;
   RayLists lists;
   OnMiss onMiss;
-  int most;   ///< values of the field that a path may ask for before it is another one's turn
-  bool begin; ///< else paths go on from where they are
+  bool begin;             ///< else paths go on from where they are
   PathProgress* progress; ///< memory for one of each path of the window
   PictureView picture;    ///< depth of first collisions, 0 where there was none; no samples
   /// For each tile of the picture, of `tileEdge` pixels a side: values that came from coarser
@@ -67,7 +69,7 @@ private:
     }
     CachedField field(this->cache, this->onMiss, counts);
     bool waits = false;
-    while (!ends && !waits && static_cast<int>(counts.samples) < this->most) {
+    while (!ends && !waits && static_cast<int>(counts.samples) < this->lists.most) {
       ends = !this->step(path, field, counts, waits);
     }
     if (ends) {

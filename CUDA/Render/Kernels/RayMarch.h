@@ -6,7 +6,7 @@
 #pragma once
 
 #include "CUDA/Render/Kernels/BrickGradient.h"
-#include "CUDA/Render/Kernels/RenderScene.h"
+#include "CUDA/Render/Kernels/CompositeSamples.h"
 #include "Core/Render/StepTable.h"
 
 namespace inr {
@@ -17,12 +17,10 @@ struct RayProgress
 {
   std::int64_t interval = -1; ///< of the next sample; -1: the ray has not begun
   SampleStretch stretch;      ///< that it belongs to
-  double rgb[3] = {};         ///< premultiplied, so far
-  double transmittance = 1;
+  GatheredLight light;
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
   Projection projection;    ///< instead, of values that are projected
-  std::int64_t samples = 0;
-  std::int64_t levels = 0; ///< that these came from, summed up
+  std::int64_t levels = 0;  ///< that samples came from, summed up
 };
 
 /// What happened while a ray came further.
@@ -38,7 +36,9 @@ struct RayCounts
   std::uint32_t levels = 0;      ///< a bit for each that samples came from
 };
 
-/// A ray while a thread has it.
+/// A ray while a thread has it. It comes from stretch to stretch, within one from brick to brick,
+/// and within a brick by a few samples at once: so the threads of a warp, whose rays meet all that
+/// at about the same samples, do each of it together.
 class RayMarch
 {
 public:
@@ -60,29 +60,17 @@ public:
     }
   }
 
-  /// What keeps a ray from going on.
-  enum class Outcome {
-    Ends,
-    Waits, ///< for a brick
-    Pauses ///< as it has come past as many samples as it may
-  };
-
-  /// Goes on, for `most` samples at the most. Of a ray that has not ended the progress says where.
-  INR_HOST_DEVICE Outcome advance(int most)
+  /// Goes on until the ray ends, or waits for a brick: false, and the progress says where.
+  INR_HOST_DEVICE bool advance()
   {
-    const MarchSettings& settings = this->Scene.settings;
-    while (this->Samples.moveToVisible(settings)) {
-      const AlikeSamples alike = this->Samples.alike();
-      if (settings.projector.canSkip(this->State.projection, this->Samples.stretch().range)) {
-        this->Samples.pass(alike, alike.count);
-        continue;
-      }
-      const Outcome outcome = this->takeAll(alike, most);
-      if (outcome != Outcome::Ends || this->isDone() || alike.last) {
-        return outcome;
+    while (!this->isDone() && this->moveOn()) {
+      if (!this->takeSome()) {
+        this->State.interval = this->Samples.next();
+        this->State.stretch = this->Samples.stretch();
+        return false;
       }
     }
-    return Outcome::Ends;
+    return true;
   }
 
   INR_HOST_DEVICE const RayCounts& counts() const { return this->Counts; }
@@ -90,180 +78,325 @@ public:
   /// Of a ray at its end.
   INR_HOST_DEVICE void write(const PictureView& picture, std::int64_t pixel)
   {
-    this->finishProjection();
-    glm::vec4 color(0.0f);
-    for (int channel = 0; channel < 3; ++channel) {
-      color[channel] = static_cast<float>(this->State.rgb[channel]);
-    }
-    color[3] = static_cast<float>(1.0 - this->State.transmittance);
-    reinterpret_cast<glm::vec4*>(picture.rgba)[pixel] = color;
-    const double at = this->State.halfOpaqueAt;
+    glm::dvec4 light = this->State.light.sum();
+    double at = this->State.halfOpaqueAt;
+    this->finishProjection(light, at);
+    reinterpret_cast<glm::vec4*>(picture.rgba)[pixel] =
+        glm::vec4(glm::dvec4(glm::dvec3(light), 1.0 - light.w));
     picture.depth[pixel] =
         at >= 0 ? static_cast<float>(this->Scene.rays.windowDepth(this->Way.at(at))) : 1.0f;
-    const auto count = static_cast<double>(this->State.samples);
+    const auto count = static_cast<double>(this->State.light.samples());
     picture.samples[2 * pixel] = static_cast<float>(count);
     picture.samples[2 * pixel + 1] =
         count > 0 ? static_cast<float>(static_cast<double>(this->State.levels) / count) : -1.0f;
   }
 
 private:
+  /// Samples that are taken together, from one brick or two: of more, other threads that have fewer
+  /// would wait for too long.
+  static constexpr int MostOfOne = 64;
+  static constexpr int MostOfTwo = 16;
+
   INR_HOST_DEVICE bool isDone() const
   {
-    return this->State.transmittance <= OpaqueTransmittance ||
+    return this->State.light.isOpaque() ||
            this->Scene.settings.projector.isFinal(this->State.projection);
   }
 
-  /// Takes such samples until all are past or something keeps it from going on.
-  INR_HOST_DEVICE Outcome takeAll(const AlikeSamples& alike, int most)
-  {
-    Outcome outcome = Outcome::Ends;
-    int taken = 0;
-    while (taken < alike.count && !this->isDone()) {
-      if (static_cast<int>(this->Counts.samples) >= most) {
-        outcome = Outcome::Pauses;
-        break;
-      }
-      if (!this->take(alike, taken)) {
-        outcome = Outcome::Waits;
-        break;
-      }
-      ++taken;
-    }
-    this->Samples.pass(alike, taken);
-    if (outcome != Outcome::Ends) {
-      this->State.interval = this->Samples.next();
-      this->State.stretch = this->Samples.stretch();
-    }
-    return outcome;
-  }
-
-  /// A sample, number k of those that are alike. False where it waits for a brick.
-  INR_HOST_DEVICE bool take(const AlikeSamples& alike, int k)
+  /// To the next sample that is to be taken; false where there is none.
+  INR_HOST_DEVICE bool moveOn()
   {
     const MarchSettings& settings = this->Scene.settings;
-    const std::int64_t interval = this->Samples.next() + k * alike.steps();
-    const double place = static_cast<double>(interval) + this->Samples.offset(alike);
-    const double t = glm::min(place * settings.step, this->Way.length);
-    if (settings.crops && !settings.cropping.shows(this->Way.at(t))) {
-      return true;
+    while (this->Alike.count > 0 || this->Samples.moveToVisible(settings)) {
+      if (this->Alike.count == 0) {
+        this->Alike = this->Samples.alike();
+        if (settings.projector.canSkip(this->State.projection, this->Samples.stretch().range)) {
+          this->pass(this->Alike.count);
+          continue;
+        }
+      }
+      if (this->shows(0)) {
+        return true;
+      }
+      this->pass(1);
     }
-    const int level = this->levelAt(interval, place);
-    BrickReader& reader = this->Readers[level & 1];
-    if (!reader.covers(level, place) &&
-        !reader.open(this->Cache, this->Way, level, place, settings.step, this->Missing)) {
-      this->Cache.request(reader.wish(), 1.0f);
-      return false;
-    }
-    const float along = reader.along(static_cast<double>(interval)) +
-                        static_cast<float>(this->Samples.offset(alike));
-    if (!this->add(alike, reader, along, t)) {
-      return false;
-    }
-    this->count(reader);
-    return true;
+    return false;
   }
 
-  /// The level of the cache that a sample is from.
-  INR_HOST_DEVICE int levelAt(std::int64_t interval, double place) const
+  INR_HOST_DEVICE void pass(int count)
+  {
+    this->Samples.pass(this->Alike, count);
+    this->Alike.count -= count;
+  }
+
+  INR_HOST_DEVICE std::int64_t intervalOf(int k) const
+  {
+    return this->Samples.next() + k * this->Alike.steps();
+  }
+  INR_HOST_DEVICE double placeOf(int k) const
+  {
+    return static_cast<double>(this->intervalOf(k)) + this->Samples.offset(this->Alike);
+  }
+  /// t of number k of the samples that are alike.
+  INR_HOST_DEVICE double at(int k) const
+  {
+    return glm::min(this->placeOf(k) * this->Scene.settings.step, this->Way.length);
+  }
+  /// Whether it is not cropped.
+  INR_HOST_DEVICE bool shows(int k) const
+  {
+    const MarchSettings& settings = this->Scene.settings;
+    return !settings.crops || settings.cropping.shows(this->Way.at(this->at(k)));
+  }
+
+  /// Takes samples that are alike, as many as are read from the same brick, or where levels are
+  /// mixed the same two, and at most as many as others have patience for. False where one waits for
+  /// a brick.
+  INR_HOST_DEVICE bool takeSome()
+  {
+    const bool mixes = this->Samples.detail().isDithered();
+    const int most = glm::min(this->Alike.count, mixes ? MostOfTwo : MostOfOne);
+    const int count = mixes ? this->openTwo(most) : this->openOne(most);
+    const bool composites = !this->Scene.lit && !this->Scene.settings.projector.projects() &&
+                            !this->Scene.settings.crops && !this->Alike.last;
+    const int taken = !composites ? this->takeOneByOne(count)
+                      : mixes     ? this->takeFromTwo(count)
+                                  : this->takeFromOne(count);
+    this->pass(taken);
+    return taken > 0 && (taken == count || this->isDone());
+  }
+
+  /// How many samples, from the first one on, are in the brick of that one; 0 where it waits.
+  INR_HOST_DEVICE int openOne(int most)
+  {
+    const int level = this->Samples.detail().level();
+    this->Coarser = 0;
+    return this->open(level) ? glm::max(1, this->covered(level, most)) : 0;
+  }
+
+  /// The same where levels are mixed, of two bricks: up to where one of them is needed that is not
+  /// open. Tells in Coarser which samples are from the coarser level.
+  INR_HOST_DEVICE int openTwo(int most)
+  {
+    const int finer = this->Samples.detail().level();
+    this->Coarser = 0;
+    if (!this->open(this->levelAt(0))) {
+      return 0;
+    }
+    const int inFiner = this->covered(finer, most);
+    const int inCoarser = this->covered(finer + 1, most);
+    int count = 0;
+    while (count < most) {
+      const int above = this->levelAt(count) - finer;
+      if (count > 0 && count >= (above > 0 ? inCoarser : inFiner)) {
+        break;
+      }
+      this->Coarser |= static_cast<std::uint64_t>(above) << count;
+      ++count;
+    }
+    return count;
+  }
+
+  /// Sees to it that the brick is open that the first sample is read from, of `level`; false where
+  /// it waits for it.
+  INR_HOST_DEVICE bool open(int level)
+  {
+    BrickReader& reader = this->Readers[level & 1];
+    if (this->covered(level, 1) > 0 || reader.open(this->Cache, this->Way, level, this->placeOf(0),
+                                                   this->Scene.settings.step, this->Missing)) {
+      return true;
+    }
+    this->Cache.request(reader.wish(), 1.0f);
+    return false;
+  }
+
+  /// How many samples, from the first one on, are in the brick of `level` that is open.
+  INR_HOST_DEVICE int covered(int level, int most) const
+  {
+    // None are joined, or two or four; or three, of which there is one.
+    const double perSample = PowerOfTwo(-this->Alike.power) *
+                             static_cast<double>(1.0f / static_cast<float>(this->Alike.joined));
+    return this->Readers[level & 1].covered(level, this->placeOf(0), perSample, most);
+  }
+
+  /// The level of the cache that sample k is from.
+  INR_HOST_DEVICE int levelAt(int k) const
   {
     const LevelOfDetail& detail = this->Samples.detail();
-    if (!detail.isDithered()) {
-      return detail.level();
-    }
-    const double fraction =
-        detail.fractionAtEntry() + detail.fractionGrowth() * this->Scene.settings.step * place;
+    const double fraction = detail.fractionAtEntry() +
+                            detail.fractionGrowth() * this->Scene.settings.step * this->placeOf(k);
     const float random =
-        RandomUnit32(DitherSeed(this->Stream), static_cast<std::uint32_t>(interval));
+        RandomUnit32(DitherSeed(this->Stream), static_cast<std::uint32_t>(this->intervalOf(k)));
     return detail.level() + (random < static_cast<float>(fraction) ? 1 : 0);
   }
 
-  INR_HOST_DEVICE void count(const BrickReader& reader)
+  /// Whether sample k is from the coarser one of two levels that are mixed.
+  INR_HOST_DEVICE int isCoarser(int k) const { return static_cast<int>(this->Coarser >> k & 1); }
+  INR_HOST_DEVICE const BrickReader& readerOf(int k) const
   {
-    ++this->Counts.samples;
-    ++this->State.samples;
-    this->State.levels += reader.servedLevel();
+    return this->Readers[(this->Samples.detail().level() + this->isCoarser(k)) & 1];
+  }
+
+  INR_HOST_DEVICE int takeFromOne(int count)
+  {
+    return this->composite(count, OneBrick{this->sampled(this->readerOf(0))});
+  }
+  INR_HOST_DEVICE int takeFromTwo(int count)
+  {
+    const int finer = this->Samples.detail().level();
+    return this->composite(count, TwoBricks{{this->sampled(this->Readers[finer & 1]),
+                                             this->sampled(this->Readers[(finer + 1) & 1])},
+                                            static_cast<std::uint32_t>(this->Coarser)});
+  }
+
+  /// From the next sample on.
+  INR_HOST_DEVICE SampledBrick sampled(const BrickReader& reader) const
+  {
+    return {reader.path(), reader.along(static_cast<double>(this->Samples.next())),
+            this->rangeOf(reader)};
+  }
+  INR_HOST_DEVICE float spacing() const { return static_cast<float>(this->Alike.steps()); }
+  INR_HOST_DEVICE float offset() const
+  {
+    return static_cast<float>(this->Samples.offset(this->Alike));
+  }
+
+  template <class Bricks> INR_HOST_DEVICE int composite(int count, const Bricks& bricks)
+  {
+    const AlikeRow row{count, this->spacing(), this->offset(),
+                       LengthOf(this->Alike.joined, this->Alike.power)};
+    CompositedRow sum{this->State.light, this->State.halfOpaqueAt >= 0};
+    RowCompositor<Bricks>(this->Cache, this->Scene, row, bricks).add(sum);
+    if (sum.halfOpaque && this->State.halfOpaqueAt < 0) {
+      this->State.halfOpaqueAt = this->at(sum.halfOpaqueAt);
+    }
+    this->State.light = sum.light;
+    this->Counts.clamped += sum.clamped;
+    const int finer = this->Samples.detail().level();
+    for (int k = 0; k < 2; ++k) {
+      this->count(this->Readers[(finer + k) & 1], sum.taken[k], sum.seen[k]);
+    }
+    return sum.count();
+  }
+
+  /// Where sample k is on its path.
+  INR_HOST_DEVICE float alongOf(const BrickReader& reader, int k) const
+  {
+    return (reader.along(static_cast<double>(this->Samples.next())) +
+            static_cast<float>(k) * this->spacing()) +
+           this->offset();
+  }
+  /// That a value which is read there can have.
+  INR_HOST_DEVICE ValueRange rangeOf(const BrickReader& reader) const
+  {
+    return reader.exact() ? this->Samples.stretch().range : ValueRange{0.0f, 1.0f};
+  }
+
+  /// Samples that were read from the same brick. `light`: let through by each, summed up.
+  INR_HOST_DEVICE void count(const BrickReader& reader, int samples, float light)
+  {
+    if (samples == 0) {
+      return;
+    }
+    this->State.levels += std::int64_t{reader.servedLevel()} * samples;
+    this->Counts.samples += static_cast<std::uint32_t>(samples);
     this->Counts.levels |= 1u << reader.servedLevel();
     if (!reader.exact()) {
-      ++this->Counts.missed;
-      this->Cache.request(reader.wish(), static_cast<float>(this->State.transmittance));
+      this->Counts.missed += static_cast<std::uint32_t>(samples);
+      this->Cache.request(reader.wish(), light);
     }
   }
 
-  /// What the sample is worth; false where its gradient waits for a brick.
-  INR_HOST_DEVICE bool add(const AlikeSamples& alike, const BrickReader& reader, float along,
-                           double t)
+  /// The same where more is done with values than look up their light. Returns less than `count`
+  /// where nothing more is needed, or where a gradient waits for a brick.
+  INR_HOST_DEVICE int takeOneByOne(int count)
+  {
+    int taken = 0;
+    while (taken < count && !this->isDone()) {
+      if (this->shows(taken)) {
+        const BrickReader& reader = this->readerOf(taken);
+        if (!this->add(reader, taken)) {
+          break;
+        }
+        this->count(reader, 1, this->State.light.through());
+      }
+      ++taken;
+    }
+    return taken;
+  }
+
+  /// What sample k is worth; false where its gradient waits for a brick.
+  INR_HOST_DEVICE bool add(const BrickReader& reader, int k)
   {
     const MarchSettings& settings = this->Scene.settings;
+    const float along = this->alongOf(reader, k);
     const float found = ValueOn(this->Cache, reader.path(), along);
     float value = found;
-    ClampToRange(reader.exact() ? this->Samples.stretch().range : ValueRange{0.0f, 1.0f}, value);
-    const double steps = alike.last ? this->Samples.rest() : static_cast<double>(alike.steps());
+    ClampToRange(this->rangeOf(reader), value);
+    const double steps =
+        this->Alike.last ? this->Samples.rest() : static_cast<double>(this->Alike.steps());
     const double length = steps * settings.step * settings.unitsPerT;
     if (settings.projector.projects()) {
-      settings.projector.add(this->Scene.colors, value, length, t, this->State.projection);
+      settings.projector.add(this->Scene.colors, value, length, this->at(k),
+                             this->State.projection);
+      this->State.light.count();
     } else if (this->Scene.lit) {
-      if (!this->addLit(reader, along, value, static_cast<float>(length), t)) {
+      if (!this->addLit(reader, k, value, static_cast<float>(length))) {
         return false;
       }
-    } else if (alike.last) {
+    } else if (this->Alike.last) {
       const glm::vec4 color = this->Scene.colors.at(value);
-      this->addLight(color, OpacityOver(static_cast<float>(length), color.w), t);
+      this->addLight(color, OpacityOver(static_cast<float>(length), color.w), k);
     } else {
       const float place =
           this->Scene.colors.logarithmic ? this->Scene.colors.coordinate(value) : value;
       const glm::vec4 color =
-          SampleColor(this->Scene.steps, LengthOf(alike.joined, alike.power), place);
-      this->addLight(color, color.w, t);
+          FindColor(this->Scene.steps, LengthOf(this->Alike.joined, this->Alike.power), place)
+              .color();
+      this->addLight(color, color.w, k);
     }
     this->Counts.clamped += std::abs(found - value) > RoundingOfStorage ? 1 : 0;
     return true;
   }
 
-  INR_HOST_DEVICE bool addLit(const BrickReader& reader, float along, float value, float length,
-                              double t)
+  INR_HOST_DEVICE bool addLit(const BrickReader& reader, int k, float value, float length)
   {
     glm::vec4 color = this->Scene.colors.at(value);
     if (color.w <= 0.0f) {
+      this->State.light.count();
       return true;
     }
-    GradientFinder finder(this->Cache, reader, along, this->Missing,
-                          static_cast<float>(this->State.transmittance));
+    GradientFinder finder(this->Cache, reader, this->alongOf(reader, k), this->Missing,
+                          this->State.light.through());
     glm::vec3 gradient(0.0f);
     if (!finder.find(gradient)) {
       return false;
     }
     ++this->Counts.gradients;
     this->Counts.missed += static_cast<std::uint32_t>(finder.missed());
-    const glm::vec3 lit =
-        this->Scene.shading.shade(glm::vec3(color), this->ToEye, this->Way.at(t), gradient);
-    this->addLight(glm::vec4(lit, color.w), OpacityOver(length, color.w), t);
+    const glm::vec3 lit = this->Scene.shading.shade(glm::vec3(color), this->ToEye,
+                                                    this->Way.at(this->at(k)), gradient);
+    this->addLight(glm::vec4(lit, color.w), OpacityOver(length, color.w), k);
     return true;
   }
 
-  INR_HOST_DEVICE void addLight(const glm::vec4& color, float opacity, double t)
+  /// From sample k.
+  INR_HOST_DEVICE void addLight(const glm::vec4& color, float opacity, int k)
   {
-    const double weight = this->State.transmittance * opacity;
-    for (int channel = 0; channel < 3; ++channel) {
-      this->State.rgb[channel] += weight * color[channel];
-    }
-    this->State.transmittance -= weight;
-    if (this->State.halfOpaqueAt < 0 && this->State.transmittance <= 0.5) {
-      this->State.halfOpaqueAt = t;
+    this->State.light.add(color, opacity);
+    if (this->State.light.isHalfOpaque() && this->State.halfOpaqueAt < 0) {
+      this->State.halfOpaqueAt = this->at(k);
     }
   }
 
-  INR_HOST_DEVICE void finishProjection()
+  INR_HOST_DEVICE void finishProjection(glm::dvec4& light, double& at) const
   {
     const Projector& projector = this->Scene.settings.projector;
-    if (!projector.projects() || !(this->Way.length > 0)) {
-      return;
+    if (projector.projects() && this->Way.length > 0) {
+      const glm::vec4 color = projector.color(this->Scene.colors, this->State.projection);
+      light = glm::dvec4(glm::vec3(color), 1.0f - color.w);
+      at = color.w >= 0.5f ? this->State.projection.at : -1.0;
     }
-    const glm::vec4 color = projector.color(this->Scene.colors, this->State.projection);
-    for (int channel = 0; channel < 3; ++channel) {
-      this->State.rgb[channel] = color[channel];
-    }
-    this->State.transmittance = 1.0f - color.w;
-    this->State.halfOpaqueAt = color.w >= 0.5f ? this->State.projection.at : -1.0;
   }
 
   const RenderScene& Scene;
@@ -272,7 +405,9 @@ private:
   Ray Way;
   std::uint64_t Stream; ///< of random numbers
   SampleWalker Samples;
-  BrickReader Readers[2]; ///< of even and of odd levels: dithering alternates between neighbours
+  AlikeSamples Alike{0, 1, 0, false}; ///< that come next
+  BrickReader Readers[2];             ///< of even and of odd levels, as these are mixed in pairs
+  std::uint64_t Coarser = 0;          ///< bit k: whether sample k is from the coarser of a pair
   RayProgress& State;
   RayCounts Counts;
   glm::dvec3 ToEye{0.0};

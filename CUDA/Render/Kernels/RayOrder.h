@@ -6,6 +6,7 @@
 #include "Core/HostDevice.h"
 
 #include <cstdint>
+#include <limits>
 
 namespace inr {
 namespace cuda {
@@ -50,9 +51,11 @@ struct RayOrder
 };
 
 /// Rays of a window of a picture, as many as have memory to wait in, and what becomes of them:
-/// lists of their numbers in the window, in no order.
+/// lists of their numbers in the window, in no order but that of each warp.
 struct RayLists
 {
+  static constexpr int NoLimit = std::numeric_limits<int>::max(); ///< of `most`
+
   RayOrder order;
   std::int64_t first; ///< number of the window's first ray
 
@@ -63,13 +66,16 @@ struct RayLists
   std::uint32_t* waiting; ///< those that need bricks
   std::uint64_t* waitingCount;
 
-  /// A ray goes on in another launch: when it has its brick, or when it is its turn.
+  int most; ///< steps that a ray may come before it is another one's turn
+
+  /// A ray goes on in another launch: when it has its brick, or when it is its turn. Those of a
+  /// warp stay together: they go through the same bricks.
   INR_HOST_DEVICE void list(std::uint32_t ray, bool needsBrick) const
   {
     if (needsBrick) {
-      this->waiting[AtomicAdd(*this->waitingCount, std::uint64_t{1})] = ray;
+      this->waiting[AtomicAddTogether(*this->waitingCount, 1)] = ray;
     } else {
-      this->later[AtomicAdd(*this->laterCount, std::uint64_t{1})] = ray;
+      this->later[AtomicAddTogether(*this->laterCount, 1)] = ray;
     }
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "CUDA/Render/Kernels/ReadOnly.h"
 #include "Core/Render/BrickKernel.h"
 #include "Core/Render/RayMarching.h"
 #include "Core/Render/ShadingView.h"
@@ -31,24 +32,38 @@ struct PictureView
   float* samples; ///< two channels
 };
 
-/// Straight RGB, and the opacity of a whole sample of the length that has this number
-/// (StepTable.h), at a place in the table: a normalised value or, of logarithmic colours, the
-/// coordinate of one.
-INR_HOST_DEVICE inline glm::vec4 SampleColor(const StepLookup& steps, int length, float place)
+/// Two entries of a table of steps, and how much the second one counts.
+struct StepColor
+{
+  glm::vec4 low;
+  glm::vec4 high;
+  float weight;
+
+  /// Straight RGB, and the opacity of a whole sample.
+  INR_HOST_DEVICE glm::vec4 color() const
+  {
+    glm::vec4 color;
+    for (int channel = 0; channel < 4; ++channel) {
+      color[channel] =
+          fmaf(this->high[channel] - this->low[channel], this->weight, this->low[channel]);
+    }
+    return color;
+  }
+};
+
+/// Of samples of the length that has this number (StepTable.h), at a place in the table: a
+/// normalised value or, of logarithmic colours, the coordinate of one.
+INR_HOST_DEVICE inline StepColor FindColor(const StepLookup& steps, int length, float place)
 {
   const auto top = static_cast<float>(steps.rows - 3);
   const float position = fmaf(place, steps.scale, steps.bias);
-  int entry = 0; // outside the transfer function's range there is a step, not a slope
-  float weight = 0.0f;
-  if (position > top) {
-    entry = steps.rows - 2;
-  } else if (position >= 2.0f) {
-    entry = static_cast<int>(position);
-    weight = position - static_cast<float>(entry);
-  }
-  const std::int64_t row = static_cast<std::int64_t>(length) * steps.rows + entry;
-  const auto* const at = reinterpret_cast<const glm::vec4*>(steps.entries) + row;
-  return at[0] + (at[1] - at[0]) * weight;
+  // Outside the transfer function's range there is a step, not a slope.
+  const bool isAbove = position > top;
+  const bool isIn = position >= 2.0f && !isAbove;
+  const int entry = isIn ? static_cast<int>(position) : (isAbove ? steps.rows - 2 : 0);
+  const float weight = isIn ? position - static_cast<float>(entry) : 0.0f;
+  const float* const at = steps.entries + 4 * (std::int64_t{length} * steps.rows + entry);
+  return {ReadOnlyFour(at), ReadOnlyFour(at + 4), weight};
 }
 
 } // namespace cuda
