@@ -4,6 +4,7 @@
 #include "CUDA/Render/Kernels/FrameCounts.h"
 #include "Core/Render/Frame.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -21,20 +22,19 @@ public:
   /// For pictures of so many pixels; what was in it is gone where that is another number.
   void resize(std::int64_t pixels)
   {
-    if (!this->Rgba || pixels != this->Pixels) {
+    if (!this->Values || pixels != this->Pixels) {
       this->Pixels = 0; // should memory run out
-      this->Rgba.reset();
-      this->Depth.reset();
-      this->Samples.reset();
-      this->Rgba.emplace(this->Where.template allocate<float>(4 * pixels));
-      this->Depth.emplace(this->Where.template allocate<float>(pixels));
-      this->Samples.emplace(this->Where.template allocate<float>(2 * pixels));
+      this->Values.reset();
+      this->Staged.reset();
+      this->Values.emplace(this->Where.template allocate<float>(Channels * pixels));
+      this->Staged.emplace(this->Where.template allocatePinned<float>(Channels * pixels));
       this->Pixels = pixels;
     }
   }
   PictureView view() const
   {
-    return {this->Rgba->data(), this->Depth->data(), this->Samples->data()};
+    float* const rgba = this->Values->data();
+    return {rgba, rgba + DepthAt * this->Pixels, rgba + SamplesAt * this->Pixels};
   }
   FrameCounts* counts() const { return this->Counts.data(); }
 
@@ -61,26 +61,34 @@ public:
     return statistics;
   }
 
-  /// To images of the picture's size, `depth` and `samples` of which may be null.
+  /// To images of the picture's size, `depth` and `samples` of which may be null. By memory that
+  /// the machine copies to by itself: into any other it goes page by page, and waits each time.
   void copyTo(float* rgba, float* depth, float* samples) const
   {
-    this->Where.toHost(rgba, this->Rgba->data(), 4 * this->Pixels);
+    const int channels = samples != nullptr ? Channels : depth != nullptr ? SamplesAt : DepthAt;
+    const float* const staged = this->Staged->data();
+    this->Where.toHost(this->Staged->data(), this->Values->data(), channels * this->Pixels);
+    std::copy_n(staged, DepthAt * this->Pixels, rgba);
     if (depth != nullptr) {
-      this->Where.toHost(depth, this->Depth->data(), this->Pixels);
+      std::copy_n(staged + DepthAt * this->Pixels, this->Pixels, depth);
     }
     if (samples != nullptr) {
-      this->Where.toHost(samples, this->Samples->data(), 2 * this->Pixels);
+      std::copy_n(staged + SamplesAt * this->Pixels, 2 * this->Pixels, samples);
     }
   }
 
 private:
+  /// Of all pixels RGBA, then their depths, then two channels of samples.
+  static constexpr int DepthAt = 4;
+  static constexpr int SamplesAt = 5;
+  static constexpr int Channels = 7;
+
   using Floats = typename Machine::template Array<float>;
 
   Machine& Where;
   typename Machine::template Array<FrameCounts> Counts;
-  std::optional<Floats> Rgba;
-  std::optional<Floats> Depth;
-  std::optional<Floats> Samples;
+  std::optional<Floats> Values;
+  std::optional<Floats> Staged; ///< on the host
   std::int64_t Pixels = 0;
 };
 
