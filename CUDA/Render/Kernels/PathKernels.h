@@ -11,8 +11,6 @@
 #include "CUDA/Render/Kernels/RayOrder.h"
 #include "Core/Render/PathTracing.h"
 
-#include <new>
-
 namespace inr {
 namespace cuda {
 
@@ -30,6 +28,7 @@ struct PathProgress
 struct TracePaths
 {
   static constexpr int Threads = 128;
+  static constexpr int LeastBlocks = 5; ///< what one waits for, others have time for
   /// Few values of the field first, so that paths which end soon leave no idle threads behind, and
   /// then more and more.
   static constexpr int Turns[] = {32, 64, 128, 256, 1024, RayLists::NoLimit};
@@ -56,14 +55,14 @@ struct TracePaths
 private:
   INR_HOST_DEVICE void advance(std::uint32_t ray, std::int64_t pixel) const
   {
-    PathProgress& path = this->progress[ray];
     const int width = this->scene->rays.width;
     const auto x = static_cast<int>(pixel % width);
     const auto y = static_cast<int>(pixel / width);
+    // Its own copy: what is in the launch's memory is read and written one thread after another.
+    PathProgress path = this->begin ? PathProgress(*this->scene, x, y) : this->progress[ray];
     RayCounts counts;
     bool ends = false;
     if (this->begin) {
-      new (&path) PathProgress(*this->scene, x, y);
       ends = !(path.state.ray.length > 0);
       counts.rays = ends ? 0 : 1;
     }
@@ -75,6 +74,7 @@ private:
     if (ends) {
       this->write(path.state, pixel, counts);
     } else {
+      this->progress[ray] = path;
       this->lists.list(ray, waits);
     }
     this->countMisses(x, y, counts.missed);
