@@ -38,9 +38,9 @@ public:
   /// Rays that wait for bricks, since run.
   std::int64_t waiting() const { return this->Waiting; }
 
-  /// Runs a kernel with members lists and begin as of MarchRays, by as many launches as its Turns
-  /// are; none may end the last one. Waits once, to be told how many rays wait: if none, all is
-  /// done.
+  /// Runs a kernel with members lists and begin as of MarchRays, launch by launch: its Turns say
+  /// how far each lets rays come, the last one without limit. Waits once, to be told how many rays
+  /// wait: if none, all is done.
   template <class Kernel> void run(Kernel kernel)
   {
     const std::int64_t now = this->limit();
@@ -51,6 +51,7 @@ public:
                             this->First,
                             this->Begins ? nullptr : this->Waiters[this->Current].data(),
                             this->count(Now),
+                            this->count(Begun),
                             nullptr,
                             nullptr,
                             this->Waiters[next].data(),
@@ -59,6 +60,7 @@ public:
     kernel.begin = this->Begins;
     int out = 0;
     for (const int most : Kernel::Turns) {
+      this->clear(Begun);
       this->clear(LaterOf + out);
       kernel.lists.later = this->Later[out].data();
       kernel.lists.laterCount = this->count(LaterOf + out);
@@ -77,7 +79,7 @@ public:
   }
 
 private:
-  enum Count { Now, LaterOf, WaitingOf = LaterOf + 2, CountOfCounts = WaitingOf + 2 };
+  enum Count { Now, Begun, LaterOf, WaitingOf = LaterOf + 2, CountOfCounts = WaitingOf + 2 };
 
   using List = typename Machine::template Array<std::uint32_t>;
 

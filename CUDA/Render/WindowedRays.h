@@ -24,8 +24,8 @@ public:
       : Where(machine), Bricks(cache), Most(most)
   {}
 
-  /// Runs a kernel like MarchRays, but for its members of lists and turns, over all rays, once:
-  /// none of them may wait.
+  /// Runs a kernel like MarchRays, but for its members of lists, over all rays, once: none of them
+  /// may wait.
   template <class Kernel>
   void runOnce(const Kernel& kernel, const RayOrder& order, const std::function<bool()>& keepGoing)
   {

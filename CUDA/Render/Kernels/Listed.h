@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "CUDA/Device/Kernels/Atomics.h"
+#include "CUDA/Device/Kernels/Tiles.h"
 #include "Core/HostDevice.h"
 
 #include <cstdint>
@@ -21,6 +23,40 @@ INR_HOST_DEVICE void ForEachListed(Block& block, int threads, const std::uint32_
       function(list != nullptr ? list[k] : static_cast<std::uint32_t>(k));
     }
   });
+}
+
+/// The same where some numbers take much longer than others: a warp takes the next ones when it has
+/// done with its own. `next`: 0 at the beginning.
+template <class Block, class Function>
+INR_HOST_DEVICE void ForEachListedInTurn(Block& block, int threads, const std::uint32_t* list,
+                                         const std::uint64_t* count, std::uint64_t* next,
+                                         const Function& function)
+{
+#ifdef __CUDA_ARCH__
+  static_cast<void>(threads);
+  const std::uint64_t end = *count;
+  block.threads([&](int thread) {
+    const int lane = thread % WarpSize;
+    while (true) {
+      __syncwarp(); // numbers side by side are to be done with together
+      std::uint64_t first = 0;
+      if (lane == 0) {
+        first = AtomicAdd(*next, std::uint64_t{WarpSize});
+      }
+      first = __shfl_sync(~0u, first, 0);
+      if (first >= end) {
+        break;
+      }
+      const std::uint64_t k = first + static_cast<std::uint64_t>(lane);
+      if (k < end) {
+        function(list != nullptr ? list[k] : static_cast<std::uint32_t>(k));
+      }
+    }
+  });
+#else
+  static_cast<void>(next);
+  ForEachListed(block, threads, list, count, function); // no thread waits for another one
+#endif
 }
 
 } // namespace cuda

@@ -61,6 +61,7 @@ struct RayLists
 
   const std::uint32_t* now; ///< those whose turn it is; null: all of the window
   const std::uint64_t* nowCount;
+  std::uint64_t* begun; ///< how many of these
   std::uint32_t* later; ///< those that are in for another turn
   std::uint64_t* laterCount;
   std::uint32_t* waiting; ///< those that need bricks
@@ -79,16 +80,17 @@ struct RayLists
     }
   }
 
-  /// Calls function(ray, pixel) for the calling thread's share.
+  /// Calls function(ray, pixel) for the calling thread's share of those whose turn it is.
   template <class Block, class Function>
   INR_HOST_DEVICE void forEach(Block& block, int threads, const Function& function) const
   {
-    ForEachListed(block, threads, this->now, this->nowCount, [&](std::uint32_t ray) {
+    const auto call = [&](std::uint32_t ray) {
       const std::int64_t pixel = this->order.pixel(this->first + ray);
       if (pixel >= 0) {
         function(ray, pixel);
       }
-    });
+    };
+    ForEachListedInTurn(block, threads, this->now, this->nowCount, this->begun, call);
   }
 };
 
