@@ -15,8 +15,8 @@ namespace cuda {
 /// How many rays of a picture wait at once: for each the machine has memory.
 struct WindowSizes
 {
-  std::int64_t rays = 1 << 18;  ///< 38 MB of their progress
-  std::int64_t paths = 1 << 17; ///< 72 MB
+  std::int64_t rays = 1 << 20;  ///< 160 MB of their progress
+  std::int64_t paths = 1 << 17; ///< 69 MB
 };
 
 /// Draws frames through a cache by kernels on a machine; see AcceleratedRenderer.
