@@ -122,7 +122,7 @@ LaunchPlan DeviceModel::planFused(const FusedCopy<Numbers>& copy, bool bricks) c
       std::min(this->Where.sharedPerBlock, this->Where.sharedPerMultiprocessor / 2 - (1 << 10));
   LaunchPlan plan{};
   plan.shared = PlanShared(copy.packed, bricks, roomy, this->Where.sharedPerBlock);
-  plan.sharedBytes = plan.shared.latticeEnd;
+  plan.sharedBytes = plan.shared.end;
   WithTiles(copy.packed.neuronTiles, [&](auto tiles) {
     constexpr int count = decltype(tiles)::value;
     plan.blocks = bricks ? PrepareKernel<FusedBricks<count, Numbers>>(plan.sharedBytes)

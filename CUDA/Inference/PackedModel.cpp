@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/Inference/PackedModel.h"
 
-#include "CUDA/Inference/Kernels/BrickInputs.h"
+#include "CUDA/Inference/Kernels/BrickKernels.h"
 #include "Core/Error.h"
 
 #include <algorithm>
@@ -12,7 +12,9 @@ namespace cuda {
 
 namespace {
 
-constexpr std::int64_t LatticeBytes = 40 << 10; // of what neighbouring samples share
+/// Of what neighbouring samples share: rows of the lattice, and of each layer of samples.
+constexpr std::int64_t RowBytes = 28 << 10;
+constexpr std::int64_t LayerBytes = RowBytes / 4;
 
 int TilesFor(int width) { return (width + TileSize - 1) / TileSize; }
 
@@ -253,10 +255,16 @@ FusedShared PlanShared(const PackedModel<Numbers>& model, bool bricks, std::int6
   }
   const auto weights =
       static_cast<std::int64_t>(model.weights.size() * sizeof(typename Numbers::Weight));
-  const std::int64_t lattice =
-      bricks ? std::clamp<std::int64_t>((roomy - least) / 16 * 16, 0, LatticeBytes) : 0;
+  const int layers = LayersAtOnce<Numbers>(model.neuronTiles);
+  const std::int64_t wanted = bricks ? RowBytes + layers * LayerBytes : 0;
   FusedShared shared{};
-  shared.keepsWeights = least + lattice + weights <= roomy;
+  shared.keepsWeights = roomy - least - weights >= wanted / 2;
+  const std::int64_t rest = roomy - least - (shared.keepsWeights ? weights : 0);
+  const std::int64_t lattice = std::clamp<std::int64_t>(rest, 0, wanted);
+  const std::int64_t row = sizeof(float) * ItemSize * model.view().grid.features;
+  const std::int64_t ofLayer = lattice * LayerBytes / (RowBytes + layers * LayerBytes) / row;
+  shared.room.ofLayer = static_cast<std::int32_t>(ofLayer);
+  shared.room.rows = static_cast<std::int32_t>(lattice / row - layers * ofLayer);
   std::int64_t end = shared.keepsWeights ? weights : 0;
   const auto place = [&](std::int64_t bytes) {
     end += bytes;
@@ -266,8 +274,9 @@ FusedShared PlanShared(const PackedModel<Numbers>& model, bool bricks, std::int6
   shared.results = place(parts.results);
   shared.coordinates = place(parts.coordinates);
   shared.parts = place(parts.parts);
-  shared.lattice = place(lattice);
-  shared.latticeEnd = place(0);
+  shared.lattice = place(shared.room.rows * row);
+  shared.mixed = place(layers * ofLayer * row);
+  shared.end = place(0);
   return shared;
 }
 

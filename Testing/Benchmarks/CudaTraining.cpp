@@ -58,11 +58,13 @@ public:
     if (now.steps > 1 && now.accelerated != this->OnGpu) {
       throw inr::Error(inr::ErrorCode::Device, "the GPU does not train");
     }
-    if (now.steps == WarmUp) {
-      this->Begin = std::chrono::steady_clock::now();
+    const auto time = std::chrono::steady_clock::now();
+    if (now.steps >= WarmUp && this->First == 0) { // not told of each step
+      this->First = now.steps;
+      this->Begin = time;
     }
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - this->Begin;
-    this->Rate = static_cast<double>((now.steps - WarmUp) * inr::BatchSize) / passed.count();
+    const std::chrono::duration<double> passed = time - this->Begin;
+    this->Rate = static_cast<double>((now.steps - this->First) * inr::BatchSize) / passed.count();
     return now.steps < this->Last;
   }
   double rate() const { return this->Rate; }
@@ -70,6 +72,7 @@ public:
 private:
   std::uint64_t Last;
   bool OnGpu;
+  std::uint64_t First = 0; ///< steps when the clock was started
   std::chrono::steady_clock::time_point Begin;
   double Rate = 0;
 };

@@ -36,11 +36,16 @@ def commit():
     return output("git", "rev-parse", "--short", "HEAD") + ("-dirty" if changes else "")
 
 
+def compiler():
+    """What built the programs: this machine's, or for those built elsewhere INR_COMPILER."""
+    return os.environ.get("INR_COMPILER") or output("c++", "--version").splitlines()[0]
+
+
 def context():
     return {
         "cpu": cpu_name(),
         "cores": len(os.sched_getaffinity(0)),
-        "compiler": output("c++", "--version").splitlines()[0],
+        "compiler": compiler(),
         "commit": commit(),
         "date": datetime.date.today().isoformat(),
     }

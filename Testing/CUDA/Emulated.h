@@ -114,7 +114,7 @@ private:
       inr::cuda::WithTiles(model.neuronTiles, [&](auto tiles) {
         const inr::cuda::FusedPoints<decltype(tiles)::value, decltype(numbers)> kernel{
             model.view(), shared, positions, count, values, end};
-        this->Launch.run(kernel, shared.latticeEnd);
+        this->Launch.run(kernel, shared.end);
       });
     });
   }
@@ -134,7 +134,7 @@ private:
       inr::cuda::WithTiles(model.neuronTiles, [&](auto tiles) {
         const inr::cuda::FusedBricks<decltype(tiles)::value, decltype(numbers)> kernel{
             model.view(), shared, jobs, count, items, values, end};
-        this->Launch.run(kernel, shared.latticeEnd);
+        this->Launch.run(kernel, shared.end);
       });
     });
   }

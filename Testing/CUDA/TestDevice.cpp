@@ -102,15 +102,16 @@ TEST(SharedMemory, IsSharedOutWithinItsLimits)
       EXPECT_EQ(plan.parts, plan.coordinates + (bricks ? 3 * 8 * 4 : 0));
       EXPECT_GE(plan.lattice, plan.parts + (bricks ? 4 * (3 * 8 * 8 + 5 * 4) : 0));
       EXPECT_EQ(plan.lattice % 16, 0);
-      EXPECT_GE(plan.latticeEnd, plan.lattice);
-      EXPECT_TRUE(plan.latticeEnd <= roomy || !plan.keepsWeights);
+      EXPECT_EQ(plan.mixed, plan.lattice + plan.room.rows * 8 * 4 * 4);
+      EXPECT_EQ(plan.end, plan.mixed + 4 * plan.room.ofLayer * 8 * 4 * 4);
+      EXPECT_TRUE(plan.end <= roomy || !plan.keepsWeights);
     }
     EXPECT_TRUE(PlanShared(model, bricks, 100 << 10, 100 << 10).keepsWeights);
     EXPECT_FALSE(PlanShared(model, bricks, 7 << 10, 100 << 10).keepsWeights);
   }
-  EXPECT_EQ(PlanShared(model, true, 100 << 10, 100 << 10).latticeEnd -
-                PlanShared(model, true, 100 << 10, 100 << 10).lattice,
-            40 << 10);
+  const FusedShared whole = PlanShared(model, true, 100 << 10, 100 << 10);
+  EXPECT_EQ(whole.room.rows, (28 << 10) / (8 * 4 * 4));
+  EXPECT_EQ(whole.room.ofLayer, whole.room.rows / 4);
 }
 
 /// Weights that are halves are whole in their first parts; others are, but for 2^-22, in two.
@@ -170,11 +171,14 @@ TEST(Lattice, OfFarCellsIsNotKept)
   for (const float scale : {2.0f, 1.0e9f}) {
     level.scale = scale;
     SetExtent(SamplePlaces(coordinates, level, inr::GridInterpolation::Linear), parts[1]);
-    SetFirst(parts, 1, 1 << 20);
+    SetFirst(parts, 1, {1 << 20, 1 << 20});
     EXPECT_EQ(parts[1].rows <= MostLatticeRows, scale == 2.0f);
     EXPECT_EQ(parts[1].first >= 0, scale == 2.0f);
-    SetFirst(parts, 1, parts[1].rows - 1);
-    EXPECT_LT(parts[1].first, 0) << "where there is no room";
+    for (const RowRoom& room :
+         {RowRoom{parts[1].rows - 1, 1 << 20}, {1 << 20, parts[1].down - 1}}) {
+      SetFirst(parts, 1, room);
+      EXPECT_LT(parts[1].first, 0) << "where there is no room";
+    }
   }
 }
 

@@ -11,76 +11,50 @@
 namespace inr {
 namespace cuda {
 
-/// What an item's samples are encoded from.
-template <class Numbers> struct ItemGrid
+/// What some layers of an item's samples are encoded from.
+template <class Numbers> struct LayerGrid
 {
   const GridView<typename Numbers::Feature>& grid;
   const LevelPart* parts; ///< of each level
-  const float* rows;      ///< see FindRows
+  const float* mixed;     ///< see MixLayers
+  int first;              ///< of the layers
+  int layers;
 };
 
 /// `Width` features of a level whose rows are kept, at samples of an item with the same x and z.
 template <int Features, int Width> class SampleColumn
 {
 public:
-  /// From feature `first` on.
-  INR_HOST_DEVICE SampleColumn(const LevelPart& part, const float* rows, int first, int x, int z)
-      : Along(part.axes[1]), Weight(part.axes[2][z].weight), Back(RowPlace(part.down, 0, Features)),
-        Front(
-            rows + first +
-            RowPlace(part.first + static_cast<int>(part.axes[2][z].cell) * part.down, x, Features))
+  /// `rows`: at the samples' x and z, and from their first feature on.
+  INR_HOST_DEVICE SampleColumn(const LevelPart& part, const float* rows)
+      : Along(part.axes[1]), Rows(rows)
   {}
 
-  /// Those of `Count` samples from `y` on: neighbours share what is found along z.
+  /// Those of `Count` samples from `y` on.
   template <int Count> INR_HOST_DEVICE void find(int y, float (&features)[Count][Width]) const
   {
-    std::uint32_t at = this->Along[y].cell;
-    Row lower = this->row(at);
-    Row upper = this->row(at + 1);
     INR_UNROLL
     for (int k = 0; k < Count; ++k) {
       const AxisCell cell = this->Along[y + k];
-      if (cell.cell != at) {
-        at = cell.cell;
-        lower = this->row(at);
-        upper = this->row(at + 1);
-      }
+      const float* const row = this->Rows + RowPlace(static_cast<int>(cell.cell), 0, Features);
+      const auto lower = *reinterpret_cast<const Entry<float, Width>*>(row);
+      const auto upper =
+          *reinterpret_cast<const Entry<float, Width>*>(row + RowPlace(1, 0, Features));
       INR_UNROLL
       for (int f = 0; f < Width; ++f) {
-        features[k][f] = Mix(lower.features[f], upper.features[f], cell.weight);
+        features[k][f] = Mix(lower[f], upper[f], cell.weight);
       }
     }
   }
 
 private:
-  /// At a lattice point's y.
-  struct Row
-  {
-    float features[Width];
-  };
-
-  INR_HOST_DEVICE Row row(std::uint32_t y) const
-  {
-    const float* const front = this->Front + RowPlace(static_cast<int>(y), 0, Features);
-    const auto near = *reinterpret_cast<const Entry<float, Width>*>(front);
-    const auto far = *reinterpret_cast<const Entry<float, Width>*>(front + this->Back);
-    Row row;
-    INR_UNROLL
-    for (int f = 0; f < Width; ++f) {
-      row.features[f] = Mix(near[f], far[f], this->Weight);
-    }
-    return row;
-  }
-
   const AxisCell* Along; ///< y
-  float Weight;          ///< along z
-  int Back;              ///< from a layer of rows to the next
-  const float* Front;
+  const float* Rows;
 };
 
 /// The same of a level of which no rows are kept, of `count` samples from `y` on, to found[0 ...].
 template <class Numbers, int Features, int Width>
-INR_HOST_DEVICE INR_CALLED void GatherColumn(ItemGrid<Numbers> item, int level, int first, int x,
+INR_HOST_DEVICE INR_CALLED void GatherColumn(LayerGrid<Numbers> item, int level, int first, int x,
                                              int y, int z, int count, float* found)
 {
   using Feature = typename Numbers::Feature;
@@ -110,7 +84,7 @@ INR_HOST_DEVICE INR_CALLED void GatherColumn(ItemGrid<Numbers> item, int level, 
 template <class Numbers, int Halves, class Warp> class BrickInputs
 {
 public:
-  INR_HOST_DEVICE BrickInputs(Warp& warp, const ItemGrid<Numbers>& item, int y, int z)
+  INR_HOST_DEVICE BrickInputs(Warp& warp, const LayerGrid<Numbers>& item, int y, int z)
       : Self(warp), Item(item), Y(y), Z(z)
   {}
 
@@ -167,7 +141,9 @@ private:
   {
     const LevelPart* const part = this->Item.parts + level;
     if (level < this->Item.grid.levelCount && part->first >= 0) {
-      SampleColumn<Features, Width>(*part, this->Item.rows, first, x, this->Z)
+      const int layer =
+          part->layerAt * this->Item.layers + (this->Z - this->Item.first) * part->down;
+      SampleColumn<Features, Width>(*part, this->Item.mixed + RowPlace(layer, x, Features) + first)
           .find(this->Y, features);
       return;
     }
@@ -183,7 +159,7 @@ private:
   }
 
   Warp& Self;
-  const ItemGrid<Numbers>& Item;
+  const LayerGrid<Numbers>& Item;
   int Y;
   int Z;
 };

@@ -9,11 +9,19 @@
 namespace inr {
 namespace cuda {
 
+constexpr int BrickThreads = 256; ///< of fused kernels at bricks
+
+/// Layers of an item's samples that a block's warps take at once.
+template <class Numbers> INR_HOST_DEVICE constexpr int LayersAtOnce(int tiles)
+{
+  return BrickThreads / WarpSize * Numbers::halves(tiles) * TileSize / (ItemSize * ItemSize);
+}
+
 /// A block works on one cube of samples after another. Values are the same, to the last bit, as
 /// FusedPoints gives at the same positions.
 template <int Tiles, class Numbers> struct FusedBricks
 {
-  static constexpr int Threads = 256;
+  static constexpr int Threads = BrickThreads;
   /// One computes while the other waits, unless layers are wide.
   static constexpr int LeastBlocks = Tiles < 8 ? 2 : 1;
 
@@ -41,7 +49,10 @@ template <int Tiles, class Numbers> struct FusedBricks
     for (std::int64_t k = first; k < last; ++k) {
       block.threads([&](int thread) { this->locate(block.shared(), thread); });
       block.threads([&](int thread) { this->findRows(block.shared(), thread); });
-      block.warps([&](auto& warp) { this->infer(block.shared(), warp, network); });
+      for (int z = 0; z < ItemSize; z += Layers) {
+        block.threads([&](int thread) { this->mix(block.shared(), z, thread); });
+        block.warps([&](auto& warp) { this->infer(block.shared(), warp, network, z); });
+      }
       const BrickItem next = k + 1 < last ? NextItem(item, this->jobs + count, k + 1) : item;
       block.threads([&](int thread) {
         this->place(block.shared(), next, thread);
@@ -52,6 +63,9 @@ template <int Tiles, class Numbers> struct FusedBricks
   }
 
 private:
+  static constexpr int Halves = Numbers::halves(Tiles);
+  static constexpr int Layers = LayersAtOnce<Numbers>(Tiles);
+
   /// The samples' coordinates.
   INR_HOST_DEVICE void place(unsigned char* memory, const BrickItem& item, int thread) const
   {
@@ -81,32 +95,36 @@ private:
   INR_HOST_DEVICE void findRows(unsigned char* memory, int thread) const
   {
     const auto& grid = this->model.grid;
-    const int bytes = this->shared.latticeEnd - this->shared.lattice;
-    const int capacity = bytes / (RowPlace(1, 0, grid.features) * static_cast<int>(sizeof(float)));
     for (int l = thread; l < grid.levelCount; l += Threads) {
-      SetFirst(this->parts(memory), l, capacity);
+      SetFirst(this->parts(memory), l, this->shared.room);
     }
     WithFeatures(grid.features, [&](auto features) {
-      FindRows<decltype(features)::value>(grid, this->parts(memory), capacity,
+      FindRows<decltype(features)::value>(grid, this->parts(memory), this->shared.room,
                                           this->lattice(memory), thread, Threads);
     });
   }
 
-  /// A warp's share of the item's samples.
+  INR_HOST_DEVICE void mix(unsigned char* memory, int z, int thread) const
+  {
+    WithFeatures(this->model.grid.features, [&](auto features) {
+      MixLayers<decltype(features)::value>(this->parts(memory), this->model.grid.levelCount,
+                                           this->lattice(memory), z, Layers, this->mixed(memory),
+                                           thread, Threads);
+    });
+  }
+
+  /// The warp's tiles of the layers from `z` on.
   template <class Warp>
   INR_HOST_DEVICE void infer(unsigned char* memory, Warp& warp,
-                             const FusedNetwork<Numbers>& network) const
+                             const FusedNetwork<Numbers>& network, int z) const
   {
-    constexpr int halves = Numbers::halves(Tiles);
-    constexpr int layer = ItemSize * ItemSize;
-    const ItemGrid<Numbers> item{this->model.grid, this->parts(memory), this->lattice(memory)};
-    for (int tile = halves * warp.index(); tile < SamplesPerItem / TileSize;
-         tile += halves * (Threads / WarpSize)) {
-      const int first = tile * TileSize;
-      const BrickInputs<Numbers, halves, Warp> inputs(warp, item, first % layer / ItemSize,
-                                                      first / layer);
-      RunNetwork<Numbers, Tiles, halves>(warp, network, inputs, this->results(memory) + first);
-    }
+    constexpr int samplesOfLayer = ItemSize * ItemSize;
+    const int first = z * samplesOfLayer + warp.index() * Halves * TileSize;
+    const LayerGrid<Numbers> grid{this->model.grid, this->parts(memory), this->mixed(memory), z,
+                                  Layers};
+    const BrickInputs<Numbers, Halves, Warp> inputs(warp, grid, first % samplesOfLayer / ItemSize,
+                                                    first / samplesOfLayer);
+    RunNetwork<Numbers, Tiles, Halves>(warp, network, inputs, this->results(memory) + first);
   }
 
   /// A thread's share of the item's voxels.
@@ -154,6 +172,10 @@ private:
   INR_HOST_DEVICE float* lattice(unsigned char* memory) const
   {
     return reinterpret_cast<float*>(memory + this->shared.lattice);
+  }
+  INR_HOST_DEVICE float* mixed(unsigned char* memory) const
+  {
+    return reinterpret_cast<float*>(memory + this->shared.mixed);
   }
   INR_HOST_DEVICE float* results(unsigned char* memory) const ///< of all the item's samples
   {

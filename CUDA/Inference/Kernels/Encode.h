@@ -36,7 +36,7 @@ INR_HOST_DEVICE inline float ClampToUnit(float u)
 }
 
 /// Lattice cell and weight of one coordinate.
-struct AxisCell
+struct alignas(8) AxisCell
 {
   std::uint32_t cell;
   float weight;

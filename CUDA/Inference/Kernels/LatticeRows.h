@@ -2,11 +2,12 @@
 //
 // What neighbouring samples share of the grid: a cube of samples lies in few cells of a coarse
 // level. Each row of lattice points along x is interpolated once, at the samples' x, into shared
-// memory.
+// memory; and from these rows, for some layers of samples at a time, those at the layers' z.
 #pragma once
 
 #include "CUDA/Inference/Kernels/BrickGeometry.h"
 #include "CUDA/Inference/Kernels/Encode.h"
+#include "CUDA/Inference/Kernels/FusedShared.h"
 
 namespace inr {
 namespace cuda {
@@ -19,16 +20,40 @@ struct LevelPart
   std::int32_t down;          ///< lattice points between the first and the last sample, along y
   std::int32_t rows;          ///< of such points, along x; more than MostLatticeRows: very many
   std::int32_t first;         ///< of its rows among those that are kept; negative where its are not
+  std::int32_t layerAt;       ///< the same of its rows of a layer of samples
 };
 
 /// Rows of a level that are kept at most: beyond, samples lie in cells of their own.
 constexpr int MostLatticeRows = (ItemSize + 1) * (ItemSize + 1);
 
-/// Rows that are kept of a level with so many, where there is room for `left` more.
-INR_HOST_DEVICE inline std::int32_t KeptRows(std::int32_t rows, std::int32_t left)
+/// Goes through the levels, and tells of which rows are kept.
+class KeptRows
 {
-  return rows <= MostLatticeRows && rows <= left ? rows : 0;
-}
+public:
+  INR_HOST_DEVICE explicit KeptRows(const RowRoom& room) : Room(room) {}
+
+  /// To the next level; whether its rows are kept.
+  INR_HOST_DEVICE bool enter(const LevelPart& part)
+  {
+    this->First = this->End;
+    this->FirstOfLayer = this->EndOfLayer;
+    const bool kept = part.rows <= MostLatticeRows && this->End + part.rows <= this->Room.rows &&
+                      this->EndOfLayer + part.down <= this->Room.ofLayer;
+    this->End += kept ? part.rows : 0;
+    this->EndOfLayer += kept ? part.down : 0;
+    return kept;
+  }
+  INR_HOST_DEVICE std::int32_t first() const { return this->First; }
+  INR_HOST_DEVICE std::int32_t end() const { return this->End; }
+  INR_HOST_DEVICE std::int32_t firstOfLayer() const { return this->FirstOfLayer; }
+
+private:
+  RowRoom Room;
+  std::int32_t First = 0;
+  std::int32_t End = 0;
+  std::int32_t FirstOfLayer = 0;
+  std::int32_t EndOfLayer = 0;
+};
 
 /// A sample's coordinates along an axis, and the level's cells there.
 class SamplePlaces
@@ -81,14 +106,15 @@ INR_HOST_DEVICE inline void SetExtent(const SamplePlaces& places, LevelPart& par
   part.rows = few ? static_cast<std::int32_t>(down * deep) : MostLatticeRows + 1;
 }
 
-/// Sets `first` of level l, behind those before it that are kept; `capacity` rows fit.
-INR_HOST_DEVICE inline void SetFirst(LevelPart* parts, int l, std::int32_t capacity)
+/// Sets where rows of level l are, behind those of the levels before it.
+INR_HOST_DEVICE inline void SetFirst(LevelPart* parts, int l, const RowRoom& room)
 {
-  std::int32_t first = 0;
+  KeptRows kept(room);
   for (int k = 0; k < l; ++k) {
-    first += KeptRows(parts[k].rows, capacity - first);
+    kept.enter(parts[k]);
   }
-  parts[l].first = KeptRows(parts[l].rows, capacity - first) > 0 ? first : -1;
+  parts[l].first = kept.enter(parts[l]) ? kept.first() : -1;
+  parts[l].layerAt = kept.firstOfLayer();
 }
 
 /// Where a sample's features are, of row `row` of all.
@@ -119,23 +145,62 @@ INR_HOST_DEVICE inline void FindRow(const GridView<Number>& grid, const LevelVie
 /// A thread's share of all rows that are kept: an item's samples of each, features fastest.
 template <int Features, class Number>
 INR_HOST_DEVICE inline void FindRows(const GridView<Number>& grid, const LevelPart* parts,
-                                     std::int32_t capacity, float* rows, int thread, int threads)
+                                     const RowRoom& room, float* rows, int thread, int threads)
 {
+  KeptRows kept(room);
   int next = 0; // level
-  std::int32_t first = 0;
-  std::int32_t end = 0;
   for (int k = thread;; k += threads) {
     const int row = k / ItemSize;
-    while (row >= end) {
+    while (row >= kept.end()) {
       if (next == grid.levelCount) {
         return;
       }
-      first = end;
-      end += KeptRows(parts[next].rows, capacity - end);
-      ++next;
+      kept.enter(parts[next++]);
     }
-    FindRow<Features>(grid, grid.levels[next - 1], parts[next - 1], row - first, k % ItemSize,
-                      rows + RowPlace(row, k % ItemSize, Features));
+    FindRow<Features>(grid, grid.levels[next - 1], parts[next - 1], row - kept.first(),
+                      k % ItemSize, rows + RowPlace(row, k % ItemSize, Features));
+  }
+}
+
+/// A thread's share of the rows at the z of `layers` layers of samples, from layer `z` on: of each
+/// level behind each other those of these layers, y fastest.
+template <int Features>
+INR_HOST_DEVICE inline void MixLayers(const LevelPart* parts, int levelCount, const float* rows,
+                                      int z, int layers, float* mixed, int thread, int threads)
+{
+  constexpr int width = Features < 4 ? Features : 4;
+  constexpr int parcels = ItemSize * Features / width; // of a row
+  int level = 0;
+  int before = 0; // parcels
+  int of = 0;
+  for (int k = thread;; k += threads) {
+    while (k >= before + of) {
+      before += of;
+      of = 0;
+      while (level < levelCount && parts[level].first < 0) {
+        ++level;
+      }
+      if (level == levelCount) {
+        return;
+      }
+      of = parts[level++].down * layers * parcels;
+    }
+    const LevelPart& part = parts[level - 1];
+    const int within = k - before;
+    const int row = within / parcels; // of the level's
+    const int place = within % parcels * width;
+    const AxisCell cell = part.axes[2][z + row / part.down];
+    const int from = part.first + static_cast<int>(cell.cell) * part.down + row % part.down;
+    const float* const front = rows + RowPlace(from, 0, Features) + place;
+    const float* const back = front + RowPlace(part.down, 0, Features);
+    const auto near = *reinterpret_cast<const Entry<float, width>*>(front);
+    const auto far = *reinterpret_cast<const Entry<float, width>*>(back);
+    float features[width];
+    INR_UNROLL
+    for (int f = 0; f < width; ++f) {
+      features[f] = Mix(near[f], far[f], cell.weight);
+    }
+    Store(features, mixed + RowPlace(part.layerAt * layers + row, 0, Features) + place);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "CUDA/Inference/Kernels/Encode.h"
 #include "CUDA/Inference/Kernels/FloatNetwork.h"
 #include "CUDA/Inference/Kernels/FusedNetwork.h"
+#include "CUDA/Inference/Kernels/FusedShared.h"
 
 namespace inr {
 namespace cuda {
@@ -22,18 +23,6 @@ constexpr int WarpsPerBlock = ThreadsPerBlock / WarpSize;
 
 /// Numbers from one encoded row to the next; see LoadInputs.
 INR_HOST_DEVICE constexpr int RowStride(int inputTiles) { return inputTiles * TileSize + 8; }
-
-/// Where a fused kernel has what in its block's shared memory, in bytes.
-struct FusedShared
-{
-  bool keepsWeights;        ///< a copy of them comes first
-  std::int32_t rows;        ///< points only: 32 encoded rows per warp
-  std::int32_t results;     ///< one per sample
-  std::int32_t coordinates; ///< bricks only: of samples along each axis
-  std::int32_t parts;       ///< and a LevelPart per level
-  std::int32_t lattice;     ///< and some rows of the lattice
-  std::int32_t latticeEnd;  ///< = all that is needed
-};
 
 /// The weights, from the copy in shared memory where there is one. A phase.
 template <class Block, class Numbers>
