@@ -47,6 +47,18 @@ void RequireRoom(const Model& model, int device, bool half)
   RequireFree(device, parameters * size, half ? "the model in half precision" : "the model");
 }
 
+/// Float32's need no packing.
+Array<HalfBits> UploadedFeatures(const PackedModel<HalfNumbers>& packed, const Model& /*model*/,
+                                 int device, const Stream& stream)
+{
+  return Uploaded(packed.features, device, stream);
+}
+Array<float> UploadedFeatures(const PackedModel<FloatNumbers>& /*packed*/, const Model& model,
+                              int device, const Stream& stream)
+{
+  return Uploaded(FeaturesOf(model), FeatureCountOf(model), device, stream);
+}
+
 /// Whether products of parts of float32 numbers are to be had.
 bool HasWideTiles(const Device& device)
 {
@@ -57,10 +69,10 @@ bool HasWideTiles(const Device& device)
 } // namespace
 
 template <class Numbers>
-DeviceModel::FusedCopy<Numbers>::FusedCopy(PackedModel<Numbers>&& model, int device,
-                                           const Stream& stream)
-    : packed(std::move(model)), levels(Uploaded(this->packed.levels, device, stream)),
-      features(Uploaded(this->packed.features, device, stream)),
+DeviceModel::FusedCopy<Numbers>::FusedCopy(PackedModel<Numbers>&& from, const Model& model,
+                                           int device, const Stream& stream)
+    : packed(std::move(from)), levels(Uploaded(this->packed.levels, device, stream)),
+      features(UploadedFeatures(this->packed, model, device, stream)),
       weights(Uploaded(this->packed.weights, device, stream)),
       view(this->packed.view(this->levels.data(), this->features.data(), this->weights.data()))
 {
@@ -87,14 +99,15 @@ DeviceModel::DeviceModel(ModelPointer model, const Device& device, Precision pre
   RequireRoom(*this->Source, device.ordinal, half);
   const Stream stream(device.ordinal);
   if (half) {
-    this->Half.emplace(PackedModel<HalfNumbers>(*this->Source), device.ordinal, stream);
+    this->Half.emplace(PackedModel<HalfNumbers>(*this->Source), *this->Source, device.ordinal,
+                       stream);
     return;
   }
   if (precision == Precision::Float32 && HasWideTiles(device) &&
       WhyNotFused(*this->Source).empty()) {
-    PackedModel<FloatNumbers> packed(*this->Source);
+    PackedModel<FloatNumbers> packed(*this->Source, false);
     if (FitsShared(packed, device.sharedPerBlock)) {
-      this->Wide.emplace(std::move(packed), device.ordinal, stream);
+      this->Wide.emplace(std::move(packed), *this->Source, device.ordinal, stream);
       return;
     }
   }

@@ -18,7 +18,7 @@ struct LaunchPlan
   FusedShared shared; ///< of fused kernels
   std::int64_t sharedBytes;
   std::int64_t blocks;  ///< that are in work at once
-  std::int64_t scratch; ///< floats that float32 kernels want, for all of these blocks
+  std::int64_t scratch; ///< floats that plain kernels want, for all of these blocks
 };
 
 class DeviceStores;
@@ -76,7 +76,7 @@ private:
   template <class Numbers> struct FusedCopy
   {
     /// `stream` has copied everything when `packed` loses its tables.
-    FusedCopy(PackedModel<Numbers>&& model, int device, const Stream& stream);
+    FusedCopy(PackedModel<Numbers>&& from, const Model& model, int device, const Stream& stream);
 
     PackedModel<Numbers> packed; ///< its features are on the device only
     Array<LevelView> levels;

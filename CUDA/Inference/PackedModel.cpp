@@ -153,7 +153,7 @@ std::string WhyNotHalf(const Model& model)
 }
 
 template <class Numbers>
-PackedModel<Numbers>::PackedModel(const Model& model)
+PackedModel<Numbers>::PackedModel(const Model& model, bool withFeatures)
     : Features(model.description.grid.features),
       Interpolation(model.description.grid.interpolation),
       HiddenLayers(model.description.network.hiddenLayers),
@@ -170,8 +170,10 @@ PackedModel<Numbers>::PackedModel(const Model& model)
   const float* const parameters = model.parameters.data();
   const ModelViewStorage views(model.description, layout, parameters);
   this->levels.assign(views.view().levels, views.view().levels + views.view().levelCount);
-  this->features =
-      FeaturesAs(Feature(), parameters + layout.gridOffset, parameters + model.parameters.size());
+  if (withFeatures) {
+    this->features =
+        FeaturesAs(Feature(), parameters + layout.gridOffset, parameters + model.parameters.size());
+  }
   this->inputTiles = TilesFor(layout.encodedWidth);
   this->neuronTiles = this->HiddenLayers > 0 ? NeuronTiles(model.description.network) : 1;
   this->hasSecond = Numbers::HasSecondWeights &&

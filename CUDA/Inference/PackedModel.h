@@ -31,7 +31,8 @@ template <class Numbers> struct PackedModel
   using Weight = typename Numbers::Weight;
 
   /// Throws what RequireValid throws, and Error(Unsupported) with WhyNotHalf, or WhyNotFused.
-  explicit PackedModel(const Model& model);
+  /// `features`: whether they are packed, too.
+  explicit PackedModel(const Model& model, bool features = true);
 
   /// Its view; the tables may lie elsewhere.
   FusedModel<Numbers> view(const LevelView* levels, const Feature* features,

@@ -22,14 +22,15 @@ public:
   /// For pictures of so many pixels; what was in it is gone where that is another number.
   void resize(std::int64_t pixels)
   {
-    if (!this->Values || pixels != this->Pixels) {
-      this->Pixels = 0; // should memory run out
+    if (!this->Values || pixels > this->Capacity) { // which takes long
+      this->Capacity = 0;                           // should memory run out
       this->Values.reset();
       this->Staged.reset();
       this->Values.emplace(this->Where.template allocate<float>(Channels * pixels));
       this->Staged.emplace(this->Where.template allocatePinned<float>(Channels * pixels));
-      this->Pixels = pixels;
+      this->Capacity = pixels;
     }
+    this->Pixels = pixels;
   }
   PictureView view() const
   {
@@ -90,6 +91,7 @@ private:
   std::optional<Floats> Values;
   std::optional<Floats> Staged; ///< on the host
   std::int64_t Pixels = 0;
+  std::int64_t Capacity = 0; ///< pixels that there is memory for
 };
 
 } // namespace cuda

@@ -155,6 +155,18 @@ TEST_P(Drawing, ComesToTheSamePictureInTime)
   }
 }
 
+/// Rays of projections begin a step in front of the volume, where their first brick may not be
+/// there yet.
+TEST_P(Drawing, CountsRaysThatWaitAtOnceOnlyOnce)
+{
+  inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
+  Projected(inr::BlendMode::MaximumIntensity)(frame);
+  const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
+  const Drawn waiting = Draw(frame, RoomFor(GetParam(), 20));
+  EXPECT_EQ(waiting.rgba.pixels, truth.rgba.pixels);
+  EXPECT_EQ(waiting.statistics.rays, truth.statistics.rays);
+}
+
 TEST_P(Drawing, MakesDoWithWhatFits)
 {
   inr::RendererOptions options = RoomFor(GetParam(), 20);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace {
@@ -81,6 +82,65 @@ TEST(Tiles, MultiplyAsTheTensorCoresLayThemOut)
   }
   for (int lane = 0; lane < WarpSize; ++lane) {
     ExpectSums(sums[lane], lane, expected);
+  }
+}
+
+/// What mma.m16n8k8 makes of registers of tf32 numbers, by its tables: A's rows are groupID, +8,
+/// groupID, +8 and its columns thread, thread, +4, +4; B's rows thread, +4, its column groupID.
+void MultiplyByTheManual(const float (&a)[WarpSize][4], const float (&b)[WarpSize][2],
+                         float (&sums)[16][8])
+{
+  for (int row = 0; row < 16; ++row) {
+    for (int column = 0; column < 8; ++column) {
+      for (int k = 0; k < 8; ++k) {
+        const int laneOfA = row % 8 * 4 + k % 4;
+        const int laneOfB = column * 4 + k % 4;
+        sums[row][column] += a[laneOfA][row / 8 + 2 * (k / 4)] * b[laneOfB][k / 4];
+      }
+    }
+  }
+}
+
+/// The registers that the device's code passes, in its order, are those of the tile that the host's
+/// multiplies.
+TEST(Tiles, OfFloatsMultiplyAsTheTensorCoresLayThemOut)
+{
+  HostWarp::PerLane<WideInputShare> inputs;
+  HostWarp::PerLane<SumShare> sums;
+  for (int lane = 0; lane < WarpSize; ++lane) {
+    sums[lane] = SumShare{};
+    for (int v = 0; v < 8; ++v) {
+      inputs[lane].first[v] = Small(1, lane, v);
+      inputs[lane].second[v] = 0.0f;
+    }
+  }
+  for (int half = 0; half < 2; ++half) {
+    HostWarp::PerLane<WideWeightShare> weights;
+    float expected[16][8] = {};
+    for (int lane = 0; lane < WarpSize; ++lane) {
+      for (int v = 0; v < 4; ++v) {
+        weights[lane].values[v] = Small(2 + static_cast<std::uint64_t>(half), lane, v);
+      }
+    }
+    for (int part = 0; part < 2; ++part) {
+      float a[WarpSize][4];
+      float b[WarpSize][2];
+      for (int lane = 0; lane < WarpSize; ++lane) {
+        const float* const from = inputs[lane].first + 4 * part;
+        const float registers[4] = {from[0], from[2], from[1], from[3]};
+        std::copy_n(registers, 4, a[lane]);
+        std::copy_n(weights[lane].values + 2 * part, 2, b[lane]);
+      }
+      MultiplyByTheManual(a, b, expected);
+    }
+    HostWarp::multiplyAdd(inputs, weights, half, sums);
+    for (int lane = 0; lane < WarpSize; ++lane) {
+      for (int v = 0; v < 4; ++v) { // of C: as above
+        EXPECT_EQ(sums[lane].values[4 * half + v],
+                  expected[(lane >> 2) + 8 * (v / 2)][2 * (lane & 3) + v % 2])
+            << half << " " << lane << " " << v;
+      }
+    }
   }
 }
 

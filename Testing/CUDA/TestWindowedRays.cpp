@@ -84,7 +84,7 @@ struct Stage
 /// A kernel as WindowedRays wants them.
 struct CountSamples
 {
-  static constexpr int Threads = 4;
+  static constexpr int Threads = inr::cuda::WarpSize;
   static constexpr int Turns[] = {32, 64, inr::cuda::RayLists::NoLimit};
 
   FewBricks* cache;
@@ -96,7 +96,7 @@ struct CountSamples
 
   template <class Block> void operator()(Block& block) const
   {
-    this->lists.forEach(block, Threads,
+    this->lists.forEach(block,
                         [&](std::uint32_t ray, std::int64_t pixel) { this->advance(ray, pixel); });
   }
 

@@ -32,7 +32,7 @@ template <class Numbers> struct FusedNetwork
 /// Reads the weights of one tile of inputs, and calls multiply(h, n, share, part) for each tile of
 /// samples and of outputs, and each share of its weights.
 template <class Numbers, int OutputTiles, int Halves, class Warp, class Multiply>
-INR_HOST_DEVICE inline void MultiplyTile(Warp& warp, const typename Numbers::Weight* tiles,
+INR_HOST_DEVICE inline void ForEachShare(Warp& warp, const typename Numbers::Weight* tiles,
                                          const Multiply& multiply)
 {
   INR_UNROLL
@@ -73,13 +73,13 @@ MultiplyLayer(Warp& warp, const FusedNetwork<Numbers>& network,
     const auto* const tiles = weights + k * shares;
     if constexpr (Numbers::HasSecondWeights) {
       if (network.hasSecond) {
-        MultiplyTile<Numbers, OutputTiles, Halves>(
+        ForEachShare<Numbers, OutputTiles, Halves>(
             warp, tiles + all, [&](int h, int n, const auto& share, int part) {
               warp.multiplyAddFirst(ofHalf(h), share, part, sums[h][n]);
             });
       }
     }
-    MultiplyTile<Numbers, OutputTiles, Halves>(
+    ForEachShare<Numbers, OutputTiles, Halves>(
         warp, tiles, [&](int h, int n, const auto& share, int part) {
           if constexpr (Numbers::WeightShares > 1) {
             warp.multiplyAdd(ofHalf(h), share, part, sums[h][n]);
@@ -142,6 +142,7 @@ public:
         }
       }
     });
+    this->Self.exchange([](int) {}); // lanes part in slow activations, and multiply together
   }
 
   template <class Function> INR_HOST_DEVICE void forEachTile(int, const Function& function) const

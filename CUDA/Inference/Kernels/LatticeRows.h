@@ -94,7 +94,7 @@ INR_HOST_DEVICE inline void SetCell(const SamplePlaces& places, int k, LevelPart
   part.axes[axis][k % ItemSize] = cell;
 }
 
-/// All but the cells, and `first`.
+/// All but the cells, and where rows are.
 INR_HOST_DEVICE inline void SetExtent(const SamplePlaces& places, LevelPart& part)
 {
   const std::int64_t down = places.pointsAlong(1);

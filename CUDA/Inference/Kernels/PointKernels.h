@@ -47,7 +47,8 @@ template <int Tiles, class Numbers> struct FusedPoints
 {
   static constexpr int Threads = ThreadsPerBlock;
   /// Else entries that are on their way would take the way through memory once more.
-  static constexpr int LeastBlocks = Tiles == 4 ? 3 : 0;
+  /// Shared memory holds no more of float32's than two.
+  static constexpr int LeastBlocks = Tiles == 4 ? (Numbers::HasSecondWeights ? 2 : 3) : 0;
 
   FusedModel<Numbers> model;
   FusedShared shared;

@@ -28,12 +28,11 @@ INR_HOST_DEVICE void ForEachListed(Block& block, int threads, const std::uint32_
 /// The same where some numbers take much longer than others: a warp takes the next ones when it has
 /// done with its own. `next`: 0 at the beginning.
 template <class Block, class Function>
-INR_HOST_DEVICE void ForEachListedInTurn(Block& block, int threads, const std::uint32_t* list,
+INR_HOST_DEVICE void ForEachListedInTurn(Block& block, const std::uint32_t* list,
                                          const std::uint64_t* count, std::uint64_t* next,
                                          const Function& function)
 {
 #ifdef __CUDA_ARCH__
-  static_cast<void>(threads);
   const std::uint64_t end = *count;
   block.threads([&](int thread) {
     const int lane = thread % WarpSize;
@@ -54,8 +53,17 @@ INR_HOST_DEVICE void ForEachListedInTurn(Block& block, int threads, const std::u
     }
   });
 #else
-  static_cast<void>(next);
-  ForEachListed(block, threads, list, count, function); // no thread waits for another one
+  block.warps([&](const auto& warp) { // the first one takes them all: none waits for another one
+    for (std::uint64_t first = AtomicAdd(*next, std::uint64_t{WarpSize}); first < *count;
+         first = AtomicAdd(*next, std::uint64_t{WarpSize})) {
+      warp.lanes([&](int lane) {
+        const std::uint64_t k = first + static_cast<std::uint64_t>(lane);
+        if (k < *count) {
+          function(list != nullptr ? list[k] : static_cast<std::uint32_t>(k));
+        }
+      });
+    }
+  });
 #endif
 }
 

@@ -31,7 +31,7 @@ struct MarchRays
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
-    this->lists.forEach(block, Threads,
+    this->lists.forEach(block,
                         [&](std::uint32_t ray, std::int64_t pixel) { this->advance(ray, pixel); });
   }
 

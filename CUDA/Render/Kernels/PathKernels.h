@@ -48,7 +48,7 @@ struct TracePaths
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
-    this->lists.forEach(block, Threads,
+    this->lists.forEach(block,
                         [&](std::uint32_t ray, std::int64_t pixel) { this->advance(ray, pixel); });
   }
 

@@ -9,14 +9,19 @@
 #include "CUDA/Render/Kernels/CompositeSamples.h"
 #include "Core/Render/StepTable.h"
 
+#include <cstdint>
+#include <limits>
+
 namespace inr {
 namespace cuda {
 
 /// Where a ray stands, as long as it waits.
 struct RayProgress
 {
-  std::int64_t interval = -1; ///< of the next sample; -1: the ray has not begun
-  SampleStretch stretch;      ///< that it belongs to
+  static constexpr std::int64_t NotBegun = std::numeric_limits<std::int64_t>::min();
+
+  std::int64_t interval = NotBegun; ///< of the next sample
+  SampleStretch stretch;            ///< that it belongs to
   GatheredLight light;
   double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
   Projection projection;    ///< instead, of values that are projected
@@ -50,7 +55,7 @@ public:
                 cache.hierarchy.levels(), JitterOf(scene.settings, this->Stream)),
         State(progress)
   {
-    if (progress.interval >= 0) {
+    if (progress.interval != RayProgress::NotBegun) {
       this->Samples.resume(progress.interval, progress.stretch, scene.settings);
     } else {
       this->Counts.rays = this->Way.length > 0 ? 1 : 0;

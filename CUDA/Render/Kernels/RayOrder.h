@@ -82,7 +82,7 @@ struct RayLists
 
   /// Calls function(ray, pixel) for the calling thread's share of those whose turn it is.
   template <class Block, class Function>
-  INR_HOST_DEVICE void forEach(Block& block, int threads, const Function& function) const
+  INR_HOST_DEVICE void forEach(Block& block, const Function& function) const
   {
     const auto call = [&](std::uint32_t ray) {
       const std::int64_t pixel = this->order.pixel(this->first + ray);
@@ -90,7 +90,7 @@ struct RayLists
         function(ray, pixel);
       }
     };
-    ForEachListedInTurn(block, threads, this->now, this->nowCount, this->begun, call);
+    ForEachListedInTurn(block, this->now, this->nowCount, this->begun, call);
   }
 };
 
