@@ -73,11 +73,11 @@ failed=$((failed + bad))
 conformance_failed=$bad
 echo "   $ok passed, $bad failed, $skipped skipped ($build/conformance.log)"
 
-# Few points and small bricks: under the sanitizers everything takes a hundred times longer.
+# Few points, small bricks and pictures of one launch: under the sanitizers everything takes a hundred
+# times longer.
 small='Kernels/Bricks.LayersAreThoseOfTheWhole/Gpu*:Kernels/Conformance.ValueDoesNotDependOnTheBatch/Gpu*'
 small+=':Kernels/Conformance.EveryWidthAgreesWithCore/Gpu*'
 small+=':Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuLit:Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuPlain'
-small+=':Kernels/Drawing.NeedsNoMoreThanTheSmallestCache/Gpu'
 small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuLitMixedLevels:Kernels/Drawing.TracesThePathsOfTheCpu/Gpu'
 small+=':Kernels/Training.AgreesForEveryShape/Gpu:Kernels/Training.UpdatesAreCoresOwn/Gpu'
 for tool in memcheck racecheck synccheck; do
