@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <vector>
 
 namespace {
@@ -126,10 +125,12 @@ TEST(Tiles, OfFloatsMultiplyAsTheTensorCoresLayThemOut)
       float a[WarpSize][4];
       float b[WarpSize][2];
       for (int lane = 0; lane < WarpSize; ++lane) {
-        const float* const from = inputs[lane].first + 4 * part;
-        const float registers[4] = {from[0], from[2], from[1], from[3]};
-        std::copy_n(registers, 4, a[lane]);
-        std::copy_n(weights[lane].values + 2 * part, 2, b[lane]);
+        for (int k = 0; k < 4; ++k) {
+          a[lane][k] = RegisterOfA(inputs[lane].first, part, k);
+        }
+        for (int k = 0; k < 2; ++k) {
+          b[lane][k] = RegisterOfB(weights[lane], part, k);
+        }
       }
       MultiplyByTheManual(a, b, expected);
     }

@@ -112,6 +112,16 @@ inline double FirstPart(const WideInputShare& share, int v)
   return static_cast<double>(share.first[v]);
 }
 
+/// The k-th of a lane's registers for mma.m16n8k8 with one half of the inputs.
+INR_HOST_DEVICE inline float RegisterOfA(const float (&inputs)[8], int part, int k)
+{
+  return inputs[4 * part + k % 2 * 2 + k / 2]; // its rows come first, ours its columns
+}
+INR_HOST_DEVICE inline float RegisterOfB(const WideWeightShare& weights, int part, int k)
+{
+  return weights.values[2 * part + k];
+}
+
 #ifdef __CUDACC__
 
 /// sums += inputs * weights by the calling lane's warp, for one half of the outputs; one part of
@@ -124,14 +134,13 @@ INR_HOST_DEVICE inline void MultiplyWideShares(const float (&inputs)[8],
   float* const c = sums.values + 4 * half;
   INR_UNROLL
   for (int part = 0; part < 2; ++part) { // of the inputs
-    const float* const a = inputs + 4 * part;
-    const float* const b = weights.values + 2 * part;
+    const auto a = [&](int k) { return __float_as_uint(RegisterOfA(inputs, part, k)); };
+    const auto b = [&](int k) { return __float_as_uint(RegisterOfB(weights, part, k)); };
     asm volatile(
         "mma.sync.aligned.m16n8k8.row.col.f32.tf32.tf32.f32 {%0, %1, %2, %3}, {%4, %5, %6, %7}, "
         "{%8, %9}, {%0, %1, %2, %3};"
         : "+f"(c[0]), "+f"(c[1]), "+f"(c[2]), "+f"(c[3])
-        : "r"(__float_as_uint(a[0])), "r"(__float_as_uint(a[2])), "r"(__float_as_uint(a[1])),
-          "r"(__float_as_uint(a[3])), "r"(__float_as_uint(b[0])), "r"(__float_as_uint(b[1])));
+        : "r"(a(0)), "r"(a(1)), "r"(a(2)), "r"(a(3)), "r"(b(0)), "r"(b(1)));
   }
 #else // nobody begins such a kernel there
   static_cast<void>(inputs);
