@@ -7,7 +7,6 @@
 #include "CUDA/Inference/PackedModel.h"
 
 #include <optional>
-#include <string>
 
 namespace inr {
 namespace cuda {

@@ -103,7 +103,7 @@ std::vector<float> FeaturesAs(float /*kind*/, const float* from, const float* en
   return {from, end};
 }
 
-/// Of an operand that fits.
+/// Why a model cannot be packed so, or nothing.
 std::string WhyNot(const HalfNumbers& /*numbers*/, const Model& model) { return WhyNotHalf(model); }
 std::string WhyNot(const FloatNumbers& /*numbers*/, const Model& model)
 {

@@ -22,13 +22,11 @@ public:
   /// For pictures of so many pixels; what was in it is gone where that is another number.
   void resize(std::int64_t pixels)
   {
-    if (!this->Values || pixels > this->Capacity) { // which takes long
-      this->Capacity = 0;                           // should memory run out
+    if (!this->Staged || Channels * pixels > this->Staged->size()) { // which takes long
       this->Values.reset();
       this->Staged.reset();
       this->Values.emplace(this->Where.template allocate<float>(Channels * pixels));
       this->Staged.emplace(this->Where.template allocatePinned<float>(Channels * pixels));
-      this->Capacity = pixels;
     }
     this->Pixels = pixels;
   }
@@ -91,7 +89,6 @@ private:
   std::optional<Floats> Values;
   std::optional<Floats> Staged; ///< on the host
   std::int64_t Pixels = 0;
-  std::int64_t Capacity = 0; ///< pixels that there is memory for
 };
 
 } // namespace cuda

@@ -41,7 +41,7 @@ def inference(lines):
 def inference_result(run, ceilings):
     rate = run["samples"] / run["seconds"]
     yield results_file.result(run["name"], round(rate / 1e6, 2), "M samples/s", "higher",
-                              "default model, random parameters; median of 15")
+                              "default model, random parameters that halves hold; median of 15")
     if "floors" in run and HALF in run["name"]:
         bound, what = floor_rate(run["floors"], ceilings)
         more = {"target": 0.5} if run["name"] == f"bricks of level 0, {HALF}" else {}
