@@ -49,8 +49,8 @@ std::int64_t BricksOf(const Hierarchy& hierarchy)
 class Planner
 {
 public:
-  Planner(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t inference)
-      : Levels(hierarchy), Precision(precision), Inference(inference)
+  Planner(const Hierarchy& hierarchy, CachePrecision precision, const CacheNeeds& needs)
+      : Levels(hierarchy), Precision(precision), Needs(needs)
   {}
 
   CacheLayout plan(std::int64_t capacity, std::int64_t atOnce, std::int64_t requests) const
@@ -60,6 +60,7 @@ public:
     layout.atOnce = atOnce;
     layout.requests = requests;
     layout.pages = PowerOfTwoFrom(2 * capacity);
+    layout.cells = this->Needs.cells;
     layout.bytes = this->bytesOf(layout);
     return layout;
   }
@@ -96,13 +97,14 @@ private:
         BytesOf<RankEntry>(2 * layout.atOnce) + BytesOf<CacheCounts>(1);
     const std::int64_t loading = BytesOf<BrickJob>(layout.atOnce) +
                                  BytesOf<std::uint32_t>(layout.atOnce) +
-                                 BytesOf<float>(layout.atOnce * voxels);
-    return pool + slots + tables + ranking + loading + this->Inference;
+                                 BytesOf<float>(layout.atOnce * voxels) +
+                                 BytesOf<ValueRange>(layout.cells) + this->Needs.inference;
+    return pool + slots + tables + ranking + loading;
   }
 
   const Hierarchy& Levels;
   CachePrecision Precision;
-  std::int64_t Inference;
+  CacheNeeds Needs;
 };
 
 /// Hundredths, so that what is said to be enough is.
@@ -128,7 +130,7 @@ std::string InMebibytes(std::int64_t bytes, double (*round)(double))
 } // namespace
 
 CacheLayout LayOutCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes,
-                        std::int64_t inference)
+                        const CacheNeeds& needs)
 {
   // Launches of 16 MiB of voxels have work for every multiprocessor; an eighth of a small budget.
   const std::int64_t brick = hierarchy.voxelsPerBrick() * static_cast<std::int64_t>(sizeof(float));
@@ -137,7 +139,7 @@ CacheLayout LayOutCache(const Hierarchy& hierarchy, CachePrecision precision, st
   const std::int64_t wishes =
       std::clamp(bytes / 64 / BytesOf<RequestEntry>(1), FewestRequests, MostRequests);
   const std::int64_t requests = PowerOfTwoFrom(wishes / 2 + 1);
-  const Planner planner(hierarchy, precision, inference);
+  const Planner planner(hierarchy, precision, needs);
   const CacheLayout usual = planner.fit(bytes, atOnce, requests);
   if (usual.capacity >= BrickCache::FewestBricks) {
     return usual;

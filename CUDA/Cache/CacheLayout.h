@@ -18,14 +18,22 @@ struct CacheLayout
   std::int64_t atOnce;   ///< bricks that are inferred by one launch
   std::int64_t requests; ///< entries of their table, a power of two
   std::int64_t pages;    ///< entries of the page table, a power of two
+  std::int64_t cells;    ///< macro-cells by whose ranges values are divided
   std::int64_t bytes;    ///< of everything
 };
 
-/// The largest cache within so many bytes: pool, tables, what ranks, and what infers, whose own
-/// memory takes `inference` of them. Throws Error(InvalidArgument) with figures when that does not
-/// hold BrickCache::FewestBricks.
+/// What a cache has however few bricks it holds.
+struct CacheNeeds
+{
+  std::int64_t inference = 0; ///< bytes
+  std::int64_t cells = 0;     ///< see CacheLayout
+};
+
+/// The largest cache within so many bytes: pool, tables, what ranks, and what loads, `needs`
+/// included. Throws Error(InvalidArgument) with figures when that does not hold
+/// BrickCache::FewestBricks.
 CacheLayout LayOutCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes,
-                        std::int64_t inference);
+                        const CacheNeeds& needs);
 
 } // namespace cuda
 } // namespace inr

@@ -28,15 +28,19 @@ namespace cuda {
 template <class Machine, class Inference> class DeviceCache
 {
 public:
-  /// Everything stays within `bytes`; the coarsest brick comes in for good. Throws what LayOutCache
-  /// throws, and what the machine does, which must live longer.
+  /// Everything stays within `bytes`; the coarsest brick comes in for good. By the ranges of
+  /// `cells`, where there are any and they hold, integers divide values, as in Core's BrickStore.
+  /// Throws what LayOutCache throws, and what the machine does, which must live longer.
   DeviceCache(Machine& machine, Inference inference, const Hierarchy& hierarchy,
-              CachePrecision precision, std::int64_t bytes)
+              CachePrecision precision, std::int64_t bytes, const MacroCells& cells = {})
       : Where(machine), Infer(std::move(inference)), Levels(hierarchy),
-        Layout(LayOutCache(hierarchy, precision, bytes, this->Infer.bytes())), Precision(precision),
+        Layout(LayOutCache(hierarchy, precision, bytes,
+                           {this->Infer.bytes(), CellsFor(precision, cells)})),
+        Precision(precision),
         Tables(Available(machine, this->Layout), this->Layout, hierarchy, precision)
   {
     machine.toMachine(this->Tables.levels.data(), &hierarchy.view().level(0), hierarchy.levels());
+    this->putRanges(cells);
     machine.fill(this->Tables.uses.data(), 0, this->Layout.capacity);
     this->forgetRequests();
     this->map();
@@ -179,6 +183,7 @@ private:
           jobs(machine.template allocate<BrickJob>(layout.atOnce)),
           values(machine.template allocate<float>(layout.atOnce * hierarchy.voxelsPerBrick())),
           marked(machine.template allocate<std::uint32_t>(layout.atOnce)),
+          ranges(machine.template allocate<ValueRange>(layout.cells)),
           counts(machine.template allocate<CacheCounts>(1))
     {}
 
@@ -195,8 +200,29 @@ private:
     Array<BrickJob> jobs;
     Array<float> values;
     Array<std::uint32_t> marked;
+    Array<ValueRange> ranges;
     Array<CacheCounts> counts;
   };
+
+  /// How many ranges are read: floats are stored as they are.
+  static std::int64_t CellsFor(CachePrecision precision, const MacroCells& cells)
+  {
+    const bool divides = precision != CachePrecision::Float32 && cells.rangesHold();
+    return divides ? static_cast<std::int64_t>(cells.ranges.size()) : 0;
+  }
+
+  void putRanges(const MacroCells& cells)
+  {
+    if (this->Layout.cells == 0) {
+      return;
+    }
+    std::vector<ValueRange> ranges(cells.ranges);
+    for (ValueRange& range : ranges) {
+      range = {NormalisedOutput(range.low), NormalisedOutput(range.high)};
+    }
+    this->Where.toMachine(this->Tables.ranges.data(), ranges.data(), this->Layout.cells);
+    this->Cells = {cells.dims, cells.spacing, this->Tables.ranges.data()};
+  }
 
   static Machine& Available(Machine& machine, const CacheLayout& layout)
   {
@@ -259,7 +285,8 @@ private:
                              this->Tables.slots.data(),
                              this->Tables.values.data(),
                              this->Tables.counts.data(),
-                             this->Tables.marked.data()};
+                             this->Tables.marked.data(),
+                             this->Cells};
     this->Where.run(kernel, most * StoreBricks::Threads, StoreBricks::SharedBytes);
   }
 
@@ -309,6 +336,7 @@ private:
   CacheLayout Layout;
   CachePrecision Precision;
   Storage Tables;
+  CellRanges Cells;
   std::uint64_t Frame = 1;
   std::int64_t Mapped = 0;
   Machine* Beside = nullptr;               ///< that infers what was begun

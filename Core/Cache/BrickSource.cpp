@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/BrickSource.h"
 
+#include "Core/Cache/BrickCells.h"
 #include "Core/Model/Model.h"
 
 #include <glm/common.hpp>
@@ -31,19 +32,16 @@ BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
 std::int64_t PointsPerAxis(int level) { return level == 0 ? 1 : 2; }
 
 /// Of all cells that a brick's voxels reach into.
-ValueRange RangeWithin(const MacroCells& cells, const Hierarchy& hierarchy, const BrickId& id)
+ValueRange RangeWithin(const MacroCells& cells, const Hierarchy& hierarchy, BrickKey key)
 {
-  const BrickBox box = BoxOf(hierarchy, id);
-  const glm::dvec3 perVoxel = 1.0 / (glm::dvec3(hierarchy.size(id.level)) * cells.spacing);
-  const glm::i64vec3 end = cells.dims - std::int64_t{1};
-  const glm::i64vec3 first = glm::min(glm::i64vec3(glm::dvec3(box.first) * perVoxel), end);
-  const glm::i64vec3 last =
-      glm::min(glm::i64vec3(glm::dvec3(box.first + box.count) * perVoxel), end);
+  const CellRanges ranges{cells.dims, cells.spacing, cells.ranges.data()};
+  const CellBox box = CellsOfBrick(ranges, hierarchy.view(), IdOf(key));
+  const glm::i64vec3 end = box.first + box.dims;
   ValueRange range;
-  for (std::int64_t z = first.z; z <= last.z; ++z) {
-    for (std::int64_t y = first.y; y <= last.y; ++y) {
-      for (std::int64_t x = first.x; x <= last.x; ++x) {
-        range.extend(cells.ranges[static_cast<std::size_t>(cells.index(x, y, z))]);
+  for (std::int64_t z = box.first.z; z < end.z; ++z) {
+    for (std::int64_t y = box.first.y; y < end.y; ++y) {
+      for (std::int64_t x = box.first.x; x < end.x; ++x) {
+        range.extend(ranges.at({x, y, z}));
       }
     }
   }
@@ -63,7 +61,7 @@ public:
     if (!this->Cells) {
       return {};
     }
-    const ValueRange range = RangeWithin(*this->Cells, this->hierarchy(), IdOf(key));
+    const ValueRange range = RangeWithin(*this->Cells, this->hierarchy(), key);
     return {NormalisedOutput(range.low), NormalisedOutput(range.high)};
   }
 

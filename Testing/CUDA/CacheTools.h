@@ -52,13 +52,14 @@ inline std::vector<Wish> WishesFor(const std::vector<inr::BrickKey>& keys)
   return wishes;
 }
 
-/// What a slot holds is what Core's pool makes of the voxels.
+/// What a slot holds is what Core's pool makes of the voxels of a brick in cells `within` a range.
 inline void ExpectStored(const inr::BrickView& view, const inr::Hierarchy& levels,
-                         inr::CachePrecision precision, const std::vector<float>& values)
+                         inr::CachePrecision precision, const std::vector<float>& values,
+                         const inr::ValueRange& within = {})
 {
   inr::BrickPool pool(precision, levels.voxelsPerBrick(), 1);
   pool.resize(1);
-  pool.store(0, values.data());
+  pool.store(0, values.data(), within);
   const inr::BrickView expected = pool.view(0);
   EXPECT_EQ(view.low, expected.low);
   EXPECT_FALSE(std::signbit(view.low)); // which of two zeros Core's is, depends on their order
@@ -73,7 +74,7 @@ inline std::int64_t BytesFor(const inr::Hierarchy& levels, inr::CachePrecision p
                              std::int64_t bricks)
 {
   std::int64_t bytes = 14 << 10;
-  while (inr::cuda::LayOutCache(levels, precision, bytes, 0).capacity < bricks) {
+  while (inr::cuda::LayOutCache(levels, precision, bytes, {}).capacity < bricks) {
     bytes += 1 << 10;
   }
   return bytes;

@@ -19,9 +19,10 @@ MakeRendererOn(const Where& where, EmulatedInference inference, const glm::i64ve
                const inr::CacheOptions& options)
 {
   using Cache = inr::cuda::DeviceCache<Machine, EmulatedInference>;
+  const inr::ModelPointer model = inference.source();
   auto store = std::make_shared<inr::cuda::DeviceStore<Machine, Cache>>(
       where, std::move(inference), inr::Hierarchy(dims, options.brickSize), options.precision,
-      options.bytes);
+      options.bytes, model->macroCells);
   return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options);
 }
 

@@ -16,11 +16,13 @@ constexpr int SmallBrick = 5; ///< of which the model has more than a hundred
 inline std::int64_t BytesFor(std::int64_t bricks, std::int64_t inference)
 {
   const inr::Hierarchy levels(TrainedModel()->volume.dims, SmallBrick);
+  const inr::cuda::CacheNeeds needs{
+      inference, static_cast<std::int64_t>(TrainedModel()->macroCells.ranges.size())};
   std::int64_t bytes = 1000;
   while (true) {
     try {
       const auto precision = inr::CachePrecision::Bits16;
-      if (inr::cuda::LayOutCache(levels, precision, bytes, inference).capacity >= bricks) {
+      if (inr::cuda::LayOutCache(levels, precision, bytes, needs).capacity >= bricks) {
         return bytes;
       }
     } catch (const inr::Error&) { // less than it must have

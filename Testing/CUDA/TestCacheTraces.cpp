@@ -162,7 +162,7 @@ protected:
   void beginLoad()
   {
     const std::int64_t atOnce =
-        inr::cuda::LayOutCache(this->Levels, Precision, this->Cache.bytes(), 0).atOnce;
+        inr::cuda::LayOutCache(this->Levels, Precision, this->Cache.bytes(), {}).atOnce;
     this->Wishes = this->Simple.wishes();
     this->Listed = this->Simple.list(std::min<std::int64_t>(atOnce, 9), true);
     this->Cache.beginLoad(this->Beside, 9, true);

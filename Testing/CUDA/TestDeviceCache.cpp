@@ -117,6 +117,46 @@ TEST(DeviceCache, HoldsBricksOfTheLargestVolume)
   }
 }
 
+/// Of any ranges, of [0, 1] and beyond, and some of none.
+inr::MacroCells AnyCells(const glm::i64vec3& dims)
+{
+  inr::MacroCells cells = inr::MakeMacroCells(dims, 16);
+  cells.provenance = inr::MacroCellProvenance::Decoded;
+  for (std::size_t k = 0; k < cells.ranges.size(); ++k) {
+    const float low = 1.2f * inr::RandomUnit(1, k) - 0.2f;
+    if (k % 7 != 0) {
+      cells.ranges[k] = {low, low + 0.3f * inr::RandomUnit(2, k)};
+    }
+  }
+  return cells;
+}
+
+/// As Core does. Bricks reach into several cells, and the coarsest into all.
+TEST(DeviceCache, DividesTheRangesOfMacroCells)
+{
+  const glm::i64vec3 dims(64, 48, 40);
+  const Hierarchy levels(dims, 17);
+  auto cells = std::make_shared<inr::MacroCells>(AnyCells(dims));
+  const auto field = inr::MakeEvaluator(RandomModel(SmallDescription())); // which nobody asks
+  std::vector<BrickKey> keys = DifferentBricks(levels, 25);
+  keys.push_back(levels.coarsest());
+  for (const CachePrecision precision : AllPrecisions) {
+    for (const bool hold : {true, false}) {
+      cells->provenance =
+          hold ? inr::MacroCellProvenance::Training : inr::MacroCellProvenance::File;
+      HostMachine machine;
+      RuledCache cache(machine, {}, levels, precision, 4 << 20, *cells);
+      const auto truth = inr::MakeBrickSource(field, levels, hold ? cells : nullptr);
+      Ask(machine, cache.view(), WishesFor(keys));
+      ASSERT_EQ(cache.load(1000, true).loaded, 25);
+      for (const BrickKey key : keys) {
+        ExpectStored(cache.view().view(cache.view().find(key)), levels, precision,
+                     RuledBrick(levels, key), truth->rangeOf(key));
+      }
+    }
+  }
+}
+
 /// Counts what is allocated.
 struct CountingMachine : HostMachine
 {
@@ -135,8 +175,8 @@ TEST(DeviceCache, StaysWithinItsBudget)
     std::int64_t before = 0;
     for (const std::int64_t bytes : {100 << 10, 1 << 20, 3000000, 40 << 20}) {
       CountingMachine machine;
-      const inr::cuda::DeviceCache<CountingMachine, RuledInference> cache(machine, {}, levels,
-                                                                          precision, bytes);
+      const inr::cuda::DeviceCache<CountingMachine, RuledInference> cache(
+          machine, {}, levels, precision, bytes, AnyCells({100, 80, 60}));
       EXPECT_EQ(cache.bytes(), machine.bytes);
       EXPECT_LE(cache.bytes(), bytes);
       EXPECT_GT(cache.capacity(), before);

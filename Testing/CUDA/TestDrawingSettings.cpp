@@ -51,6 +51,29 @@ TEST_P(DrawingSettings, EveryPrecisionOfTheCacheGivesThePicturesOfTheCpu)
   }
 }
 
+/// Where colours are steep and opaque, rounding of voxels shows, and is the same.
+TEST_P(DrawingSettings, RoundsWhatItKeepsAsTheCpuDoes)
+{
+  inr::TransferFunction colours = ColoursOf(TrainedModel()->volume);
+  for (std::size_t k = 0; k < colours.table.size(); ++k) {
+    colours.table[k].w = k < colours.table.size() / 2 ? 0.0f : 1.0f;
+  }
+  const inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
+  inr::RendererOptions options = this->options();
+  const auto drawnWith = [&](inr::CachePrecision precision) {
+    options.cache.precision = precision;
+    inr::Renderer renderer = RendererOf(options);
+    renderer.setTransferFunction(colours);
+    inr::Image image;
+    renderer.render(frame, image);
+    return image;
+  };
+  const inr::Image drawn = drawnWith(inr::CachePrecision::Bits8);
+  options.accelerator = nullptr;
+  EXPECT_GE(inr::ImagePsnr(drawn, drawnWith(inr::CachePrecision::Bits8)), 90);
+  EXPECT_LE(inr::ImagePsnr(drawn, drawnWith(inr::CachePrecision::Float32)), 60);
+}
+
 /// Colours over the logarithm of values.
 inr::TransferFunction Logarithmic()
 {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "CUDA/Cache/Kernels/ListBricks.h"
+#include "Core/Cache/BrickCells.h"
 #include "Core/Cache/Quantisation.h"
 
 #include <cstdint>
@@ -29,6 +30,7 @@ struct StoreBricks
   const float* values; ///< of bricks behind each other
   CacheCounts* counts;
   std::uint32_t* marked; ///< voxels of each brick that are no numbers: Core has to compute them
+  CellRanges cells;      ///< of normalised values, which are stored with others of these ranges
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
@@ -39,7 +41,7 @@ struct StoreBricks
       }
       const std::int64_t voxels = end.values / end.jobs;
       const float* const brick = this->values + k * voxels;
-      const Range* const range = FindRange(block, brick, voxels);
+      const Range* const range = this->findRange(block, k, brick, voxels);
       block.threads([&](int thread) {
         const BrickScale scale = this->scaleOf(range->low, range->high);
         if (thread == 0) {
@@ -74,19 +76,19 @@ private:
     return {b.low < a.low ? b.low : a.low, b.high > a.high ? b.high : a.high, a.marked + b.marked};
   }
 
-  /// Of NaNs, if they are all that there is. Phases.
+  /// Of voxels and cells; of NaNs, if they are all that there is. Phases.
   template <class Block>
-  INR_HOST_DEVICE static const Range* FindRange(Block& block, const float* values,
-                                                std::int64_t count)
+  INR_HOST_DEVICE const Range* findRange(Block& block, std::int64_t k, const float* values,
+                                         std::int64_t count) const
   {
     Range* const ranges = reinterpret_cast<Range*>(block.shared());
     block.threads([&](int thread) {
       Range range{values[0], values[0], 0};
-      for (std::int64_t k = thread; k < count; k += Threads) {
-        const float value = values[k];
+      for (std::int64_t voxel = thread; voxel < count; voxel += Threads) {
+        const float value = values[voxel];
         range = Joined(range, {value, value, value != value ? 1u : 0u});
       }
-      ranges[thread] = range;
+      ranges[thread] = this->withCells(range, k, thread);
     });
     for (int half = Threads / 2; half > 0; half /= 2) {
       block.threads([&](int thread) {
@@ -96,6 +98,23 @@ private:
       });
     }
     return ranges;
+  }
+
+  /// A range, and those of a thread's part of the cells that a brick lies in.
+  INR_HOST_DEVICE Range withCells(Range range, std::int64_t k, int thread) const
+  {
+    if (this->cells.empty()) {
+      return range;
+    }
+    const BrickId id = IdOf(WantedBricks::KeyOf(this->bricks[k]));
+    const CellBox box = CellsOfBrick(this->cells, this->cache.hierarchy, id);
+    for (std::int64_t at = thread; at < box.count(); at += Threads) {
+      const ValueRange& cell = this->cells.at(box.at(at));
+      if (!cell.empty()) {
+        range = Joined(range, {cell.low, cell.high, 0});
+      }
+    }
+    return range;
   }
 
   INR_HOST_DEVICE BrickScale scaleOf(float low, float high) const
