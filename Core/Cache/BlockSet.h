@@ -38,7 +38,14 @@ struct BlockSet
     return std::equal(this->words.begin(), this->words.end(), other.words.begin(),
                       [](std::uint64_t mine, std::uint64_t its) { return (its & ~mine) == 0; });
   }
-  bool isAll() const { return *this == all(); }
+  bool isAll() const
+  {
+    std::uint64_t common = ~std::uint64_t{0};
+    for (const std::uint64_t word : this->words) { // asked for every sample of a path
+      common &= word;
+    }
+    return common == ~std::uint64_t{0};
+  }
   bool operator==(const BlockSet& other) const { return this->words == other.words; }
 
   /// Blocks (0, y, z), (1, y, z) ..., from the lowest bit on.
