@@ -77,18 +77,21 @@ inline void CachedMarcher::placeRun(const CachedRay& state, const AlikeSamples& 
 {
   const SampleWalker& samples = state.samples;
   const auto begin = static_cast<double>(samples.next());
-  const double growth = samples.detail().fractionGrowth() * this->Scene.settings.step;
-  const double fraction = samples.detail().fractionAtEntry() + growth * runs.fine->reference();
   run.start[0] = runs.fine->along(begin);
   run.start[1] = runs.coarse->along(begin);
   run.spacing = static_cast<float>(alike.steps());
   run.offset = static_cast<float>(samples.offset(alike));
-  run.ways = samples.detail().isDithered() ? 2 : 1;
-  run.fraction = static_cast<float>(fraction);
-  run.growth = static_cast<float>(growth);
-  run.seed = DitherSeed(state.stream);
-  run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
-  run.stride = static_cast<std::uint32_t>(this->ditherOf(alike.steps()));
+  run.ways = 1;
+  if (samples.detail().isDithered()) {
+    const double growth = samples.detail().fractionGrowth() * this->Scene.settings.step;
+    const double fraction = samples.detail().fractionAtEntry() + growth * runs.fine->reference();
+    run.ways = 2;
+    run.fraction = static_cast<float>(fraction);
+    run.growth = static_cast<float>(growth);
+    run.seed = DitherSeed(state.stream);
+    run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
+    run.stride = static_cast<std::uint32_t>(this->ditherOf(alike.steps()));
+  }
 }
 
 inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
