@@ -15,14 +15,23 @@ constexpr int FirstRoom = 32;
 /// And, at most, one of samples that are looked at one by one: of these there is a bit for each.
 constexpr int MostSingle = 64;
 
-SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t stream)
+/// Of a ray through pixel (x, y).
+SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t stream, int x, int y)
 {
-  return {scene.majorants.view(),
-          scene.settings,
-          ray,
-          scene.frame.levelOfDetailScale,
-          scene.bricks.cache().hierarchy().levels(),
-          JitterOf(scene.settings, stream)};
+  SampleWalker samples(scene.majorants.view(), scene.settings, ray, scene.frame.levelOfDetailScale,
+                       scene.bricks.cache().hierarchy().levels(), JitterOf(scene.settings, stream));
+  if (ray.length > 0) {
+    samples.confine(scene.seen->of(ray, x, y), scene.settings);
+  }
+  return samples;
+}
+
+/// The first part of the ray through pixel (x, y); none where nothing is seen, unless that is
+/// projected, too.
+Ray FirstPart(const CachedScene& scene, int x, int y)
+{
+  const bool isMissed = scene.seen->isEmpty(x, y) && !scene.settings.projector.projects();
+  return isMissed ? Ray() : scene.geometry.ray(x, y, 0);
 }
 
 double ShortestBlockOf(const BrickFormat& format)
@@ -40,8 +49,8 @@ double ShortestBlockOf(const BrickFormat& format)
 } // namespace
 
 CachedRay::CachedRay(const CachedScene& scene, int x, int y)
-    : ray(scene.geometry.ray(x, y, 0)), stream(StreamsOf(scene.frame).at(x, y)),
-      samples(SamplesOf(scene, this->ray, this->stream)), x(x), y(y)
+    : ray(FirstPart(scene, x, y)), stream(StreamsOf(scene.frame).at(x, y)),
+      samples(SamplesOf(scene, this->ray, this->stream, x, y)), x(x), y(y)
 {
   this->color.ofMany = this->samples.end() > ManySamples;
 }
@@ -113,7 +122,7 @@ bool CachedMarcher::enterNextPart(CachedRay& state) const
     state.halfOpaqueDepth = this->Scene.geometry.windowDepth(state.ray.at(state.halfOpaqueAt));
   }
   state.ray = this->Scene.geometry.ray(state.x, state.y, ++state.part);
-  state.samples = SamplesOf(this->Scene, state.ray, state.stream);
+  state.samples = SamplesOf(this->Scene, state.ray, state.stream, state.x, state.y);
   state.color.ofMany = state.color.ofMany || state.samples.end() > ManySamples;
   state.known = {};
   state.shownTo = CachedRay::Unknown;

@@ -8,6 +8,7 @@
 #include "Core/UsableMemory.h"
 
 #include <algorithm>
+#include <memory>
 #include <new>
 
 namespace inr {
@@ -169,9 +170,12 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
   if (blocks != nullptr && !looksFurther) {
     reach = shading != nullptr ? 1 : 0; // gradients
   }
+  const auto seen =
+      std::make_shared<const SeenSpans>(geometry.view(), majorants.view(), settings.dims,
+                                        frame.levelOfDetailScale, cache.hierarchy().levels());
   const CachedScene scene{
-      frame,        geometry,        majorants, lookup,  steps, this->bricksFor(majorants, reach),
-      this->Kernel, FormatOf(cache), settings,  shading, blocks};
+      frame,        geometry,        majorants, lookup,  steps,  this->bricksFor(majorants, reach),
+      this->Kernel, FormatOf(cache), settings,  shading, blocks, seen};
   FrameStatistics statistics = this->renderFrame(scene, limit, output, keepGoing);
   statistics.work = this->Work;
   return statistics;

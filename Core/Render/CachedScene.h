@@ -10,7 +10,10 @@
 #include "Core/Render/RayGeometry.h"
 #include "Core/Render/SampleShader.h"
 #include "Core/Render/SampleWalker.h"
+#include "Core/Render/SeenSpans.h"
 #include "Core/Render/SufficientBricks.h"
+
+#include <memory>
 
 namespace inr {
 
@@ -26,8 +29,9 @@ struct CachedScene
   const BrickKernel& kernel;
   BrickFormat format; ///< of the cache's bricks
   MarchSettings settings;
-  const Shading* shading;        ///< null: colours as the transfer function gives them
-  const BlockVisibility* blocks; ///< null: of all blocks samples are taken
+  const Shading* shading;                ///< null: colours as the transfer function gives them
+  const BlockVisibility* blocks;         ///< null: of all blocks samples are taken
+  std::shared_ptr<const SeenSpans> seen; ///< never null
 };
 
 } // namespace inr

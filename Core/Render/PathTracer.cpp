@@ -78,17 +78,29 @@ std::uint64_t PieceNumber(const std::vector<glm::dvec4>& piece)
   return number;
 }
 
+void WriteNothing(const Tile& tile, Image& rgba, Image* depth)
+{
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    std::fill_n(rgba.pixel(tile.x, y), 4 * tile.width, 0.0f);
+    if (depth != nullptr) {
+      std::fill_n(depth->pixel(tile.x, y), tile.width, 0.0f);
+    }
+  }
+}
+
 /// The paths of a tile, each asking for one value in a round.
 class TileOfPaths
 {
 public:
-  TileOfPaths(const Frame& frame, const PathScene& scene, const Tile& tile)
+  TileOfPaths(const Frame& frame, const PathScene& scene, const SeenSpans& seen, const Tile& tile)
       : Picture(frame), Scene(scene), Place(tile)
   {
     this->Paths.reserve(static_cast<std::size_t>(tile.width) * tile.height);
     for (int k = 0; k < tile.width * tile.height; ++k) {
       this->Paths.emplace_back(scene, this->x(k), this->y(k));
-      if (this->Paths.back().ray.length > 0) {
+      PathState& path = this->Paths.back();
+      Confine(path, seen.of(path.ray, this->x(k), this->y(k)));
+      if (path.ray.length > 0) {
         this->Live.push_back(k);
       }
     }
@@ -124,6 +136,13 @@ public:
   const FrameStatistics& statistics() const { return this->Statistics; }
 
 private:
+  /// Of a path that leaves the camera nothing can be seen outside a span.
+  static void Confine(PathState& path, const SeenSpan& seen)
+  {
+    path.t = std::max(seen.begin, 0.0);
+    path.ray.length = std::min(path.ray.length, seen.end);
+  }
+
   /// As the camera sees it: through the translucent surfaces in front of the first collision.
   glm::vec4 colorOf(const PathState& path, int k) const
   {
@@ -241,7 +260,8 @@ PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const gl
                                                            geometry.worldPerUnit() /
                                                                frame.unitDistance,
                                                            levels,
-                                                           PieceNumber(frame.piece)}
+                                                           PieceNumber(frame.piece)},
+      Seen(geometry.view(), majorants.view(), glm::dvec3(dims), frame.levelOfDetailScale, levels)
 {
   Check(frame.paths);
   Require(levels >= 1, "a field has at least one level");
@@ -250,7 +270,11 @@ PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const gl
 FrameStatistics PathTracer::trace(const Tile& tile, FieldSampler& sampler, Image& rgba,
                                   Image* depth) const
 {
-  TileOfPaths paths(this->Picture, this->Scene, tile);
+  if (this->Seen.isEmpty(tile)) {
+    WriteNothing(tile, rgba, depth);
+    return {};
+  }
+  TileOfPaths paths(this->Picture, this->Scene, this->Seen, tile);
   paths.trace(sampler);
   paths.write(rgba, depth);
   return paths.statistics();

@@ -4,6 +4,7 @@
 #include "Core/Image/Image.h"
 #include "Core/Render/Majorants.h"
 #include "Core/Render/PathTracing.h"
+#include "Core/Render/SeenSpans.h"
 #include "Core/Render/Tiling.h"
 
 #include <cstdint>
@@ -64,6 +65,7 @@ private:
   InnerRays Inner;
   std::vector<PathLight> Lights;
   PathScene Scene;
+  SeenSpans Seen;
 };
 
 } // namespace inr

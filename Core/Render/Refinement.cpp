@@ -22,7 +22,7 @@ Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
             scene.steps,     scene.bricks,
             scene.kernel,    scene.format,
             scene.settings,  this->Lighting ? &*this->Lighting : nullptr,
-            scene.blocks},
+            scene.blocks,    scene.seen},
       Pass(this->Scene), Pixels(soFar)
 {}
 

@@ -6,6 +6,7 @@
 #include "Core/Render/LevelOfDetail.h"
 #include "Core/Render/MarchSettings.h"
 #include "Core/Render/SampleStretch.h"
+#include "Core/Render/SeenSpan.h"
 
 #include <glm/common.hpp>
 
@@ -53,6 +54,20 @@ public:
         PieceBegin(ray.pieceBegin / settings.step), PieceEnd(ray.pieceEnd / settings.step),
         Next(jitter < 1.0 || !(ray.length > 0) ? 0 : -1)
   {}
+
+  /// Says, before anything else, that nothing can be seen of the ray but in a span of it.
+  INR_HOST_DEVICE void confine(const SeenSpan& seen, const MarchSettings& settings)
+  {
+    this->SeenEnd = seen.end / settings.step;
+    if (seen.empty()) {
+      this->Next = static_cast<std::int64_t>(this->End) + 1;
+      return;
+    }
+    this->moveDetail(settings);
+    if (this->firstPlace() * settings.step < seen.begin) {
+      this->skipTo(seen.begin, settings);
+    }
+  }
 
   /// Moves on to the next sample of the ray's piece that may be seen; false when there is none.
   /// Where surfaces are looked for, the last one may be behind the piece.
@@ -137,10 +152,7 @@ private:
           this->firstPlace() < this->Stretch.exit) {
         return true;
       }
-      if (settings.cellSampling != nullptr) {
-        this->Detail.fix(0); // until the cell is known
-      }
-      this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
+      this->moveDetail(settings);
       this->Cells.moveTo(this->firstPlace() * settings.step);
       if (this->Cells.extinction() > 0.0f || this->isLeaving(settings)) {
         if (settings.cellSampling != nullptr) {
@@ -150,12 +162,21 @@ private:
         }
         return true;
       }
-      if (!this->Cells.moveToVisible(glm::min(this->End, this->PieceEnd) * settings.step)) {
+      const double last = glm::min(glm::min(this->End, this->PieceEnd), this->SeenEnd);
+      if (!this->Cells.moveToVisible(last * settings.step)) {
         return false;
       }
       this->skipTo(this->Cells.enter(), settings);
     }
     return false;
+  }
+
+  INR_HOST_DEVICE void moveDetail(const MarchSettings& settings)
+  {
+    if (settings.cellSampling != nullptr) {
+      this->Detail.fix(0); // until the cell is known
+    }
+    this->Detail.moveTo(static_cast<double>(this->Next) * settings.step);
   }
 
   /// The samples from here on, whichever piece they are in.
@@ -400,7 +421,8 @@ private:
   double End;
   double PieceBegin;
   double PieceEnd;
-  std::int64_t Next; ///< lattice interval that comes next
+  double SeenEnd = Infinite; ///< behind it all cells are invisible
+  std::int64_t Next;         ///< lattice interval that comes next
 };
 
 } // namespace inr

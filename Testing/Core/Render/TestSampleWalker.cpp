@@ -162,6 +162,42 @@ TEST_P(SampleWalkers, ResumeFromWhereTheyOnceWere)
   }
 }
 
+/// From some place in front of all visible cells of a ray to some place behind them.
+inr::SeenSpan SpanOf(const inr::Ray& ray, const inr::Majorants& majorants,
+                     const inr::MarchSettings& settings, std::uint64_t number)
+{
+  const double scale = settings.cellSampling != nullptr ? 0.0 : 1.0;
+  inr::CellWalker cells(majorants.view(), settings.dims, ray, scale, Levels);
+  inr::SeenSpan seen{inr::Infinite, -inr::Infinite};
+  for (double t = 0; t < ray.length; t = cells.exit()) {
+    cells.moveTo(t);
+    if (cells.extinction() > 0) {
+      seen.begin = std::min(seen.begin, cells.enter() * inr::RandomUnit(14, number));
+      seen.end = cells.exit() + 30 * inr::RandomUnit(15, number);
+    }
+  }
+  return seen;
+}
+
+TEST_P(SampleWalkers, TakeTheSameWhereTheyAreConfinedToWhatIsSeen)
+{
+  const inr::MarchSettings settings = this->settings();
+  int empty = 0;
+  for (std::uint64_t number = 0; number < 300; ++number) {
+    inr::Ray ray = RandomRay(number);
+    ray.length *= number % 4 == 0 ? 0.1 : 1.0;
+    const double jitter = number % 5 == 0 ? 1.0 : inr::RandomUnit(8, number);
+    const inr::SampleWalker walker = WalkerOn(ray, this->Cells, settings, jitter);
+    const inr::SeenSpan seen = SpanOf(ray, this->Cells, settings, number);
+    empty += seen.empty() ? 1 : 0;
+    inr::SampleWalker confined = walker;
+    confined.confine(seen, settings);
+    EXPECT_EQ(Walk(confined, settings, 1000), Walk(walker, settings, 1000)) << number;
+  }
+  EXPECT_GT(empty, 5);
+  EXPECT_LT(empty, 100);
+}
+
 /// What the macro-cells say at t: whether it can be seen, and how deep a sample of `steps` is.
 struct CellAt
 {
