@@ -136,7 +136,7 @@ struct LevelSpan
 /// the wall time and the work.
 struct FrameStatistics
 {
-  std::int64_t rays = 0;    ///< that met the volume, but for those known to show nothing
+  std::int64_t rays = 0;    ///< that met the volume; the CPU leaves out some that show nothing
   std::int64_t samples = 0; ///< values of the field that were looked up or inferred
   std::int64_t missed = 0;  ///< of these, read from a coarser level than wanted
   std::int64_t hidden = 0;  ///< samples besides, left out as the voxels around them show nothing

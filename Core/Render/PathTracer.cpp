@@ -78,6 +78,7 @@ std::uint64_t PieceNumber(const std::vector<glm::dvec4>& piece)
   return number;
 }
 
+/// As paths do that meet nothing.
 void WriteNothing(const Tile& tile, Image& rgba, Image* depth)
 {
   for (int y = tile.y; y < tile.y + tile.height; ++y) {

@@ -64,7 +64,8 @@ public:
       return;
     }
     this->moveDetail(settings);
-    if (this->firstPlace() * settings.step < seen.begin) {
+    // Where pieces share samples, one may begin in this piece and be behind it, in cells that are.
+    if (!this->Shared && this->firstPlace() * settings.step < seen.begin) {
       this->skipTo(seen.begin, settings);
     }
   }

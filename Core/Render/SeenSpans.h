@@ -67,6 +67,7 @@ private:
   glm::dvec3 Dims;
   glm::dmat4 IndexToClip;
   glm::dvec4 Depth;          ///< of point indices: linear, and grows or falls along each ray
+  Depths Anywhere;           ///< of cells that reach behind the camera
   std::vector<Depths> Spans; ///< of the tiles; none where nothing is known
 };
 
