@@ -5,6 +5,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,22 +14,17 @@ namespace inr {
 
 namespace {
 
-/// A cell takes about a tenth of a microsecond to draw, a pixel that shows something several.
+/// A cell takes about a tenth of a microsecond to draw, a pixel that shows something one or two.
 constexpr std::int64_t PixelsPerCell = 32;
-/// To look at one costs so much less.
+/// Of grids of more cells than so many times what may be drawn, not even these are looked at.
 constexpr std::int64_t CellsPerVisible = 8;
-
-glm::dvec4 RowOf(const glm::dmat4& matrix, int row)
-{
-  return {matrix[0][row], matrix[1][row], matrix[2][row], matrix[3][row]};
-}
 
 /// Distance from the camera, but for a factor; of parallel rays, from the near plane.
 glm::dvec4 DepthOf(const glm::dmat4& indexToClip, const glm::dvec3& dims)
 {
-  const glm::dvec4 w = RowOf(indexToClip, 3);
+  const glm::dvec4 w = glm::row(indexToClip, 3);
   const bool isParallel = glm::length(glm::dvec3(w) * dims) <= 1e-9 * std::abs(w.w);
-  return isParallel ? RowOf(indexToClip, 2) : w;
+  return isParallel ? glm::row(indexToClip, 2) : w;
 }
 
 /// Footprint, in t, that a ray has at most inside the volume. A step to the next pixel is one of
@@ -46,7 +42,7 @@ double LargestFootprint(const RayView& rays, const glm::dmat4& indexToClip)
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 high(corner & 1, corner >> 1 & 1, corner >> 2);
     const glm::dvec4 index(glm::mix(rays.low, rays.high, high), 1.0);
-    largest = std::max(largest, std::abs(glm::dot(RowOf(indexToClip, 3), index)));
+    largest = std::max(largest, std::abs(glm::dot(glm::row(indexToClip, 3), index)));
   }
   const double pixel = glm::length(glm::dvec3(toWorld[0])) * 2.0 / rays.width;
   return (1.0 + 10 * rounding) * largest * pixel / rays.worldPerUnit;

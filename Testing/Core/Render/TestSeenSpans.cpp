@@ -297,12 +297,14 @@ TEST_F(SeenCorner, LeavesRaysOut)
 
 TEST_F(SeenCorner, IsDrawnInEveryMode)
 {
-  for (const inr::BlendMode mode : {inr::BlendMode::Composite, inr::BlendMode::MaximumIntensity,
-                                    inr::BlendMode::MinimumIntensity,
-                                    inr::BlendMode::AverageIntensity, inr::BlendMode::Additive}) {
+  for (const inr::BlendMode mode :
+       {inr::BlendMode::Composite, inr::BlendMode::MaximumIntensity,
+        inr::BlendMode::MinimumIntensity, inr::BlendMode::AverageIntensity,
+        inr::BlendMode::Additive, inr::BlendMode::Isosurface}) {
     SCOPED_TRACE(static_cast<int>(mode));
     inr::Frame frame = this->frame();
     frame.blending.mode = mode;
+    frame.blending.isosurfaces = {0.3, 0.5};
     this->expectTheSameWithoutEmptyTiles(frame);
   }
 }
@@ -314,23 +316,6 @@ TEST_F(SeenCorner, IsDrawnBetweenLayers)
     AddLayer(frame, depth, {0.1f, 0.2f, 0.3f, 0.5f});
   }
   this->expectTheSameWithoutEmptyTiles(frame);
-}
-
-/// Of which pieces share samples.
-TEST_F(SeenCorner, IsDrawnAsSurfacesOfPieces)
-{
-  for (const double sampleDistance : {0.7, 3.0, 9.0}) {
-    for (int k = 0; k < 12; ++k) {
-      inr::Frame frame = this->frame();
-      frame.blending.mode = inr::BlendMode::Isosurface;
-      frame.blending.isosurfaces = {0.3, 0.5};
-      frame.sampleDistance = sampleDistance;
-      frame.piece = {glm::dvec4(-1, 0, 0, 40.0 + 1.7 * k)};
-      inr::Frame flipped = frame;
-      flipped.clipToWorld *= -1.0;
-      EXPECT_EQ(this->draw(frame).statistics.samples, this->draw(flipped).statistics.samples) << k;
-    }
-  }
 }
 
 } // namespace
