@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/CacheLine.h"
 #include "Core/Inference/InstructionSet.h"
 #include "Core/Render/BrickPath.h"
 
@@ -107,12 +108,14 @@ struct SampleRun
 struct SampleBatch
 {
   static constexpr int Capacity = 128;
-  static constexpr int Room = Capacity + 16;
+  static constexpr int Room = Capacity + CacheLineFloats;
   BrickPath paths[2 * Capacity + 2];
   SampleRun runs[Capacity];
-  std::int32_t path[Room]; ///< of each sample, in `paths`
-  float along[Room];       ///< its path
-  float low[Room];         ///< see SampleRun
+  /// Of each sample, in `paths`. Vectors begin at cache lines, here and, as Room is a whole number
+  /// of lines, in what follows.
+  alignas(CacheLineBytes) std::int32_t path[Room];
+  float along[Room]; ///< its path
+  float low[Room];   ///< see SampleRun
   float high[Room];
   std::int32_t length[Room];
   float value[Room];   ///< out of `sample` and `sampleRuns`

@@ -12,9 +12,9 @@ namespace inr {
 
 void CachedMarcher::takeLogarithms()
 {
-  for (int k = 0; k < this->Count; ++k) {
+  for (int k = 0; k < this->Placed.count; ++k) {
     const ValueRange range{this->Batch.low[k], this->Batch.high[k]};
-    this->Statistics.clamped += ClampToRange(range, this->Batch.value[k]) ? 1 : 0;
+    this->Notes.statistics.clamped += ClampToRange(range, this->Batch.value[k]) ? 1 : 0;
     this->Batch.value[k] = this->Scene.colors.coordinate(this->Batch.value[k]);
     this->Batch.low[k] = -std::numeric_limits<float>::max();
     this->Batch.high[k] = std::numeric_limits<float>::max();
@@ -23,19 +23,19 @@ void CachedMarcher::takeLogarithms()
 
 void CachedMarcher::composite(CachedRay& state)
 {
-  if (this->LastLength > 0) {
-    --this->Count; // apart, for its own length
+  if (this->Placed.lastLength > 0) {
+    --this->Placed.count; // apart, for its own length
   }
-  const float last = this->Batch.value[this->Count];
+  const float last = this->Batch.value[this->Placed.count];
   if (this->Scene.colors.logarithmic) {
     this->takeLogarithms();
   }
-  const int used =
-      this->Scene.kernel.composite(this->Scene.steps, this->Batch, this->Count, OpaqueTransmittance,
-                                   state.color, this->Statistics.clamped);
+  const int used = this->Scene.kernel.composite(this->Scene.steps, this->Batch, this->Placed.count,
+                                                OpaqueTransmittance, state.color,
+                                                this->Notes.statistics.clamped);
   this->noteHalfOpaque(state, 0, used);
-  if (this->LastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
-    this->Batch.value[this->Count] = last;
+  if (this->Placed.lastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
+    this->Batch.value[this->Placed.count] = last;
     this->compositeLast(state);
   }
 }
@@ -53,11 +53,11 @@ void CachedMarcher::noteHalfOpaque(CachedRay& state, int first, int end) const
 
 void CachedMarcher::compositeLast(CachedRay& state)
 {
-  float value = this->Batch.value[this->Count];
-  const ValueRange range{this->Batch.low[this->Count], this->Batch.high[this->Count]};
+  float value = this->Batch.value[this->Placed.count];
+  const ValueRange range{this->Batch.low[this->Placed.count], this->Batch.high[this->Placed.count]};
   ClampToRange(range, value);
-  this->compositeColor(state, this->Scene.colors.at(value), this->LastLength,
-                       this->timeOf(state, this->Count));
+  this->compositeColor(state, this->Scene.colors.at(value), this->Placed.lastLength,
+                       this->timeOf(state, this->Placed.count));
 }
 
 void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
@@ -80,29 +80,30 @@ void CachedMarcher::addLight(CachedRay& state, const glm::vec4& color, float opa
 void CachedMarcher::clampToRanges()
 {
   this->Clamped = 0;
-  for (int k = 0; k < this->Count; ++k) {
+  for (int k = 0; k < this->Placed.count; ++k) {
     const float value = this->Batch.value[k];
     ClampToRange({this->Batch.low[k], this->Batch.high[k]}, this->Batch.value[k]);
     const bool moves = std::abs(value - this->Batch.value[k]) > RoundingOfStorage;
     this->Clamped |= std::uint64_t{moves} << k;
   }
-  this->Statistics.clamped += CountBits(this->Clamped);
+  this->Notes.statistics.clamped += CountBits(this->Clamped);
+}
+
+double CachedMarcher::timeOf(const CachedRay& state, int sample) const
+{
+  return this->Placed.timeOf(sample, this->Scene.settings.step, state.ray.length);
 }
 
 double CachedMarcher::lengthOf(int sample) const
 {
-  if (this->LastLength > 0 && sample + 1 == this->Count) {
-    return static_cast<double>(this->LastLength);
-  }
-  const double step = this->Scene.settings.step * this->Scene.settings.unitsPerT;
-  return step * static_cast<double>(StepsOf(this->Batch.length[sample]));
+  return this->Placed.lengthOf(sample, this->Scene.settings.step * this->Scene.settings.unitsPerT);
 }
 
 int CachedMarcher::findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const
 {
   double transmittance = state.color.transmittance;
   int k = 0;
-  for (; k < this->Count && transmittance > OpaqueTransmittance; ++k) {
+  for (; k < this->Placed.count && transmittance > OpaqueTransmittance; ++k) {
     colors[k] = this->Scene.colors.at(this->Batch.value[k]);
     opacities[k] =
         colors[k].w > 0.0f ? OpacityOver(static_cast<float>(this->lengthOf(k)), colors[k].w) : 0.0f;

@@ -20,26 +20,26 @@ int CountInARow(std::uint64_t bits) { return ~bits == 0 ? 64 : __builtin_ctzll(~
 void CachedMarcher::advanceIntegrated(CachedRay& state)
 {
   const SampleWalker before = state.samples; // bricks may be asked for that are not there
-  this->place(state);
-  this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
+  this->sample(state);
   this->clampToRanges();
   const int known = this->findBegins(state);
   this->compositeKnown(state, this->isInFront(0) ? 1 : 0, known);
-  if (known < this->Count && state.color.transmittance > OpaqueTransmittance) {
+  if (known < this->Placed.count && state.color.transmittance > OpaqueTransmittance) {
     this->goBackTo(known, before, state);
   }
 }
 
 bool CachedMarcher::isInFront(int sample) const
 {
-  return sample == 0 && this->Count > 0 && intervalOf(this->Origins[0], 0) < 0;
+  return sample == 0 && this->Placed.count > 0 && this->Placed.origins[0].intervalOf(0) < 0;
 }
 
 int CachedMarcher::findBegins(CachedRay& state)
 {
-  for (int number = 0; number < this->RunCount; ++number) {
-    const Origin& origin = this->Origins[number];
-    const int end = number + 1 < this->RunCount ? this->Origins[number + 1].sample : this->Count;
+  for (int number = 0; number < this->Placed.runs; ++number) {
+    const SampleOrigin& origin = this->Placed.origins[number];
+    const int end = number + 1 < this->Placed.runs ? this->Placed.origins[number + 1].sample
+                                                   : this->Placed.count;
     std::uint64_t rest = origin.shown;
     for (int k = origin.sample; k < end;) {
       const int place = __builtin_ctzll(rest);
@@ -54,10 +54,11 @@ int CachedMarcher::findBegins(CachedRay& state)
                      this->Batch.value[k - 1]};
     }
   }
-  return this->Count;
+  return this->Placed.count;
 }
 
-bool CachedMarcher::findBegin(const CachedRay& state, const Origin& origin, int place, int sample)
+bool CachedMarcher::findBegin(const CachedRay& state, const SampleOrigin& origin, int place,
+                              int sample)
 {
   const std::int64_t interval = origin.interval + place * origin.steps;
   float& begin = this->Batch.begin[sample];
@@ -69,19 +70,19 @@ bool CachedMarcher::findBegin(const CachedRay& state, const Origin& origin, int 
   if (interval < 0 || (origin.seen >> place & 1) == 0) {
     return true; // of what is in front of the ray, or shows nothing, only the value counts
   }
-  const std::size_t asked = this->Requests.entries().size();
+  const std::size_t asked = this->Notes.requests.entries().size();
   const bool found =
-      this->Probe->find(state.ray, this->levelOf(sample), static_cast<double>(interval),
-                        static_cast<float>(state.color.transmittance), this->Requests, begin);
-  if (found && this->Requests.entries().size() > asked) {
-    ++this->Statistics.missed; // from a coarser level
+      this->Probe->find(state.ray, this->Placed.levelOf(sample), static_cast<double>(interval),
+                        static_cast<float>(state.color.transmittance), this->Notes.requests, begin);
+  if (found && this->Notes.requests.entries().size() > asked) {
+    ++this->Notes.statistics.missed; // from a coarser level
   }
   return found;
 }
 
 void CachedMarcher::compositeKnown(CachedRay& state, int first, int end)
 {
-  const bool isLast = this->LastLength > 0 && end == this->Count;
+  const bool isLast = this->Placed.lastLength > 0 && end == this->Placed.count;
   const int whole = isLast ? end - 1 : end; // apart, for its own length
   if (first < whole) {
     this->takeCoordinates(first, whole);
@@ -92,7 +93,7 @@ void CachedMarcher::compositeKnown(CachedRay& state, int first, int end)
   if (isLast && first < end && state.color.transmittance > OpaqueTransmittance) {
     const glm::vec4 color = this->Scene.settings.preIntegrated->between(this->Batch.begin[whole],
                                                                         this->Batch.value[whole]);
-    this->compositeColor(state, color, this->LastLength, this->timeOf(state, whole));
+    this->compositeColor(state, color, this->Placed.lastLength, this->timeOf(state, whole));
   }
 }
 
@@ -124,8 +125,8 @@ int CachedMarcher::findIntegrated(CachedRay& state, glm::vec4* colors, float* op
 
 KnownValue CachedMarcher::knownBehind(int sample) const
 {
-  const Origin& origin = this->originOf(sample);
-  return {intervalOf(origin, sample) + origin.steps, -1, this->Batch.value[sample]};
+  const SampleOrigin& origin = this->Placed.originOf(sample);
+  return {origin.intervalOf(sample) + origin.steps, -1, this->Batch.value[sample]};
 }
 
 } // namespace inr

@@ -16,7 +16,7 @@ void CachedMarcher::project(CachedRay& state)
 {
   this->clampToRanges();
   const MarchSettings& settings = this->Scene.settings;
-  for (int k = 0; k < this->Count; ++k) {
+  for (int k = 0; k < this->Placed.count; ++k) {
     settings.projector.add(this->Scene.colors, this->Batch.value[k], this->lengthOf(k),
                            this->timeOf(state, k), state.projection);
   }

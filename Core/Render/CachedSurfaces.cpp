@@ -8,10 +8,9 @@ namespace inr {
 void CachedMarcher::advanceSurfaces(CachedRay& state)
 {
   const SampleWalker before = state.samples; // surfaces may ask for bricks that are not there
-  this->place(state);
-  this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->RunCount);
+  this->sample(state);
   this->clampToRanges();
-  for (int k = 0; k < this->Count && state.color.transmittance > OpaqueTransmittance; ++k) {
+  for (int k = 0; k < this->Placed.count && state.color.transmittance > OpaqueTransmittance; ++k) {
     if (!this->crossSurfaces(state, k)) {
       this->goBackTo(k, before, state);
       return;
@@ -21,16 +20,16 @@ void CachedMarcher::advanceSurfaces(CachedRay& state)
 
 bool CachedMarcher::crossSurfaces(CachedRay& state, int sample)
 {
-  const Origin& origin = this->originOf(sample);
-  const std::int64_t interval = intervalOf(origin, sample);
+  const SampleOrigin& origin = this->Placed.originOf(sample);
+  const std::int64_t interval = origin.intervalOf(sample);
   const auto begin = static_cast<double>(interval);
-  const int level = this->levelOf(sample);
+  const int level = this->Placed.levelOf(sample);
   SurfaceInterval passed{level, begin, begin + origin.offset, state.known.value,
                          this->Batch.value[sample]};
   const bool isFirst = interval < 0; // of the ray: nothing is in front of it
   const bool isKnown = state.known.at == interval && state.known.level == level;
   if (!isFirst && !isKnown &&
-      !this->Probe->find(state.ray, level, begin, state.color.transmittance, this->Requests,
+      !this->Probe->find(state.ray, level, begin, state.color.transmittance, this->Notes.requests,
                          passed.first)) {
     return false;
   }
@@ -74,7 +73,7 @@ bool CachedMarcher::findSurface(const CachedRay& state, const SurfaceInterval& i
     const double middle = 0.5 * (low + high);
     float found = 0;
     if (!this->Probe->find(state.ray, interval.level, middle, state.color.transmittance,
-                           this->Requests, found)) {
+                           this->Notes.requests, found)) {
       return false;
     }
     ((found >= value) == rises ? high : low) = middle;
@@ -94,9 +93,9 @@ bool CachedMarcher::drawSurface(CachedRay& state, int surface, int level, double
   if (this->Scene.shading != nullptr) {
     float found = 0;
     glm::vec3 gradient(0.0f);
-    if (!this->Probe->find(state.ray, level, place, state.color.transmittance, this->Requests,
+    if (!this->Probe->find(state.ray, level, place, state.color.transmittance, this->Notes.requests,
                            found) ||
-        !this->Probe->findGradient(state.color.transmittance, this->Requests, gradient)) {
+        !this->Probe->findGradient(state.color.transmittance, this->Notes.requests, gradient)) {
       return false;
     }
     const ShadingView& lighting = this->Scene.shading->view();

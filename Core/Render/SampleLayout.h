@@ -19,7 +19,7 @@ void StoreInts(std::int32_t* to, Ints value) { std::memcpy(to, &value, sizeof(va
 /// Where samples are in their bricks.
 struct Located
 {
-  float place[3][SampleBatch::Room];
+  alignas(CacheLineBytes) float place[3][SampleBatch::Room];
   float base[SampleBatch::Room];
   float quantum[SampleBatch::Room];
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// How CachedMarcher fills a batch with samples, and finds the bricks that they are read from.
-#include "Core/Render/CachedMarcher.h"
+#include "Core/Render/SamplePlacer.h"
+
 #include "Core/Render/SampleBits.h"
 #include "Core/Render/StepTable.h"
 
@@ -11,6 +10,23 @@ namespace inr {
 
 namespace {
 
+/// Samples that a ray's first batch is for.
+constexpr int FirstRoom = 32;
+/// And, at most, one of samples that are looked at one by one: of these there is a bit for each.
+constexpr int MostSingle = 64;
+
+double ShortestBlockOf(const BrickFormat& format)
+{
+  const double edge = 1.0 / static_cast<double>(format.blocksPerVoxel);
+  double shortest = edge;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (format.lastCell[axis] >= 0) { // else the volume is one voxel thick
+      shortest = std::min(shortest, format.lastCell[axis] + 1 - format.lastBlock[axis] * edge);
+    }
+  }
+  return shortest;
+}
+
 void ShowKnown(const BlockSet& known, ShownBlocks& shown)
 {
   shown.kind = known.isAll() ? ShownBlocks::Kind::All : ShownBlocks::Kind::Some;
@@ -19,18 +35,75 @@ void ShowKnown(const BlockSet& known, ShownBlocks& shown)
 
 } // namespace
 
-// Flat: what it calls it calls for every brick and macro-cell of every ray.
-__attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
+SamplePlacer::SamplePlacer(const CachedScene& scene, OnMiss onMiss, MarchNotes& notes)
+    : Scene(scene), Missing(onMiss), Notes(notes),
+      LooksAtBothEnds(scene.settings.looksAtBothEnds()),
+      MayGoBack(this->LooksAtBothEnds || scene.shading != nullptr),
+      DitherMask(scene.settings.projector.findsSurfaces() ? 0 : ~std::int64_t{0}),
+      ShortestBlock(ShortestBlockOf(scene.format))
+{}
+
+void SamplePlacer::begin(const CachedRay& ray)
 {
-  this->Count = 0;
-  this->RunCount = 0;
-  this->Paths = 0;
-  this->LastLength = 0;
+  this->Visited = ray.samples.visited();
+  this->Room = FirstRoom;
+  this->Ended = false;
+  this->Waiting = false;
+  this->Awaited.reset();
+  this->Ways[0].forget();
+  this->Ways[1].forget();
+  if (this->Scene.settings.crops) {
+    this->Cropped.emplace(this->Scene.settings.cropping, ray.ray, this->Scene.settings.step);
+  }
+}
+
+void SamplePlacer::finish(const CachedRay& ray)
+{
+  this->close(this->Runs[0], ray.color.transmittance);
+  this->close(this->Runs[1], ray.color.transmittance);
+  if (this->Awaited && !this->Ended) { // what made a ray opaque needs nothing behind it
+    this->Notes.requests.add(*this->Awaited, 1.0f);
+  }
+  this->Notes.statistics.work.cells += ray.samples.visited() - this->Visited;
+}
+
+void SamplePlacer::adaptRoom(double before, double after)
+{
+  constexpr double little = 0.1;
+  if (after < 0.5 * before || after < little) {
+    this->Room = FirstRoom;
+  } else if (after < 1.0 && after > 0.75 * before) {
+    this->Room = std::min(2 * this->Room, this->MayGoBack ? MostSingle : SampleBatch::Capacity);
+  }
+}
+
+void SamplePlacer::goBackTo(int sample, const SampleWalker& before, CachedRay& state)
+{
+  const SampleOrigin& origin = this->Placed.originOf(sample);
+  this->Notes.statistics.work.cells += state.samples.visited() - before.visited();
+  state.samples = before;
+  state.samples.resume(origin.intervalOf(sample), origin.stretch, this->Scene.settings);
+  state.shownTo = origin.intervalOf(sample); // this one is wanted, whether it shows something
+  this->Notes.statistics.samples -= this->Placed.count - sample; // they will be counted again
+  const int taken = sample - origin.sample;
+  this->Notes.statistics.hidden = origin.hidden + PlaceOfBit(origin.shown, taken) - taken;
+  for (int k = sample; k < this->Placed.count; ++k) {
+    this->Notes.levels -= this->Placed.originOf(k).level;
+  }
+  this->Awaited.reset(); // it waits for something nearer
+  this->Waiting = true;
+  this->Ended = false;
+}
+
+// Flat: what it calls it calls for every brick and macro-cell of every ray.
+__attribute__((flatten)) void SamplePlacer::place(CachedRay& state)
+{
+  this->Placed.clear();
   this->Ahead = 0;
   this->Runs[0].setPlace(-1);
   this->Runs[1].setPlace(-1);
   const MarchSettings& settings = this->Scene.settings;
-  while (this->Count < this->Room && !this->Ended && !this->Waiting) {
+  while (this->Placed.count < this->Room && !this->Ended && !this->Waiting) {
     if (!state.samples.moveToVisible(settings)) {
       this->Ended = true;
       return;
@@ -51,11 +124,11 @@ __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
     if (this->looksTooFar(runs)) {
       return;
     }
-    const int before = this->Count;
+    const int before = this->Placed.count;
     this->add(state, alike, runs, place);
-    this->Ahead += this->Count > 0 ? alike.count : 0;
-    if (alike.last && this->Count > before) {
-      this->LastLength =
+    this->Ahead += this->Placed.count > 0 ? alike.count : 0;
+    if (alike.last && this->Placed.count > before) {
+      this->Placed.lastLength =
           static_cast<float>(state.samples.rest() * settings.step * settings.unitsPerT);
       this->Ended = true;
     }
@@ -63,7 +136,7 @@ __attribute__((flatten)) void CachedMarcher::place(CachedRay& state)
   }
 }
 
-bool CachedMarcher::isCropped(const CachedRay& state, AlikeSamples& alike) const
+bool SamplePlacer::isCropped(const CachedRay& state, AlikeSamples& alike) const
 {
   const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
   const double end = this->Cropped->end(place);
@@ -72,8 +145,8 @@ bool CachedMarcher::isCropped(const CachedRay& state, AlikeSamples& alike) const
 }
 
 // Inline: called once per run of samples, and there are as many of them as of bricks.
-inline void CachedMarcher::placeRun(const CachedRay& state, const AlikeSamples& alike,
-                                    const RunPair& runs, SampleRun& run) const
+inline void SamplePlacer::placeRun(const CachedRay& state, const AlikeSamples& alike,
+                                   const RunPair& runs, SampleRun& run) const
 {
   const SampleWalker& samples = state.samples;
   const auto begin = static_cast<double>(samples.next());
@@ -94,8 +167,8 @@ inline void CachedMarcher::placeRun(const CachedRay& state, const AlikeSamples& 
   }
 }
 
-inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
-                                  const SampleBits& bits, const RunPair& runs)
+inline void SamplePlacer::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
+                                 const SampleBits& bits, const RunPair& runs)
 {
   const SampleWalker& samples = state.samples;
   const SampleStretch& stretch = samples.stretch();
@@ -103,7 +176,7 @@ inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& al
   // A coarser brick than the one wanted may hold anything.
   const bool exact = fine.exact() && runs.coarse->exact();
   const ValueRange range = exact ? stretch.range : ValueRange{0.0f, 1.0f};
-  SampleRun& run = this->Batch.runs[this->RunCount];
+  SampleRun& run = this->Placed.batch.runs[this->Placed.runs];
   this->placeRun(state, alike, runs, run);
   run.path[0] = fine.place();
   run.path[1] = runs.coarse->place();
@@ -113,23 +186,23 @@ inline void CachedMarcher::addRun(const CachedRay& state, const AlikeSamples& al
   run.low = range.low;
   run.high = range.high;
   // One by one: a whole one made elsewhere would be waited for until it can be read.
-  Origin& origin = this->Origins[this->RunCount++];
-  origin.sample = this->Count;
+  SampleOrigin& origin = this->Placed.origins[this->Placed.runs++];
+  origin.sample = this->Placed.count;
   origin.offset = samples.offset(alike);
   origin.interval = samples.next();
   origin.steps = alike.steps();
   origin.shown = bits.taken;
   origin.seen = bits.seen;
-  origin.hidden = this->Statistics.hidden;
-  if (this->mayGoBack()) {
+  origin.hidden = this->Notes.statistics.hidden;
+  if (this->MayGoBack) {
     origin.stretch = stretch;
   }
   origin.level = fine.servedLevel();
-  this->Count += count;
+  this->Placed.count += count;
 }
 
-inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& alike,
-                                    std::uint64_t taken, const RunPair& runs) const
+inline void SamplePlacer::countUse(const CachedRay& state, const AlikeSamples& alike,
+                                   std::uint64_t taken, const RunPair& runs) const
 {
   const int count = CountBits(taken);
   if (runs.fine == runs.coarse || (runs.fine->exact() && runs.coarse->exact())) {
@@ -150,27 +223,27 @@ inline void CachedMarcher::countUse(const CachedRay& state, const AlikeSamples& 
   runs.coarse->count(count - fine);
 }
 
-CachedMarcher::RunPair CachedMarcher::runsFor(const CachedRay& state, double place)
+SamplePlacer::RunPair SamplePlacer::runsFor(const CachedRay& state, double place)
 {
   const LevelOfDetail& detail = state.samples.detail();
   BrickRun* fine = this->runFor(state, detail.level(), place);
   return {fine, detail.isDithered() ? this->runFor(state, detail.level() + 1, place) : fine};
 }
 
-bool CachedMarcher::looksTooFar(const RunPair& runs) const
+bool SamplePlacer::looksTooFar(const RunPair& runs) const
 {
   // So many samples behind the first one it may turn out that the ray is opaque.
   constexpr int inUse = 128;
   constexpr int toBeLoaded = 32;
-  if (this->Count == 0 || this->Ahead < toBeLoaded) {
+  if (this->Placed.count == 0 || this->Ahead < toBeLoaded) {
     return false;
   }
   const bool exact = runs.fine->exact() && runs.coarse->exact();
   return !exact || this->Ahead >= inUse;
 }
 
-std::uint64_t CachedMarcher::findShown(const CachedRay& state, const AlikeSamples& alike, int count,
-                                       const BrickRun& run) const
+std::uint64_t SamplePlacer::findShown(const CachedRay& state, const AlikeSamples& alike, int count,
+                                      const BrickRun& run) const
 {
   switch (run.shown().kind) {
   case ShownBlocks::Kind::All:
@@ -186,8 +259,8 @@ std::uint64_t CachedMarcher::findShown(const CachedRay& state, const AlikeSample
   return this->Scene.kernel.findShown(this->Scene.format, run.shown(), run.path(), row, count);
 }
 
-std::uint64_t CachedMarcher::findShownOnTwo(const CachedRay& state, const AlikeSamples& alike,
-                                            int count, const RunPair& runs) const
+std::uint64_t SamplePlacer::findShownOnTwo(const CachedRay& state, const AlikeSamples& alike,
+                                           int count, const RunPair& runs) const
 {
   SampleRun run;
   this->placeRun(state, alike, runs, run);
@@ -196,10 +269,10 @@ std::uint64_t CachedMarcher::findShownOnTwo(const CachedRay& state, const AlikeS
                                            {&runs.fine->path(), &runs.coarse->path()}, run, count);
 }
 
-CachedMarcher::SampleBits CachedMarcher::choose(const CachedRay& state, const AlikeSamples& alike,
-                                                int count, const RunPair& runs) const
+SamplePlacer::SampleBits SamplePlacer::choose(const CachedRay& state, const AlikeSamples& alike,
+                                              int count, const RunPair& runs) const
 {
-  if (!this->Probe) {
+  if (!this->LooksAtBothEnds) {
     const std::uint64_t visible = runs.coarse == runs.fine
                                       ? this->findShown(state, alike, count, *runs.fine)
                                       : this->findShownOnTwo(state, alike, count, runs);
@@ -215,21 +288,21 @@ CachedMarcher::SampleBits CachedMarcher::choose(const CachedRay& state, const Al
   return {seen | seen >> 1, seen, visible};
 }
 
-bool CachedMarcher::spansBlocks(const AlikeSamples& alike, const RunPair& runs) const
+bool SamplePlacer::spansBlocks(const AlikeSamples& alike, const RunPair& runs) const
 {
   const double voxels = static_cast<double>(alike.steps()) * this->Scene.settings.step;
   const double level = PowerOfTwo(runs.fine->servedLevel());
-  return this->Probe && voxels > level * this->ShortestBlock;
+  return this->LooksAtBothEnds && voxels > level * this->ShortestBlock;
 }
 
-void CachedMarcher::add(CachedRay& state, AlikeSamples& alike, const RunPair& runs, double place)
+void SamplePlacer::add(CachedRay& state, AlikeSamples& alike, const RunPair& runs, double place)
 {
   const SampleStretch& stretch = state.samples.stretch();
   // Closed stretches take values for others than those that ranges bound.
   const bool all = (stretch.closed && stretch.level > 0) || this->spansBlocks(alike, runs) ||
                    (runs.fine->shown().kind == ShownBlocks::Kind::All &&
                     runs.coarse->shown().kind == ShownBlocks::Kind::All);
-  const int room = std::min(this->Room - this->Count, SampleRow::Most);
+  const int room = std::min(this->Room - this->Placed.count, SampleRow::Most);
   int count = std::min(alike.count, all ? room : SampleRow::Most);
   if (count > 1) {
     const double length = std::min(runs.fine->exit(), runs.coarse->exit()) - place;
@@ -247,13 +320,13 @@ void CachedMarcher::add(CachedRay& state, AlikeSamples& alike, const RunPair& ru
     }
   }
   alike.count = count;
-  if (this->Probe) {
+  if (this->LooksAtBothEnds) {
     const bool isLastVisible = (bits.visible >> (count - 1) & 1) != 0;
     state.shownTo =
         isLastVisible ? state.samples.next() + count * alike.steps() : CachedRay::Nowhere;
   }
   if (taken == 0) {
-    this->Statistics.hidden += count;
+    this->Notes.statistics.hidden += count;
     return;
   }
   for (BrickRun* run : {runs.fine, runs.coarse}) {
@@ -262,11 +335,11 @@ void CachedMarcher::add(CachedRay& state, AlikeSamples& alike, const RunPair& ru
     }
   }
   this->addRun(state, alike, taken, bits, runs);
-  this->Statistics.hidden += count - taken;
+  this->Notes.statistics.hidden += count - taken;
   this->countUse(state, alike, bits.taken, runs);
 }
 
-BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double place)
+BrickRun* SamplePlacer::runFor(const CachedRay& state, int level, double place)
 {
   BrickRun& run = this->Runs[level & 1];
   if (run.covers(level, place)) {
@@ -276,7 +349,7 @@ BrickRun* CachedMarcher::runFor(const CachedRay& state, int level, double place)
   return this->open(run, state.ray, level, place) ? &run : nullptr;
 }
 
-bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
+bool SamplePlacer::open(BrickRun& run, const Ray& ray, int level, double place)
 {
   const BrickCache& cache = this->Scene.bricks.cache();
   const Hierarchy& hierarchy = cache.hierarchy();
@@ -305,13 +378,13 @@ bool CachedMarcher::open(BrickRun& run, const Ray& ray, int level, double place)
   return true;
 }
 
-std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted,
-                                        double t)
+std::int32_t SamplePlacer::openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted,
+                                       double t)
 {
   const BrickCache& cache = this->Scene.bricks.cache();
   const Hierarchy& hierarchy = cache.hierarchy();
   BrickKey wish = wanted.brick();
-  this->Absent.add(wish, 0.0f);
+  this->Notes.absent.add(wish, 0.0f);
   for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
     BrickWay served(hierarchy.view(), level, ray);
     served.moveTo(t);
@@ -323,16 +396,30 @@ std::int32_t CachedMarcher::openCoarser(BrickRun& run, const Ray& ray, const Bri
       }
       return slot;
     }
-    this->Absent.add(served.brick(), 0.0f);
+    this->Notes.absent.add(served.brick(), 0.0f);
     wish = IsOnTheWay(level) ? served.brick() : wish;
   }
 }
 
-void CachedMarcher::enlist(BrickRun& run)
+void SamplePlacer::close(BrickRun& run, float transmittance)
 {
-  run.setPlace(this->Paths);
-  this->Bricks[this->Paths] = run.served();
-  this->Batch.paths[this->Paths++] = run.path();
+  this->Notes.statistics.samples += run.count();
+  if (run.count() > 0) {
+    this->Notes.statistics.levels.add({run.servedLevel(), run.servedLevel()});
+    this->Notes.levels += std::int64_t{run.count()} * run.servedLevel();
+  }
+  if (run.count() > 0 && !run.exact()) {
+    this->Notes.statistics.missed += run.count();
+    this->Notes.requests.add(run.wish(), static_cast<float>(run.count()) * transmittance);
+  }
+  run.close();
+}
+
+void SamplePlacer::enlist(BrickRun& run)
+{
+  run.setPlace(this->Placed.paths);
+  this->Placed.bricks[this->Placed.paths] = run.served();
+  this->Placed.batch.paths[this->Placed.paths++] = run.path();
 }
 
 } // namespace inr

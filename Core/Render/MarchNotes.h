@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Cache/Requests.h"
+#include "Core/Render/Frame.h"
+
+#include <cstdint>
+
+namespace inr {
+
+/// What rays have taken so far, and what they lacked.
+struct MarchNotes
+{
+  FrameStatistics statistics;
+  std::int64_t levels = 0; ///< that the samples came from, summed up
+  RequestList requests;    ///< bricks that are wanted
+  RequestList absent;      ///< bricks in whose place a coarser one was read
+};
+
+} // namespace inr
