@@ -67,11 +67,11 @@ private:
                      int axis, const float* values, const float* offsets,
                      glm::vec3* gradients) const;
 
+  SampleBatch Moved{};                  ///< the samples one voxel along
+  float Offsets[SampleBatch::Capacity]; ///< by how many voxels really, at the rim of the volume
   const SufficientBricks& Bricks;
   BrickFormat Format;
   const BrickKernel& Kernel;
-  SampleBatch Moved{};                  ///< the samples one voxel along
-  float Offsets[SampleBatch::Capacity]; ///< by how many voxels really, at the rim of the volume
   std::int64_t Found = 0;
 };
 

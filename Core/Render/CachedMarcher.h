@@ -95,14 +95,14 @@ private:
 
   const CachedScene& Scene;
   OnMiss Missing;
+  IntegralLookup Integrals{}; ///< where there are any
   MarchNotes Notes;
   SamplePlacer Placer;
-  PlacedSamples& Placed;     ///< by it
-  SampleBatch& Batch;        ///< of these
-  std::uint64_t Clamped = 0; ///< those of the batch's samples that clampToRanges moved, bit by bit
   std::optional<SampleShader> Shader;
-  IntegralLookup Integrals{};    ///< where there are any
   std::optional<RayProbe> Probe; ///< where both ends of samples are looked at
+  PlacedSamples& Placed;         ///< by the placer
+  SampleBatch& Batch;            ///< of these
+  std::uint64_t Clamped = 0; ///< those of the batch's samples that clampToRanges moved, bit by bit
 };
 
 } // namespace inr
