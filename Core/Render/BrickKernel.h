@@ -109,10 +109,11 @@ struct SampleBatch
 {
   static constexpr int Capacity = 128;
   static constexpr int Room = Capacity + CacheLineFloats;
+  static_assert(Room % CacheLineFloats == 0, "arrays begin at cache lines");
   BrickPath paths[2 * Capacity + 2];
   SampleRun runs[Capacity];
-  /// Of each sample, in `paths`. Vectors begin at cache lines, here and, as Room is a whole number
-  /// of lines, in what follows.
+  /// Of each sample, in `paths`. The array begins at a cache line, and so do those that follow, as
+  /// Room is a whole number of lines.
   alignas(CacheLineBytes) std::int32_t path[Room];
   float along[Room]; ///< its path
   float low[Room];   ///< see SampleRun

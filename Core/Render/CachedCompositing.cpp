@@ -3,16 +3,15 @@
 // What CachedMarcher does with the values of a batch.
 #include "Core/Render/CachedMarcher.h"
 #include "Core/Render/SampleBits.h"
-#include "Core/Render/StepTable.h"
 
 #include <cmath>
 #include <limits>
 
 namespace inr {
 
-void CachedMarcher::takeLogarithms()
+void CachedMarcher::takeLogarithms(int count)
 {
-  for (int k = 0; k < this->Placed.count; ++k) {
+  for (int k = 0; k < count; ++k) {
     const ValueRange range{this->Batch.low[k], this->Batch.high[k]};
     this->Notes.statistics.clamped += ClampToRange(range, this->Batch.value[k]) ? 1 : 0;
     this->Batch.value[k] = this->Scene.colors.coordinate(this->Batch.value[k]);
@@ -23,19 +22,16 @@ void CachedMarcher::takeLogarithms()
 
 void CachedMarcher::composite(CachedRay& state)
 {
-  if (this->Placed.lastLength > 0) {
-    --this->Placed.count; // apart, for its own length
-  }
-  const float last = this->Batch.value[this->Placed.count];
+  const bool isLast = this->Placed.lastLength > 0;
+  const int whole = this->Placed.count - (isLast ? 1 : 0); // that one apart, for its own length
   if (this->Scene.colors.logarithmic) {
-    this->takeLogarithms();
+    this->takeLogarithms(whole);
   }
-  const int used = this->Scene.kernel.composite(this->Scene.steps, this->Batch, this->Placed.count,
-                                                OpaqueTransmittance, state.color,
-                                                this->Notes.statistics.clamped);
+  const int used =
+      this->Scene.kernel.composite(this->Scene.steps, this->Batch, whole, OpaqueTransmittance,
+                                   state.color, this->Notes.statistics.clamped);
   this->noteHalfOpaque(state, 0, used);
-  if (this->Placed.lastLength > 0 && state.color.transmittance > OpaqueTransmittance) {
-    this->Batch.value[this->Placed.count] = last;
+  if (isLast && state.color.transmittance > OpaqueTransmittance) {
     this->compositeLast(state);
   }
 }
@@ -53,11 +49,11 @@ void CachedMarcher::noteHalfOpaque(CachedRay& state, int first, int end) const
 
 void CachedMarcher::compositeLast(CachedRay& state)
 {
-  float value = this->Batch.value[this->Placed.count];
-  const ValueRange range{this->Batch.low[this->Placed.count], this->Batch.high[this->Placed.count]};
-  ClampToRange(range, value);
+  const int last = this->Placed.count - 1;
+  float value = this->Batch.value[last];
+  ClampToRange({this->Batch.low[last], this->Batch.high[last]}, value);
   this->compositeColor(state, this->Scene.colors.at(value), this->Placed.lastLength,
-                       this->timeOf(state, this->Placed.count));
+                       this->timeOf(state, last));
 }
 
 void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)

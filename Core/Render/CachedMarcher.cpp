@@ -8,7 +8,7 @@ namespace inr {
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
     : Scene(scene), Missing(onMiss), Placer(scene, onMiss, this->Notes),
-      Placed(this->Placer.placed()), Batch(this->Placed.batch)
+      Placed(this->Placer.placed()), Batch(this->Placer.batch())
 {
   if (scene.settings.looksAtBothEnds()) {
     this->Probe.emplace(scene, onMiss, this->Notes.absent);

@@ -27,7 +27,7 @@ public:
   bool march(CachedRay& ray);
 
   FrameStatistics statistics() const;
-  SampleTally tally() const { return {this->Notes.statistics.samples, this->Notes.levels}; }
+  SampleTally tally() const { return {this->Notes.statistics.samples, this->Notes.levelSum}; }
   RequestList& requests() { return this->Notes.requests; }
   /// Bricks in whose place a coarser one was read.
   RequestList& absent() { return this->Notes.absent; }
@@ -53,6 +53,7 @@ private:
   /// Opacity unit distances that a sample of the batch stands for.
   double lengthOf(int sample) const;
   void composite(CachedRay& state);
+  /// The ray's last sample, which the batch ends with.
   void compositeLast(CachedRay& state);
   /// Notes where light was halved if that was in samples [first, end), and not before.
   void noteHalfOpaque(CachedRay& state, int first, int end) const;
@@ -91,7 +92,8 @@ private:
   bool findSurface(const CachedRay& state, const SurfaceInterval& interval, float value,
                    double& place);
   void clampToRanges();
-  void takeLogarithms();
+  /// Of the first `count` samples.
+  void takeLogarithms(int count);
 
   const CachedScene& Scene;
   OnMiss Missing;
@@ -100,7 +102,7 @@ private:
   SamplePlacer Placer;
   std::optional<SampleShader> Shader;
   std::optional<RayProbe> Probe; ///< where both ends of samples are looked at
-  PlacedSamples& Placed;         ///< by the placer
+  const PlacedSamples& Placed;   ///< by the placer
   SampleBatch& Batch;            ///< of these
   std::uint64_t Clamped = 0; ///< those of the batch's samples that clampToRanges moved, bit by bit
 };

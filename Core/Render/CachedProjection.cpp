@@ -2,7 +2,6 @@
 //
 // What CachedMarcher does with the values of a batch where they are projected.
 #include "Core/Render/CachedMarcher.h"
-#include "Core/Render/StepTable.h"
 
 namespace inr {
 

@@ -12,9 +12,9 @@ namespace inr {
 struct MarchNotes
 {
   FrameStatistics statistics;
-  std::int64_t levels = 0; ///< that the samples came from, summed up
-  RequestList requests;    ///< bricks that are wanted
-  RequestList absent;      ///< bricks in whose place a coarser one was read
+  std::int64_t levelSum = 0; ///< of the levels that the samples came from
+  RequestList requests;      ///< bricks that are wanted
+  RequestList absent;        ///< bricks in whose place a coarser one was read
 };
 
 } // namespace inr

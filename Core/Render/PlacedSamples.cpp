@@ -23,12 +23,12 @@ double PlacedSamples::timeOf(int sample, double step, double end) const
   return std::min(t, end);
 }
 
-double PlacedSamples::lengthOf(int sample, double step) const
+double PlacedSamples::lengthOf(int sample, double stepLength) const
 {
   if (this->lastLength > 0 && sample + 1 == this->count) {
     return static_cast<double>(this->lastLength);
   }
-  return step * static_cast<double>(StepsOf(this->batch.length[sample]));
+  return stepLength * static_cast<double>(StepsOf(this->batch.length[sample]));
 }
 
 } // namespace inr

@@ -39,7 +39,8 @@ struct PlacedSamples
   int count = 0;
   int runs = 0;
   int paths = 0;
-  float lastLength = 0; ///< of the ray's last sample, if it is shorter than a step; else 0
+  /// Opacity unit distances of the ray's last sample, if it is shorter than a step; else 0.
+  float lastLength = 0;
 
   /// Until samples are added.
   void clear()
@@ -48,13 +49,12 @@ struct PlacedSamples
     this->lastLength = 0;
   }
   const SampleOrigin& originOf(int sample) const;
-  std::int64_t intervalOf(int sample) const { return this->originOf(sample).intervalOf(sample); }
   /// Of the brick that a sample is read from.
   int levelOf(int sample) const { return IdOf(this->bricks[this->batch.path[sample]]).level; }
-  /// Where a sample is on its ray, which ends at t = `end`; there is `step` between places.
+  /// t of a sample on its ray, which ends at `end`; `step` is the t between places.
   double timeOf(int sample, double step, double end) const;
-  /// What a sample stands for, where a step is `step` long.
-  double lengthOf(int sample, double step) const;
+  /// Opacity unit distances that a sample stands for; `stepLength`: those of a step.
+  double lengthOf(int sample, double stepLength) const;
 };
 
 } // namespace inr

@@ -4,6 +4,7 @@
 // instruction set; see Core/Inference/Lanes.h.
 #pragma once
 
+#include "Core/CacheLine.h"
 #include "Core/Inference/Lanes.h"
 #include "Core/Render/BrickKernel.h"
 
@@ -15,6 +16,9 @@ namespace INR_ISA {
 namespace {
 
 void StoreInts(std::int32_t* to, Ints value) { std::memcpy(to, &value, sizeof(value)); }
+
+static_assert(LaneCount <= SampleBatch::Room - SampleBatch::Capacity,
+              "vectors reach past the last sample");
 
 /// Where samples are in their bricks.
 struct Located

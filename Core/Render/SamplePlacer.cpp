@@ -77,18 +77,18 @@ void SamplePlacer::adaptRoom(double before, double after)
   }
 }
 
-void SamplePlacer::goBackTo(int sample, const SampleWalker& before, CachedRay& state)
+void SamplePlacer::goBackTo(int sample, const SampleWalker& before, CachedRay& ray)
 {
   const SampleOrigin& origin = this->Placed.originOf(sample);
-  this->Notes.statistics.work.cells += state.samples.visited() - before.visited();
-  state.samples = before;
-  state.samples.resume(origin.intervalOf(sample), origin.stretch, this->Scene.settings);
-  state.shownTo = origin.intervalOf(sample); // this one is wanted, whether it shows something
+  this->Notes.statistics.work.cells += ray.samples.visited() - before.visited();
+  ray.samples = before;
+  ray.samples.resume(origin.intervalOf(sample), origin.stretch, this->Scene.settings);
+  ray.shownTo = origin.intervalOf(sample); // this one is wanted, whether it shows something
   this->Notes.statistics.samples -= this->Placed.count - sample; // they will be counted again
   const int taken = sample - origin.sample;
   this->Notes.statistics.hidden = origin.hidden + PlaceOfBit(origin.shown, taken) - taken;
   for (int k = sample; k < this->Placed.count; ++k) {
-    this->Notes.levels -= this->Placed.originOf(k).level;
+    this->Notes.levelSum -= this->Placed.originOf(k).level;
   }
   this->Awaited.reset(); // it waits for something nearer
   this->Waiting = true;
@@ -96,7 +96,7 @@ void SamplePlacer::goBackTo(int sample, const SampleWalker& before, CachedRay& s
 }
 
 // Flat: what it calls it calls for every brick and macro-cell of every ray.
-__attribute__((flatten)) void SamplePlacer::place(CachedRay& state)
+__attribute__((flatten)) void SamplePlacer::place(CachedRay& ray)
 {
   this->Placed.clear();
   this->Ahead = 0;
@@ -104,19 +104,19 @@ __attribute__((flatten)) void SamplePlacer::place(CachedRay& state)
   this->Runs[1].setPlace(-1);
   const MarchSettings& settings = this->Scene.settings;
   while (this->Placed.count < this->Room && !this->Ended && !this->Waiting) {
-    if (!state.samples.moveToVisible(settings)) {
+    if (!ray.samples.moveToVisible(settings)) {
       this->Ended = true;
       return;
     }
-    AlikeSamples alike = state.samples.alike();
-    if (settings.projector.canSkip(state.projection, state.samples.stretch().range) ||
-        (this->Cropped && this->isCropped(state, alike))) {
-      state.samples.pass(alike, alike.count);
-      state.shownTo = CachedRay::Unknown;
+    AlikeSamples alike = ray.samples.alike();
+    if (settings.projector.canSkip(ray.projection, ray.samples.stretch().range) ||
+        (this->Cropped && this->isCropped(ray, alike))) {
+      ray.samples.pass(alike, alike.count);
+      ray.shownTo = CachedRay::Unknown;
       continue;
     }
-    const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
-    const RunPair runs = this->runsFor(state, place);
+    const double place = static_cast<double>(ray.samples.next()) + ray.samples.offset(alike);
+    const RunPair runs = this->runsFor(ray, place);
     if (runs.fine == nullptr || runs.coarse == nullptr) {
       this->Waiting = true;
       return;
@@ -125,30 +125,30 @@ __attribute__((flatten)) void SamplePlacer::place(CachedRay& state)
       return;
     }
     const int before = this->Placed.count;
-    this->add(state, alike, runs, place);
+    this->add(ray, alike, runs, place);
     this->Ahead += this->Placed.count > 0 ? alike.count : 0;
     if (alike.last && this->Placed.count > before) {
       this->Placed.lastLength =
-          static_cast<float>(state.samples.rest() * settings.step * settings.unitsPerT);
+          static_cast<float>(ray.samples.rest() * settings.step * settings.unitsPerT);
       this->Ended = true;
     }
-    state.samples.pass(alike, alike.count);
+    ray.samples.pass(alike, alike.count);
   }
 }
 
-bool SamplePlacer::isCropped(const CachedRay& state, AlikeSamples& alike) const
+bool SamplePlacer::isCropped(const CachedRay& ray, AlikeSamples& alike) const
 {
-  const double place = static_cast<double>(state.samples.next()) + state.samples.offset(alike);
+  const double place = static_cast<double>(ray.samples.next()) + ray.samples.offset(alike);
   const double end = this->Cropped->end(place);
   alike.count = CountBelow((end - place) / static_cast<double>(alike.steps()), alike.count);
   return !this->Cropped->shows(place);
 }
 
 // Inline: called once per run of samples, and there are as many of them as of bricks.
-inline void SamplePlacer::placeRun(const CachedRay& state, const AlikeSamples& alike,
+inline void SamplePlacer::placeRun(const CachedRay& ray, const AlikeSamples& alike,
                                    const RunPair& runs, SampleRun& run) const
 {
-  const SampleWalker& samples = state.samples;
+  const SampleWalker& samples = ray.samples;
   const auto begin = static_cast<double>(samples.next());
   run.start[0] = runs.fine->along(begin);
   run.start[1] = runs.coarse->along(begin);
@@ -161,23 +161,23 @@ inline void SamplePlacer::placeRun(const CachedRay& state, const AlikeSamples& a
     run.ways = 2;
     run.fraction = static_cast<float>(fraction);
     run.growth = static_cast<float>(growth);
-    run.seed = DitherSeed(state.stream);
+    run.seed = DitherSeed(ray.stream);
     run.counter = static_cast<std::uint32_t>(this->ditherOf(samples.next()));
     run.stride = static_cast<std::uint32_t>(this->ditherOf(alike.steps()));
   }
 }
 
-inline void SamplePlacer::addRun(const CachedRay& state, const AlikeSamples& alike, int count,
+inline void SamplePlacer::addRun(const CachedRay& ray, const AlikeSamples& alike, int count,
                                  const SampleBits& bits, const RunPair& runs)
 {
-  const SampleWalker& samples = state.samples;
+  const SampleWalker& samples = ray.samples;
   const SampleStretch& stretch = samples.stretch();
   const BrickRun& fine = *runs.fine;
   // A coarser brick than the one wanted may hold anything.
   const bool exact = fine.exact() && runs.coarse->exact();
   const ValueRange range = exact ? stretch.range : ValueRange{0.0f, 1.0f};
   SampleRun& run = this->Placed.batch.runs[this->Placed.runs];
-  this->placeRun(state, alike, runs, run);
+  this->placeRun(ray, alike, runs, run);
   run.path[0] = fine.place();
   run.path[1] = runs.coarse->place();
   run.count = count;
@@ -201,7 +201,7 @@ inline void SamplePlacer::addRun(const CachedRay& state, const AlikeSamples& ali
   this->Placed.count += count;
 }
 
-inline void SamplePlacer::countUse(const CachedRay& state, const AlikeSamples& alike,
+inline void SamplePlacer::countUse(const CachedRay& ray, const AlikeSamples& alike,
                                    std::uint64_t taken, const RunPair& runs) const
 {
   const int count = CountBits(taken);
@@ -214,7 +214,7 @@ inline void SamplePlacer::countUse(const CachedRay& state, const AlikeSamples& a
   static constexpr ShownBlocks all{ShownBlocks::Kind::All, {}};
   static constexpr ShownBlocks none{ShownBlocks::Kind::None, {}};
   SampleRun run;
-  this->placeRun(state, alike, runs, run);
+  this->placeRun(ray, alike, runs, run);
   const std::uint64_t onFine = this->Scene.kernel.findShownOnTwo(
       this->Scene.format, {&all, &none}, {&runs.fine->path(), &runs.coarse->path()}, run,
       alike.count);
@@ -223,11 +223,11 @@ inline void SamplePlacer::countUse(const CachedRay& state, const AlikeSamples& a
   runs.coarse->count(count - fine);
 }
 
-SamplePlacer::RunPair SamplePlacer::runsFor(const CachedRay& state, double place)
+SamplePlacer::RunPair SamplePlacer::runsFor(const CachedRay& ray, double place)
 {
-  const LevelOfDetail& detail = state.samples.detail();
-  BrickRun* fine = this->runFor(state, detail.level(), place);
-  return {fine, detail.isDithered() ? this->runFor(state, detail.level() + 1, place) : fine};
+  const LevelOfDetail& detail = ray.samples.detail();
+  BrickRun* fine = this->runFor(ray, detail.level(), place);
+  return {fine, detail.isDithered() ? this->runFor(ray, detail.level() + 1, place) : fine};
 }
 
 bool SamplePlacer::looksTooFar(const RunPair& runs) const
@@ -242,7 +242,7 @@ bool SamplePlacer::looksTooFar(const RunPair& runs) const
   return !exact || this->Ahead >= inUse;
 }
 
-std::uint64_t SamplePlacer::findShown(const CachedRay& state, const AlikeSamples& alike, int count,
+std::uint64_t SamplePlacer::findShown(const CachedRay& ray, const AlikeSamples& alike, int count,
                                       const BrickRun& run) const
 {
   switch (run.shown().kind) {
@@ -253,37 +253,37 @@ std::uint64_t SamplePlacer::findShown(const CachedRay& state, const AlikeSamples
   case ShownBlocks::Kind::Some:
     break;
   }
-  const SampleRow row{run.along(static_cast<double>(state.samples.next())),
+  const SampleRow row{run.along(static_cast<double>(ray.samples.next())),
                       static_cast<float>(alike.steps()),
-                      static_cast<float>(state.samples.offset(alike))};
+                      static_cast<float>(ray.samples.offset(alike))};
   return this->Scene.kernel.findShown(this->Scene.format, run.shown(), run.path(), row, count);
 }
 
-std::uint64_t SamplePlacer::findShownOnTwo(const CachedRay& state, const AlikeSamples& alike,
+std::uint64_t SamplePlacer::findShownOnTwo(const CachedRay& ray, const AlikeSamples& alike,
                                            int count, const RunPair& runs) const
 {
   SampleRun run;
-  this->placeRun(state, alike, runs, run);
+  this->placeRun(ray, alike, runs, run);
   return this->Scene.kernel.findShownOnTwo(this->Scene.format,
                                            {&runs.fine->shown(), &runs.coarse->shown()},
                                            {&runs.fine->path(), &runs.coarse->path()}, run, count);
 }
 
-SamplePlacer::SampleBits SamplePlacer::choose(const CachedRay& state, const AlikeSamples& alike,
+SamplePlacer::SampleBits SamplePlacer::choose(const CachedRay& ray, const AlikeSamples& alike,
                                               int count, const RunPair& runs) const
 {
   if (!this->LooksAtBothEnds) {
     const std::uint64_t visible = runs.coarse == runs.fine
-                                      ? this->findShown(state, alike, count, *runs.fine)
-                                      : this->findShownOnTwo(state, alike, count, runs);
+                                      ? this->findShown(ray, alike, count, *runs.fine)
+                                      : this->findShownOnTwo(ray, alike, count, runs);
     return {visible, visible, visible};
   }
   // What is seen in neither is left out, whichever a sample would be from: of samples that are not
   // taken, too, it is asked what is seen there.
   const std::uint64_t visible =
-      this->findShown(state, alike, count, *runs.fine) |
-      (runs.coarse != runs.fine ? this->findShown(state, alike, count, *runs.coarse) : 0);
-  const bool follows = state.shownTo == CachedRay::Unknown || state.shownTo == state.samples.next();
+      this->findShown(ray, alike, count, *runs.fine) |
+      (runs.coarse != runs.fine ? this->findShown(ray, alike, count, *runs.coarse) : 0);
+  const bool follows = ray.shownTo == CachedRay::Unknown || ray.shownTo == ray.samples.next();
   const std::uint64_t seen = (visible | visible << 1 | (follows ? 1 : 0)) & LowestBits(count);
   return {seen | seen >> 1, seen, visible};
 }
@@ -295,9 +295,9 @@ bool SamplePlacer::spansBlocks(const AlikeSamples& alike, const RunPair& runs) c
   return this->LooksAtBothEnds && voxels > level * this->ShortestBlock;
 }
 
-void SamplePlacer::add(CachedRay& state, AlikeSamples& alike, const RunPair& runs, double place)
+void SamplePlacer::add(CachedRay& ray, AlikeSamples& alike, const RunPair& runs, double place)
 {
-  const SampleStretch& stretch = state.samples.stretch();
+  const SampleStretch& stretch = ray.samples.stretch();
   // Closed stretches take values for others than those that ranges bound.
   const bool all = (stretch.closed && stretch.level > 0) || this->spansBlocks(alike, runs) ||
                    (runs.fine->shown().kind == ShownBlocks::Kind::All &&
@@ -311,7 +311,7 @@ void SamplePlacer::add(CachedRay& state, AlikeSamples& alike, const RunPair& run
   SampleBits bits{LowestBits(count), LowestBits(count), LowestBits(count)};
   int taken = count;
   if (!all) {
-    bits = this->choose(state, alike, count, runs);
+    bits = this->choose(ray, alike, count, runs);
     taken = CountBits(bits.taken);
     if (taken > room) {
       count = PlaceOfBit(bits.taken, room);
@@ -322,8 +322,7 @@ void SamplePlacer::add(CachedRay& state, AlikeSamples& alike, const RunPair& run
   alike.count = count;
   if (this->LooksAtBothEnds) {
     const bool isLastVisible = (bits.visible >> (count - 1) & 1) != 0;
-    state.shownTo =
-        isLastVisible ? state.samples.next() + count * alike.steps() : CachedRay::Nowhere;
+    ray.shownTo = isLastVisible ? ray.samples.next() + count * alike.steps() : CachedRay::Nowhere;
   }
   if (taken == 0) {
     this->Notes.statistics.hidden += count;
@@ -334,19 +333,19 @@ void SamplePlacer::add(CachedRay& state, AlikeSamples& alike, const RunPair& run
       this->enlist(*run);
     }
   }
-  this->addRun(state, alike, taken, bits, runs);
+  this->addRun(ray, alike, taken, bits, runs);
   this->Notes.statistics.hidden += count - taken;
-  this->countUse(state, alike, bits.taken, runs);
+  this->countUse(ray, alike, bits.taken, runs);
 }
 
-BrickRun* SamplePlacer::runFor(const CachedRay& state, int level, double place)
+BrickRun* SamplePlacer::runFor(const CachedRay& ray, int level, double place)
 {
   BrickRun& run = this->Runs[level & 1];
   if (run.covers(level, place)) {
     return &run;
   }
-  this->close(run, state.color.transmittance);
-  return this->open(run, state.ray, level, place) ? &run : nullptr;
+  this->close(run, ray.color.transmittance);
+  return this->open(run, ray.ray, level, place) ? &run : nullptr;
 }
 
 bool SamplePlacer::open(BrickRun& run, const Ray& ray, int level, double place)
@@ -406,7 +405,7 @@ void SamplePlacer::close(BrickRun& run, float transmittance)
   this->Notes.statistics.samples += run.count();
   if (run.count() > 0) {
     this->Notes.statistics.levels.add({run.servedLevel(), run.servedLevel()});
-    this->Notes.levels += std::int64_t{run.count()} * run.servedLevel();
+    this->Notes.levelSum += std::int64_t{run.count()} * run.servedLevel();
   }
   if (run.count() > 0 && !run.exact()) {
     this->Notes.statistics.missed += run.count();

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "Core/Render/BrickRun.h"
+#include "Core/Render/BrickWay.h"
 #include "Core/Render/CachedRay.h"
 #include "Core/Render/CroppedWay.h"
 #include "Core/Render/MarchNotes.h"
+#include "Core/Render/OnMiss.h"
 #include "Core/Render/PlacedSamples.h"
 
 #include <cstdint>
@@ -14,23 +16,32 @@ namespace inr {
 
 /// Places samples along rays, one ray after another and batch by batch, and finds the bricks that
 /// they are read from. Those that show nothing are left out.
+///
+/// A ray, or a part of its way, begins with `begin`; then `place` fills one batch after another,
+/// until the ray has ended or waits; then `finish`, once, counts what it has taken.
 class SamplePlacer
 {
 public:
   /// The references must outlive it.
   SamplePlacer(const CachedScene& scene, OnMiss onMiss, MarchNotes& notes);
+  SamplePlacer(const SamplePlacer&) = delete;
+  SamplePlacer& operator=(const SamplePlacer&) = delete;
 
-  /// Another ray is next, or another part of its way.
+  /// Another ray is next, another part of its way, or one that has waited.
   void begin(const CachedRay& ray);
-  /// Fills the batch with the ray's next samples, unless it ends or has to wait for a brick.
+  /// Fills the batch with the ray's next samples. There may be fewer than there is room for, or
+  /// none, and the ray may have ended or wait behind them.
   void place(CachedRay& ray);
-  PlacedSamples& placed() { return this->Placed; }
+  const PlacedSamples& placed() const { return this->Placed; }
+  /// Of these, for whoever finds their values and makes colours of them.
+  SampleBatch& batch() { return this->Placed.batch; }
   /// Chooses how many samples the next batch is for, after one that took the ray's transmittance
   /// from `before` to `after`: what lies behind an opaque sample is placed in vain, and every batch
   /// has its price.
   void adaptRoom(double before, double after);
-  /// Puts the ray, which has to wait, back to before a sample of the batch, which began at
-  /// `before`.
+  /// Puts the ray back to before a sample of the latest batch, which began at `before`: it waits,
+  /// and has not ended. Only where something may be looked up at samples, that is, with shading or
+  /// where both ends of samples are looked at.
   void goBackTo(int sample, const SampleWalker& before, CachedRay& ray);
   /// Notes what the ray has taken, and what it waits for.
   void finish(const CachedRay& ray);
@@ -38,10 +49,11 @@ public:
   /// Nothing of the ray is left that could be seen.
   bool ended() const { return this->Ended; }
   void end() { this->Ended = true; }
+  /// For a brick that is not there.
   bool waits() const { return this->Waiting; }
 
 private:
-  /// Whether the first of such samples is; leaves those in `alike` of which the same is true.
+  /// Whether the first of alike samples is; leaves those in `alike` of which the same is true.
   bool isCropped(const CachedRay& ray, AlikeSamples& alike) const;
   /// The bricks that such samples are read from, of the finer level and of the coarser one, which
   /// may be the same; null where the ray has to wait.
