@@ -36,7 +36,7 @@ CachedRay CachedMarcher::begin(int x, int y)
   bool meets = ray.ray.length > 0;
   if (this->Scene.frame.layers && !meets) {
     meets = this->Scene.geometry.ray(x, y).length > 0;
-    ray.part = meets ? 0 : this->Scene.frame.layers->count();
+    ray.layered.part = meets ? 0 : this->Scene.frame.layers->count();
   }
   this->Notes.statistics.rays += meets ? 1 : 0;
   return ray;
@@ -48,8 +48,6 @@ bool CachedMarcher::march(CachedRay& state)
     return this->marchPart(state);
   }
   while (this->marchPart(state)) {
-    const glm::vec3 color(state.color.rgb[0], state.color.rgb[1], state.color.rgb[2]);
-    state.light.gather(color, state.color.transmittance);
     if (!state.enterNextPart(this->Scene)) {
       return true;
     }

@@ -16,8 +16,8 @@ namespace {
 
 double HalfOpaqueDepth(const CachedScene& scene, const CachedRay& ray)
 {
-  if (ray.halfOpaqueDepth >= 0) {
-    return ray.halfOpaqueDepth;
+  if (ray.layered.halfOpaqueDepth >= 0) {
+    return ray.layered.halfOpaqueDepth;
   }
   return ray.halfOpaqueAt >= 0 ? scene.geometry.windowDepth(ray.ray.at(ray.halfOpaqueAt)) : 1.0;
 }
@@ -27,7 +27,8 @@ void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
 {
   float* pixel = output.rgba.pixel(x, y);
   const double* rgb = ray.color.rgb;
-  const glm::vec3 seen = scene.frame.layers ? ray.light.seen() : glm::vec3(rgb[0], rgb[1], rgb[2]);
+  const glm::vec3 seen =
+      scene.frame.layers ? ray.layered.light.seen() : glm::vec3(rgb[0], rgb[1], rgb[2]);
   std::copy_n(&seen.x, 3, pixel);
   pixel[3] = static_cast<float>(1.0 - ray.color.transmittance);
   if (output.depth != nullptr) {

@@ -37,19 +37,16 @@ CachedRay::CachedRay(const CachedScene& scene, int x, int y)
 
 bool CachedRay::enterNextPart(const CachedScene& scene)
 {
-  const TranslucentLayers& layers = *scene.frame.layers;
-  const auto pixel = static_cast<std::size_t>(this->y) * scene.frame.width + this->x;
-  if (layers.depth(this->part, pixel) >= 1.0f || this->color.transmittance <= OpaqueTransmittance) {
+  const RayView& rays = scene.geometry.view();
+  const double* const rgb = this->color.rgb;
+  const auto transmittance = static_cast<float>(this->color.transmittance);
+  const bool goesOn = this->layered.enterNextPart(rays.layers, rays.pixel(this->x, this->y),
+                                                  glm::vec3(rgb[0], rgb[1], rgb[2]), transmittance);
+  if (!goesOn || transmittance <= OpaqueTransmittance) {
     return false;
   }
-  this->light.pass(layers.color(this->part, pixel));
-  if (this->light.passes() <= 0.0f) {
-    return false;
-  }
-  if (this->halfOpaqueAt >= 0 && this->halfOpaqueDepth < 0) {
-    this->halfOpaqueDepth = scene.geometry.windowDepth(this->ray.at(this->halfOpaqueAt));
-  }
-  this->ray = scene.geometry.ray(this->x, this->y, ++this->part);
+  this->layered.noteHalfOpaque(rays, this->ray, this->halfOpaqueAt);
+  this->ray = rays.ray(this->x, this->y, this->layered.part);
   this->samples = SamplesOf(scene, this->ray, this->stream, this->x, this->y);
   this->color.ofMany = this->color.ofMany || this->samples.end() > ManySamples;
   this->known = {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Render/CachedScene.h"
+#include "Core/Render/LayeredWay.h"
 
 #include <cstdint>
 
@@ -46,9 +47,7 @@ struct CachedRay
 
   int x;
   int y;
-  int part = 0; ///< of the way: how many translucent layers lie behind
-  LayeredLight light;
-  double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
+  LayeredWay layered;
 };
 
 } // namespace inr

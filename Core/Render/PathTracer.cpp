@@ -93,8 +93,8 @@ void WriteNothing(const Tile& tile, Image& rgba, Image* depth)
 class TileOfPaths
 {
 public:
-  TileOfPaths(const Frame& frame, const PathScene& scene, const SeenSpans& seen, const Tile& tile)
-      : Picture(frame), Scene(scene), Place(tile)
+  TileOfPaths(const PathScene& scene, const SeenSpans& seen, const Tile& tile)
+      : Scene(scene), Place(tile)
   {
     this->Paths.reserve(static_cast<std::size_t>(tile.width) * tile.height);
     for (int k = 0; k < tile.width * tile.height; ++k) {
@@ -126,7 +126,8 @@ public:
   {
     for (int k = 0; k < this->Place.width * this->Place.height; ++k) {
       const PathState& path = this->Paths[static_cast<std::size_t>(k)];
-      const glm::vec4 color = this->colorOf(path, k);
+      const glm::vec4 color =
+          ColorOf(this->Scene, path, this->Scene.rays.pixel(this->x(k), this->y(k)));
       std::copy_n(&color.x, 4, rgba.pixel(this->x(k), this->y(k)));
       if (depth != nullptr) {
         *depth->pixel(this->x(k), this->y(k)) = path.collided ? this->depthOf(path) : 0.0f;
@@ -142,19 +143,6 @@ private:
   {
     path.t = std::max(seen.begin, 0.0);
     path.ray.length = std::min(path.ray.length, seen.end);
-  }
-
-  /// As the camera sees it: through the translucent surfaces in front of the first collision.
-  glm::vec4 colorOf(const PathState& path, int k) const
-  {
-    const Frame& frame = this->Picture;
-    if (!path.collided || !frame.layers) {
-      return {path.radiance, path.collided ? 1.0f : 0.0f};
-    }
-    const auto pixel = static_cast<std::size_t>(this->y(k)) * frame.width + this->x(k);
-    const double depth = this->Scene.rays.windowDepth(path.firstCollision);
-    const Veil veil = frame.layers->inFrontOf(depth, pixel);
-    return {veil.color + veil.passes * path.radiance, 1.0f};
   }
 
   int x(int k) const { return this->Place.x + k % this->Place.width; }
@@ -202,7 +190,6 @@ private:
     this->Live.resize(alive);
   }
 
-  const Frame& Picture;
   const PathScene& Scene;
   Tile Place;
   FrameStatistics Statistics;
@@ -275,7 +262,7 @@ FrameStatistics PathTracer::trace(const Tile& tile, FieldSampler& sampler, Image
     WriteNothing(tile, rgba, depth);
     return {};
   }
-  TileOfPaths paths(this->Picture, this->Scene, this->Seen, tile);
+  TileOfPaths paths(this->Scene, this->Seen, tile);
   paths.trace(sampler);
   paths.write(rgba, depth);
   return paths.statistics();

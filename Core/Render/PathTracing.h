@@ -329,4 +329,18 @@ INR_HOST_DEVICE inline bool Collide(const PathScene& scene, PathState& path, flo
   return Scatter(scene, path, color);
 }
 
+/// Of a path that has ended, premultiplied, as the camera sees it: through the translucent surfaces
+/// in front of its first collision.
+INR_HOST_DEVICE inline glm::vec4 ColorOf(const PathScene& scene, const PathState& path,
+                                         std::int64_t pixel)
+{
+  const float alpha = path.collided ? 1.0f : 0.0f;
+  if (!path.collided || !scene.rays.layers.any()) {
+    return {path.radiance, alpha};
+  }
+  const double depth = scene.rays.windowDepth(path.firstCollision);
+  const Veil veil = scene.rays.layers.inFrontOf(depth, pixel);
+  return {veil.color + veil.passes * path.radiance, alpha};
+}
+
 } // namespace inr

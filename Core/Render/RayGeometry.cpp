@@ -61,7 +61,7 @@ glm::dmat4 Inverse(const glm::dmat4& matrix, const char* message)
 
 } // namespace
 
-RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture(frame)
+RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims)
 {
   Require(frame.width > 0 && frame.height > 0, "a picture needs at least one pixel");
   if (std::int64_t{frame.width} * frame.height > MaximumPixels) {
@@ -124,6 +124,12 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims) : Picture
   Require(
       !frame.layers || frame.layers->fits(std::int64_t{frame.width} * frame.height),
       "translucent layers need a depth and a colour for each pixel, each behind the one before");
+  if (frame.layers) {
+    for (const TranslucentLayers::Layer& layer : frame.layers->layers) {
+      this->Layers.push_back({layer.depth.data(), layer.colors.data()});
+    }
+    this->View.layers = {this->Layers.data(), frame.layers->count()};
+  }
 }
 
 double RayGeometry::longest() const
@@ -140,19 +146,7 @@ double RayGeometry::longest() const
 
 Ray RayGeometry::ray(int x, int y) const { return this->View.ray(x, y); }
 
-Ray RayGeometry::ray(int x, int y, int part) const
-{
-  const PixelLine line = this->View.line(x, y);
-  double begin = 0.0;
-  double end = line.range;
-  if (this->Picture.layers) {
-    const TranslucentLayers& layers = *this->Picture.layers;
-    const auto pixel = static_cast<std::size_t>(y) * this->Picture.width + x;
-    begin = part > 0 ? line.distanceTo(layers.depth(part - 1, pixel)) : begin;
-    end = layers.depth(part, pixel) < 1.0f ? line.distanceTo(layers.depth(part, pixel)) : end;
-  }
-  return this->View.clipped(line, x, y, begin, end);
-}
+Ray RayGeometry::ray(int x, int y, int part) const { return this->View.ray(x, y, part); }
 
 Ray RayGeometry::rayThroughPiece(int x, int y) const { return this->View.rayThroughPiece(x, y); }
 

@@ -6,6 +6,8 @@
 
 #include <glm/gtc/type_precision.hpp>
 
+#include <vector>
+
 namespace inr {
 
 /// A Frame's geometry composed in double, once: rays in index space and back to window depth.
@@ -13,7 +15,11 @@ class RayGeometry
 {
 public:
   /// Throws Error(InvalidArgument) for singular or non-finite matrices and values out of range.
+  /// The frame's arrays must outlive it.
   RayGeometry(const Frame& frame, const glm::i64vec3& dims);
+  RayGeometry(const RayGeometry&) = delete;
+  RayGeometry& operator=(const RayGeometry&) = delete;
+  RayGeometry(RayGeometry&&) = default; ///< arrays stay where they are
 
   /// The ray through the centre of pixel (x, y), clipped to near and far plane, the visible domain
   /// (point bounds), the clipping planes and the opaque depth; a miss where it misses the frame's
@@ -35,11 +41,11 @@ public:
   /// World length of one unit of t: the shortest voxel edge.
   double worldPerUnit() const { return this->View.worldPerUnit; }
 
-  /// What makes rays anywhere, as long as the frame lives: but for translucent layers.
+  /// What makes rays anywhere, as long as this and the frame's arrays live.
   const RayView& view() const { return this->View; }
 
 private:
-  const Frame& Picture;
+  std::vector<SurfaceLayer> Layers; ///< of the view
   RayView View;
 };
 

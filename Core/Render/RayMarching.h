@@ -5,6 +5,7 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Random.h"
+#include "Core/Render/LayeredWay.h"
 #include "Core/Render/RayGeometry.h"
 #include "Core/Render/SampleWalker.h"
 
@@ -21,12 +22,10 @@ struct MarchState
 {
   Ray ray;
   SampleWalker samples;
-  glm::dvec4 color{0};         ///< premultiplied, so far: of any number of samples
-  double halfOpaqueAt = -1;    ///< t where opacity reached one half; -1 = not yet
-  Projection projection{};     ///< instead, of values that are projected
-  double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
-  int part = 0;                ///< of the way: how many translucent layers lie behind
-  LayeredLight light{};
+  glm::dvec4 color{0};      ///< premultiplied, so far: of any number of samples
+  double halfOpaqueAt = -1; ///< t where opacity reached one half; -1 = not yet
+  Projection projection{};  ///< instead, of values that are projected
+  LayeredWay layered{};
   double knownAt = -1; ///< t where the value is known, where both ends of samples are looked at
   float known = 0;
 };
@@ -152,6 +151,48 @@ INR_HOST_DEVICE inline void Composite(const glm::vec4& entry, const MarchSample&
   if (state.halfOpaqueAt < 0 && state.color.w >= 0.5f) {
     state.halfOpaqueAt = sample.t;
   }
+}
+
+/// Sends a ray on behind the translucent layer at its end, but for its samples; false when there is
+/// no more to see.
+INR_HOST_DEVICE inline bool EnterNextPart(const RayView& rays, std::int64_t pixel,
+                                          MarchState& state)
+{
+  if (!state.layered.enterNextPart(rays.layers, pixel, glm::vec3(state.color),
+                                   static_cast<float>(1.0 - state.color.w))) {
+    return false;
+  }
+  state.layered.noteHalfOpaque(rays, state.ray, state.halfOpaqueAt);
+  const auto x = static_cast<int>(pixel % rays.width);
+  const auto y = static_cast<int>(pixel / rays.width);
+  state.ray = rays.ray(x, y, state.layered.part);
+  state.knownAt = -1;
+  return true;
+}
+
+/// What a ray that has ended shows, premultiplied.
+INR_HOST_DEVICE inline glm::vec4 ColorOf(const MarchState& state, const Projector& projector,
+                                         const ColorLookup& colors, const RayView& rays)
+{
+  if (rays.layers.any()) {
+    LayeredLight light = state.layered.light;
+    light.gather(glm::vec3(state.color), static_cast<float>(1.0 - state.color.w));
+    return {light.seen(), static_cast<float>(state.color.w)};
+  }
+  return projector.projects() && state.ray.length > 0 ? projector.color(colors, state.projection)
+                                                      : glm::vec4(state.color);
+}
+
+/// Window-space depth where it was half opaque, or of what it projects; 1 = nowhere.
+INR_HOST_DEVICE inline double DepthOf(const MarchState& state, const Projector& projector,
+                                      const ColorLookup& colors, const RayView& rays)
+{
+  if (state.layered.halfOpaqueDepth >= 0) {
+    return state.layered.halfOpaqueDepth;
+  }
+  const bool shows = projector.projects() && ColorOf(state, projector, colors, rays).w >= 0.5f;
+  const double t = shows ? state.projection.at : state.halfOpaqueAt;
+  return t >= 0 ? rays.windowDepth(state.ray.at(t)) : 1.0;
 }
 
 } // namespace inr

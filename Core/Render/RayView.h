@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/HostDevice.h"
+#include "Core/Render/LayersView.h"
 #include "Core/Render/Ray.h"
 
 #include <glm/common.hpp>
@@ -72,6 +73,7 @@ struct RayView
   int planeCount = 0;
   const glm::dvec4* piece = nullptr; ///< Frame::piece
   int pieceCount = 0;
+  LayersView layers; ///< of Frame::layers
 
   INR_HOST_DEVICE PixelLine line(int x, int y) const
   {
@@ -85,11 +87,25 @@ struct RayView
     return {center, near, toFar, range, toFar / range, toWorld[2]};
   }
 
+  INR_HOST_DEVICE std::int64_t pixel(int x, int y) const
+  {
+    return std::int64_t{y} * this->width + x;
+  }
+
   /// See RayGeometry.
   INR_HOST_DEVICE Ray ray(int x, int y) const
   {
     const PixelLine line = this->line(x, y);
     return this->clipped(line, x, y, 0.0, line.range);
+  }
+  INR_HOST_DEVICE Ray ray(int x, int y, int part) const
+  {
+    const PixelLine line = this->line(x, y);
+    const std::int64_t pixel = this->pixel(x, y);
+    const double begin = part > 0 ? line.distanceTo(this->layers.depth(part - 1, pixel)) : 0.0;
+    const float depth = this->layers.depth(part, pixel);
+    const double end = depth < 1.0f ? line.distanceTo(depth) : line.range;
+    return this->clipped(line, x, y, begin, end);
   }
   INR_HOST_DEVICE Ray rayThroughPiece(int x, int y) const
   {
@@ -117,7 +133,7 @@ struct RayView
     }
     keepAbove(this->planes, this->planeCount, line, world);
     if (this->opaqueDepth != nullptr) {
-      const double depth = this->opaqueDepth[std::int64_t{y} * this->width + x];
+      const double depth = this->opaqueDepth[this->pixel(x, y)];
       if (depth < 1.0) {
         world.end = glm::min(world.end, line.distanceTo(depth));
       }

@@ -122,30 +122,6 @@ bool TileMarcher::projectRay(std::size_t first, std::size_t end, MarchState& sta
   return !projector.isFinal(state.projection);
 }
 
-glm::vec4 TileMarcher::rayColor(const MarchState& state) const
-{
-  const Projector& projector = this->Scene.settings.projector;
-  if (this->Scene.frame.layers) {
-    LayeredLight light = state.light;
-    light.gather(glm::vec3(state.color), static_cast<float>(1.0 - state.color.w));
-    return {light.seen(), static_cast<float>(state.color.w)};
-  }
-  return projector.projects() && state.ray.length > 0
-             ? projector.color(this->Scene.colors, state.projection)
-             : glm::vec4(state.color);
-}
-
-double TileMarcher::depthOf(const MarchState& state) const
-{
-  if (state.halfOpaqueDepth >= 0) {
-    return state.halfOpaqueDepth;
-  }
-  const bool projects = this->Scene.settings.projector.projects();
-  const bool shows = projects && this->rayColor(state).w >= 0.5f;
-  const double t = shows ? state.projection.at : state.halfOpaqueAt;
-  return t >= 0 ? this->Scene.geometry.windowDepth(state.ray.at(t)) : 1.0;
-}
-
 bool TileMarcher::enterNextPart(int k, bool goesOn)
 {
   const Frame& frame = this->Scene.frame;
@@ -155,21 +131,14 @@ bool TileMarcher::enterNextPart(int k, bool goesOn)
   MarchState& state = this->Rays[static_cast<std::size_t>(k)];
   const int x = this->Place.x + k % this->Place.width;
   const int y = this->Place.y + k / this->Place.width;
-  const auto pixel = static_cast<std::size_t>(y) * frame.width + x;
-  if (frame.layers->depth(state.part, pixel) >= 1.0f) {
+  const RayView& rays = this->Scene.geometry.view();
+  if (!EnterNextPart(rays, rays.pixel(x, y), state)) {
     return false;
   }
-  state.light.gather(glm::vec3(state.color), static_cast<float>(1.0 - state.color.w));
-  state.light.pass(frame.layers->color(state.part, pixel));
-  if (state.halfOpaqueAt >= 0 && state.halfOpaqueDepth < 0) {
-    state.halfOpaqueDepth = this->Scene.geometry.windowDepth(state.ray.at(state.halfOpaqueAt));
-  }
   this->Statistics.work.cells += state.samples.visited();
-  state.ray = this->Scene.geometry.ray(x, y, ++state.part);
   state.samples = SampleWalker(this->Scene.majorants.view(), this->Scene.settings, state.ray, 0, 1,
                                JitterOf(this->Scene.settings, StreamsOf(frame).at(x, y)));
-  state.knownAt = -1;
-  return state.light.passes() > 0.0f;
+  return true;
 }
 
 void TileMarcher::writePixels(const Tile& tile, Image& rgba, Image* depth) const
@@ -178,10 +147,12 @@ void TileMarcher::writePixels(const Tile& tile, Image& rgba, Image* depth) const
     const int x = tile.x + k % tile.width;
     const int y = tile.y + k / tile.width;
     const MarchState& state = this->Rays[static_cast<std::size_t>(k)];
-    const glm::vec4 color = this->rayColor(state);
+    const Projector& projector = this->Scene.settings.projector;
+    const RayView& rays = this->Scene.geometry.view();
+    const glm::vec4 color = ColorOf(state, projector, this->Scene.colors, rays);
     std::copy_n(&color.x, 4, rgba.pixel(x, y));
     if (depth != nullptr) {
-      *depth->pixel(x, y) = static_cast<float>(this->depthOf(state));
+      *depth->pixel(x, y) = static_cast<float>(DepthOf(state, projector, this->Scene.colors, rays));
     }
   }
 }

@@ -71,8 +71,6 @@ private:
   bool projectRay(std::size_t first, std::size_t end, MarchState& state);
   /// Sends a ray that wants more on behind the next translucent layer; false when there is no more.
   bool enterNextPart(int k, bool goesOn);
-  glm::vec4 rayColor(const MarchState& state) const;
-  double depthOf(const MarchState& state) const;
   void writePixels(const Tile& tile, Image& rgba, Image* depth) const;
 
   const MarchScene& Scene;

@@ -20,13 +20,4 @@ bool TranslucentLayers::fits(std::int64_t pixels) const
   return true;
 }
 
-Veil TranslucentLayers::inFrontOf(double windowDepth, std::size_t pixel) const
-{
-  Veil veil;
-  for (int layer = 0; this->depth(layer, pixel) < windowDepth; ++layer) {
-    veil.addBehind(this->color(layer, pixel));
-  }
-  return veil;
-}
-
 } // namespace inr

@@ -47,9 +47,10 @@ glm::vec4 Pixel(const inr::Image& image, std::size_t k)
 std::vector<glm::vec4> Shown(inr::Renderer& renderer, const inr::Frame& frame)
 {
   const inr::Image picture = Render(renderer, frame);
+  const inr::RayGeometry geometry(frame, Dims);
   std::vector<glm::vec4> shown;
   for (std::size_t k = 0; k < picture.pixels.size() / 4; ++k) {
-    inr::Veil surfaces = frame.layers->inFrontOf(1.0, k);
+    const inr::Veil surfaces = geometry.view().layers.inFrontOf(1.0, static_cast<std::int64_t>(k));
     shown.push_back(Over(Pixel(picture, k), glm::vec4(surfaces.color, 1.0f - surfaces.passes)));
   }
   return shown;
