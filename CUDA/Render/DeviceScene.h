@@ -8,9 +8,29 @@
 #include "Core/Render/AcceleratedRenderer.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace inr {
 namespace cuda {
+
+/// A frame's rays. `arrays` must outlive them.
+template <class Machine>
+RayView RaysOn(Machine& machine, const RayView& given, Belongings<Machine>& arrays)
+{
+  const std::int64_t pixels = std::int64_t{given.width} * given.height;
+  RayView rays = given;
+  rays.opaqueDepth = arrays.put(machine, given.opaqueDepth, pixels);
+  rays.planes = arrays.put(machine, given.planes, given.planeCount);
+  rays.piece = arrays.put(machine, given.piece, given.pieceCount);
+  std::vector<SurfaceLayer> layers;
+  for (int k = 0; k < given.layers.count; ++k) {
+    const SurfaceLayer& layer = given.layers.layers[k];
+    layers.push_back(
+        {arrays.put(machine, layer.depth, pixels), arrays.put(machine, layer.colors, pixels)});
+  }
+  rays.layers.layers = arrays.put(machine, layers.data(), given.layers.count);
+  return rays;
+}
 
 /// Of rays that are marched, but for the table of steps. `arrays` must outlive the scene.
 template <class Machine>
@@ -19,11 +39,7 @@ RenderScene SceneOn(Machine& machine, const MarchJob& job, const DeviceColors<Ma
 {
   const Frame& frame = job.frame;
   RenderScene scene{};
-  scene.rays = job.geometry.view();
-  scene.rays.opaqueDepth =
-      arrays.put(machine, frame.opaqueDepth, std::int64_t{frame.width} * frame.height);
-  scene.rays.planes = arrays.put(machine, scene.rays.planes, scene.rays.planeCount);
-  scene.rays.piece = arrays.put(machine, scene.rays.piece, scene.rays.pieceCount);
+  scene.rays = RaysOn(machine, job.geometry.view(), arrays);
   scene.streams = StreamsOf(frame);
   scene.majorants = colors.majorants();
   scene.colors = colors.lookup();
@@ -45,10 +61,7 @@ PathScene SceneOn(Machine& machine, const PathScene& given, const DeviceColors<M
                   Belongings<Machine>& arrays)
 {
   PathScene scene = given;
-  const std::int64_t pixels = std::int64_t{given.rays.width} * given.rays.height;
-  scene.rays.opaqueDepth = arrays.put(machine, given.rays.opaqueDepth, pixels);
-  scene.rays.planes = arrays.put(machine, given.rays.planes, given.rays.planeCount);
-  scene.rays.piece = arrays.put(machine, given.rays.piece, given.rays.pieceCount);
+  scene.rays = RaysOn(machine, given.rays, arrays);
   scene.inner =
       given.inner.with(arrays.put(machine, given.inner.planes(), given.inner.planeCount()));
   scene.majorants = colors.majorants();

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Device/LaunchDefinition.cuh"
+#include "CUDA/Render/Kernels/LayeredMarch.h"
 #include "CUDA/Render/Kernels/MarchKernels.h"
 #include "CUDA/Render/Kernels/PathKernels.h"
-#include "CUDA/Device/LaunchDefinition.cuh"
 
 namespace inr {
 namespace cuda {
 
+INR_INSTANTIATE(MarchLayeredRays);
 INR_INSTANTIATE(MarchRays);
 INR_INSTANTIATE(TracePaths);
 

@@ -3,6 +3,7 @@
 
 #include "CUDA/Render/DevicePicture.h"
 #include "CUDA/Render/DeviceScene.h"
+#include "CUDA/Render/Kernels/LayeredMarch.h"
 #include "CUDA/Render/Kernels/MarchKernels.h"
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Render/CachedRenderer.h"
@@ -22,7 +23,8 @@ public:
   /// `most`: rays that wait at once.
   MarchedPicture(Machine& machine, Cache& cache, std::int64_t most)
       : Where(machine), Bricks(cache), Pixels(machine),
-        Scene(machine.template allocate<RenderScene>(1)), Rays(machine, cache, most)
+        Scene(machine.template allocate<RenderScene>(1)), Rays(machine, cache, most),
+        LayeredRays(machine, cache, most)
   {}
 
   /// A frame's scene. `steps`: its entries are on the machine, and outlive the picture.
@@ -32,6 +34,12 @@ public:
     RenderScene scene = SceneOn(this->Where, job, colors, this->Arrays);
     scene.steps = steps;
     this->Where.toMachine(this->Scene.data(), &scene, 1);
+    this->HasLayers = scene.rays.layers.any();
+    if (this->HasLayers) {
+      this->Rays.release();
+    } else {
+      this->LayeredRays.release();
+    }
     this->Order = {job.frame.width, job.frame.height, nullptr, 0};
     this->Pixels.resize(std::int64_t{job.frame.width} * job.frame.height);
   }
@@ -40,27 +48,34 @@ public:
   FrameStatistics marchOnce(OnMiss onMiss, const std::function<bool()>& keepGoing)
   {
     return this->counted(
-        [&](const MarchRays& kernel) {
+        [&](const auto& kernel, auto& rays) {
           this->Bricks.beginFrame();
-          this->Rays.runOnce(kernel, this->Order, keepGoing);
+          rays.runOnce(kernel, this->Order, keepGoing);
         },
         onMiss);
   }
 
   /// From here on every ray goes on until it has come to its end with the bricks that it asks for.
-  void begin() { this->Rays.begin(this->Order); }
+  void begin()
+  {
+    if (this->HasLayers) {
+      this->LayeredRays.begin(this->Order);
+    } else {
+      this->Rays.begin(this->Order);
+    }
+  }
   /// As far as `limit`, since begin.
   FrameStatistics goOn(const WorkLimit& limit, int maximumRequests,
                        const std::function<bool()>& keepGoing)
   {
     return this->counted(
-        [&](const MarchRays& kernel) {
-          this->Rays.goOn(kernel, limit, maximumRequests, keepGoing,
-                          [&] { return this->Pixels.statistics().samples > 0; });
+        [&](const auto& kernel, auto& rays) {
+          rays.goOn(kernel, limit, maximumRequests, keepGoing,
+                    [&] { return this->Pixels.statistics().samples > 0; });
         },
         OnMiss::Stop);
   }
-  bool done() const { return this->Rays.done(); }
+  bool done() const { return this->HasLayers ? this->LayeredRays.done() : this->Rays.done(); }
 
   void copyTo(const PassOutput& output) const
   {
@@ -70,17 +85,26 @@ public:
   }
 
 private:
-  /// Runs march(kernel); what was counted meanwhile.
-  template <class March> FrameStatistics counted(const March& march, OnMiss onMiss)
+  template <class Kernel> Kernel kernelFor(OnMiss onMiss) const
   {
-    const Timer timer;
-    MarchRays kernel{};
+    Kernel kernel{};
     kernel.scene = this->Scene.data();
     kernel.onMiss = onMiss;
     kernel.picture = this->Pixels.view();
     kernel.counts = this->Pixels.counts();
+    return kernel;
+  }
+
+  /// Runs march(kernel, its rays); what was counted meanwhile.
+  template <class March> FrameStatistics counted(const March& march, OnMiss onMiss)
+  {
+    const Timer timer;
     this->Pixels.clearCounts();
-    march(kernel);
+    if (this->HasLayers) {
+      march(this->kernelFor<MarchLayeredRays>(onMiss), this->LayeredRays);
+    } else {
+      march(this->kernelFor<MarchRays>(onMiss), this->Rays);
+    }
     FrameStatistics statistics = this->Pixels.statistics();
     statistics.marchSeconds = timer.seconds();
     return statistics;
@@ -92,6 +116,8 @@ private:
   typename Machine::template Array<RenderScene> Scene;
   Belongings<Machine> Arrays; ///< of the scene
   WindowedRays<Machine, Cache, RayProgress> Rays;
+  WindowedRays<Machine, Cache, LayeredProgress> LayeredRays; ///< instead
+  bool HasLayers = false;
   RayOrder Order{};
 };
 

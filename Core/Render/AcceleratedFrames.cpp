@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace inr {
 
@@ -16,13 +18,36 @@ namespace {
 /// A bit for each kind of picture that kernels make in a way of their own.
 std::uint32_t KindOf(const Frame& frame)
 {
+  const unsigned layered = frame.layers ? 1 : 0;
   if (frame.mode == RenderMode::PathTracing) {
-    return 1u << 31;
+    return 1u << (30 + layered);
   }
-  const auto mode = static_cast<unsigned>(frame.blending.mode);
+  constexpr unsigned modes = 6;
+  const unsigned mode = layered != 0 ? modes : static_cast<unsigned>(frame.blending.mode);
   const unsigned lit = frame.shading ? 1 : 0;
   const unsigned cropped = frame.cropping && !BoxOf(*frame.cropping).full ? 1 : 0;
   return 1u << (4 * mode + 2 * lit + cropped);
+}
+
+/// Every few pixels of the layers of a picture, for one of edge x edge pixels; null of none.
+std::shared_ptr<const TranslucentLayers> Shrunk(const Frame& frame, int edge)
+{
+  if (!frame.layers) {
+    return nullptr;
+  }
+  auto shrunk = std::make_shared<TranslucentLayers>();
+  for (const TranslucentLayers::Layer& layer : frame.layers->layers) {
+    TranslucentLayers::Layer few;
+    for (int k = 0; k < edge * edge; ++k) {
+      const std::int64_t x = std::int64_t{k % edge} * frame.width / edge;
+      const std::int64_t y = std::int64_t{k / edge} * frame.height / edge;
+      const auto pixel = static_cast<std::size_t>(y * frame.width + x);
+      few.depth.push_back(layer.depth[pixel]);
+      few.colors.push_back(layer.colors[pixel]);
+    }
+    shrunk->layers.push_back(std::move(few));
+  }
+  return shrunk;
 }
 
 int PixelsShown(const Image& rgba)
@@ -102,8 +127,7 @@ bool AcceleratedFrames::draws(const Frame& frame)
   if (this->Device && this->Field->failure()) { // of which somebody else was told
     this->Device.reset();
   }
-  const bool isKnown =
-      !frame.layers && !frame.preIntegration && frame.blending.mode != BlendMode::Isosurface;
+  const bool isKnown = !frame.preIntegration && frame.blending.mode != BlendMode::Isosurface;
   return this->Device && isKnown;
 }
 
@@ -161,6 +185,7 @@ void AcceleratedFrames::prove(const Frame& frame, double scale, const Draw& acce
   small.width = small.height = edge;
   small.samplesPerPixel = paths;
   small.opaqueDepth = nullptr;
+  small.layers = Shrunk(frame, edge);
   small.timeLimit = 0;
   small.levelOfDetailScale = std::max(frame.levelOfDetailScale, scale);
   small.errorTolerance.reset();

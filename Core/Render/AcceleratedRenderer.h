@@ -36,11 +36,11 @@ public:
   /// Copies what follows is drawn with. `majorants` are of `colors` and how frames are blended.
   virtual void setColors(const Majorants& majorants, const ColorLookup& colors) = 0;
 
-  /// As Renderer::render, of frames without translucent layers that are composited or projected.
+  /// As Renderer::render, of frames that are composited or projected.
   virtual FrameStatistics march(const MarchJob& job, const WorkLimit& limit,
                                 const PassOutput& output,
                                 const std::function<bool()>& keepGoing) = 0;
-  /// See TraceTiles; no translucent layers either.
+  /// See TraceTiles.
   virtual TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,
                                  const std::function<bool()>& keepGoing) = 0;
 

@@ -128,6 +128,26 @@ inline const std::vector<float>& SomeDepth()
   return depth;
 }
 
+/// Three surfaces behind one another: from in front of the volume, row by row, to behind it, and at
+/// some pixels none; from clear to opaque, column by column.
+inline void AddLayers(inr::Frame& frame)
+{
+  const int pixels = frame.width * frame.height;
+  auto made = std::make_shared<inr::TranslucentLayers>();
+  made->layers.resize(3);
+  for (int pixel = 0; pixel < pixels; ++pixel) {
+    const float rest = 0.5f - 0.6f * static_cast<float>(pixel) / static_cast<float>(pixels);
+    for (int k = 0; k < 3; ++k) {
+      const float behind = std::max(rest, 0.0f) / static_cast<float>(1 << k);
+      const float alpha = static_cast<float>((pixel + k) % 5) / 4.0f;
+      inr::TranslucentLayers::Layer& layer = made->layers[static_cast<std::size_t>(k)];
+      layer.depth.push_back(1.0f - behind);
+      layer.colors.push_back(alpha * glm::vec4(0.2f, 0.3f * static_cast<float>(k), 0.6f, 1.0f));
+    }
+  }
+  frame.layers = std::move(made);
+}
+
 inline inr::Light LightOf(inr::LightKind kind)
 {
   const glm::dvec3 dims(TrainedModel()->volume.dims);

@@ -12,6 +12,7 @@ inline std::vector<Case> MarchedCases()
   const auto lit = [](inr::Frame& frame) { Shade(frame); };
   const auto piece = [](inr::Frame& frame) { frame.piece = {PlaneAcross({0.1, 1, 0.4})}; };
   const auto opaque = [](inr::Frame& frame) { frame.unitDistance = 0.02; };
+  const auto layered = [](inr::Frame& frame) { AddLayers(frame); };
   const auto both = [](const auto& first, const auto& second) {
     return [=](inr::Frame& frame) {
       first(frame);
@@ -35,6 +36,10 @@ inline std::vector<Case> MarchedCases()
       {"Piece", piece},
       {"LitPiece", both(piece, lit)},
       {"BehindSomething", [](inr::Frame& frame) { frame.opaqueDepth = SomeDepth().data(); }},
+      {"Layered", layered},
+      {"LitLayered", both(layered, lit)},
+      {"LayeredPiece", both(layered, piece)},
+      {"LayeredOpaque", both(layered, opaque)},
       {"Opaque", opaque},
       {"LitOpaque", both(opaque, lit)},
       {"OneColumn", [](inr::Frame& frame) { frame.width = 1; }},

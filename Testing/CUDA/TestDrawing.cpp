@@ -36,6 +36,10 @@ std::vector<Case> Cases()
   std::vector<Case> cases = MarchedCases();
   cases.push_back({"FullResolution", [](inr::Frame& frame) { frame.levelOfDetailScale = 0; }});
   cases.push_back({"MixedLevels", [](inr::Frame& frame) { frame.levelOfDetailScale = 2.5; }});
+  cases.push_back({"LayeredMixedLevels", [](inr::Frame& frame) {
+                     frame.levelOfDetailScale = 2.5;
+                     AddLayers(frame);
+                   }});
   cases.push_back({"LitMixedLevels", [](inr::Frame& frame) {
                      frame.levelOfDetailScale = 2.5;
                      Shade(frame);
@@ -56,15 +60,20 @@ INSTANTIATE_TEST_SUITE_P(Kernels, Drawing, testing::Values(Place::Host, Place::G
 
 TEST_P(Drawing, GivesDepthsAndSamplesToo)
 {
-  const inr::Frame frame = PlainFrame();
-  const Drawn truth = Draw(frame, OptionsWith(nullptr));
-  const Drawn drawn = Draw(frame, OptionsWith(DeviceIn(GetParam())));
-  EXPECT_LT(LargestDifference(drawn.depth, truth.depth), 1e-4);
-  // The CPU leaves out samples where the voxels around show nothing.
-  for (std::size_t k = 0; k < truth.samples.pixels.size(); k += 2) {
-    ASSERT_GE(drawn.samples.pixels[k], truth.samples.pixels[k]) << k;
+  for (const bool layered : {false, true}) {
+    inr::Frame frame = PlainFrame();
+    if (layered) {
+      AddLayers(frame);
+    }
+    const Drawn truth = Draw(frame, OptionsWith(nullptr));
+    const Drawn drawn = Draw(frame, OptionsWith(DeviceIn(GetParam())));
+    EXPECT_LT(LargestDifference(drawn.depth, truth.depth), 1e-4);
+    // The CPU leaves out samples where the voxels around show nothing.
+    for (std::size_t k = 0; k < truth.samples.pixels.size(); k += 2) {
+      ASSERT_GE(drawn.samples.pixels[k], truth.samples.pixels[k]) << k;
+    }
+    EXPECT_EQ(drawn.statistics.samples, truth.statistics.samples + truth.statistics.hidden);
   }
-  EXPECT_EQ(drawn.statistics.samples, truth.statistics.samples + truth.statistics.hidden);
 }
 
 /// Paths meet the same random numbers; a few may part ways for rounding.
@@ -72,6 +81,9 @@ TEST_P(Drawing, TracesThePathsOfTheCpu)
 {
   for (const double scale : {0.0, 2.5}) {
     inr::Frame frame = PlainFrame();
+    if (scale > 0) {
+      AddLayers(frame);
+    }
     frame.mode = inr::RenderMode::PathTracing;
     frame.samplesPerPixel = 3;
     frame.levelOfDetailScale = scale;
@@ -111,9 +123,13 @@ TEST_P(Drawing, NeedsNoMoreThanTheSmallestCache)
 {
   HostLaunch backward;
   backward.backward = true;
-  for (const inr::RenderMode mode : Modes) {
+  for (const auto& [mode, layered] : std::vector<std::pair<inr::RenderMode, bool>>{
+           {Modes[0], false}, {Modes[0], true}, {Modes[1], false}}) {
     inr::Frame frame = FullResolution(mode);
     Shade(frame);
+    if (layered) {
+      AddLayers(frame);
+    }
     const inr::Image truth = DrawnInTheEnd(frame, RoomFor(GetParam(), 0));
     for (const std::int64_t bricks : {8, 16}) {
       EXPECT_EQ(DrawnInTheEnd(frame, RoomFor(GetParam(), bricks)).pixels, truth.pixels) << bricks;

@@ -120,6 +120,7 @@ TEST(NetworkDrawing, TracesThePathsOfTheCpu)
   frame.clippingPlanes = {PlaneAcross({1, 0.3, -0.2})};
   frame.opaqueDepth = SomeDepth().data();
   LightUp(frame);
+  AddLayers(frame);
   const Drawn truth = Draw(frame, Uncached(nullptr));
   ASSERT_TRUE(ShowsSomething(truth.rgba));
   const Drawn drawn = Draw(frame, Uncached(Device()));
@@ -268,8 +269,7 @@ INSTANTIATE_TEST_SUITE_P(
                            frame.blending.mode = inr::BlendMode::Isosurface;
                            frame.blending.isosurfaces = {0.3};
                          }},
-                    Case{"PreIntegration", [](inr::Frame& frame) { frame.preIntegration = true; }},
-                    Case{"Layers", AddLayerHalfWay}),
+                    Case{"PreIntegration", [](inr::Frame& frame) { frame.preIntegration = true; }}),
     [](const auto& info) { return info.param.name; });
 
 /// What kernels do not draw they infer, with and without a cache.

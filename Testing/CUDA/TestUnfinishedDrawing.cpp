@@ -57,14 +57,14 @@ void Blank(inr::Renderer& renderer, inr::Frame frame)
 /// have few samples, and many, of which they take some at a time.
 TEST(UnfinishedDrawing, ShowsWhatIsThere)
 {
-  for (const bool lit : {false, true}) {
+  for (const Case& kind :
+       {Case{"Plain", [](inr::Frame&) {}}, Case{"Lit", Shade}, Case{"Layered", AddLayers}}) {
     for (const double distance : {0.7, 0.05}) {
+      SCOPED_TRACE(kind.name);
       SCOPED_TRACE(distance);
       const auto with = [&](inr::Frame frame) {
         frame.sampleDistance = distance;
-        if (lit) {
-          Shade(frame);
-        }
+        kind.change(frame);
         return frame;
       };
       inr::Renderer renderer = RendererOf(SmallBricks(true));

@@ -39,19 +39,24 @@ private:
   INR_HOST_DEVICE void advance(std::uint32_t ray, std::int64_t pixel) const
   {
     const int width = this->scene->rays.width;
+    const auto x = static_cast<int>(pixel % width);
+    const auto y = static_cast<int>(pixel / width);
     RayProgress state;
     if (!this->begin) {
       state = this->progress[ray];
     }
-    RayMarch march(*this->scene, this->cache, this->onMiss, static_cast<int>(pixel % width),
-                   static_cast<int>(pixel / width), state);
+    const Ray way = this->scene->rays.ray(x, y);
+    const bool begins = this->begin && way.length > 0;
+    RayMarch march(*this->scene, this->cache, this->onMiss, way, x, y, state);
     if (march.advance()) {
       march.write(this->picture, pixel);
     } else {
       this->progress[ray] = state;
       this->lists.list(ray, true);
     }
-    this->counts->add(march.counts());
+    RayCounts counts = march.counts();
+    counts.rays = begins ? 1 : 0;
+    this->counts->add(counts);
   }
 };
 

@@ -37,20 +37,24 @@ struct MarchStages
 
   INR_HOST_DEVICE void begin(int x, int y, WaveRay& ray) const
   {
-    const inr::Ray way = this->scene->rays.ray(x, y);
-    const MarchSettings& settings = this->scene->settings;
-    const double jitter = JitterOf(settings, this->scene->streams.at(x, y));
-    new (&ray)
-        WaveRay{{way, SampleWalker(this->scene->majorants, settings, way, 0, 1, jitter)}, {}};
+    const inr::Ray way = this->scene->rays.ray(x, y, 0);
+    new (&ray) WaveRay{{way, this->samplesOf(way, x, y)}, {}};
   }
 
-  INR_HOST_DEVICE bool meets(const WaveRay& ray) const { return ray.state.ray.length > 0; }
+  INR_HOST_DEVICE bool meets(const WaveRay& ray) const
+  {
+    const RayView& rays = this->scene->rays;
+    return ray.state.ray.length > 0 ||
+           (rays.layers.any() && rays.ray(X(rays, ray), Y(rays, ray)).length > 0);
+  }
 
   INR_HOST_DEVICE int place(WaveRay& ray) const
   {
     ray.seen = 0;
     MarchState state = ray.state; // of which much changes often
-    ray.count = PlaceSamples(this->scene->settings, state, SamplesPerRound, ray.samples);
+    do {
+      ray.count = PlaceSamples(this->scene->settings, state, SamplesPerRound, ray.samples);
+    } while (ray.count == 0 && this->enterNextPart(ray, state));
     ray.state = state;
     return ray.count;
   }
@@ -73,20 +77,18 @@ struct MarchStages
     const bool goesOn = this->scene->settings.projector.projects()
                             ? this->project(ray, values.points + ray.first, counts)
                             : this->composite(ray, values, counts);
-    return goesOn && ray.count == SamplesPerRound; // fewer are a ray's last ones
+    // Fewer are the last ones of a ray, or of a part of its way.
+    return goesOn && (ray.count == SamplesPerRound || this->scene->rays.layers.any());
   }
 
   INR_HOST_DEVICE void write(const WaveRay& ray, std::int64_t pixel, RayCounts&) const
   {
     const MarchState& state = ray.state;
     const Projector& projector = this->scene->settings.projector;
-    const bool projects = projector.projects() && state.ray.length > 0;
-    const glm::vec4 color =
-        projects ? projector.color(this->scene->colors, state.projection) : glm::vec4(state.color);
-    reinterpret_cast<glm::vec4*>(this->picture.rgba)[pixel] = color;
-    const double t = projects && color.w >= 0.5f ? state.projection.at : state.halfOpaqueAt;
+    reinterpret_cast<glm::vec4*>(this->picture.rgba)[pixel] =
+        ColorOf(state, projector, this->scene->colors, this->scene->rays);
     this->picture.depth[pixel] =
-        t >= 0 ? static_cast<float>(this->scene->rays.windowDepth(state.ray.at(t))) : 1.0f;
+        static_cast<float>(DepthOf(state, projector, this->scene->colors, this->scene->rays));
   }
 
   /// Of those samples of which something is seen; those behind which a ray is opaque are the last.
@@ -127,6 +129,37 @@ struct MarchStages
   }
 
 private:
+  INR_HOST_DEVICE static int X(const RayView& rays, const WaveRay& ray)
+  {
+    return static_cast<int>(ray.pixel % rays.width);
+  }
+  INR_HOST_DEVICE static int Y(const RayView& rays, const WaveRay& ray)
+  {
+    return static_cast<int>(ray.pixel / rays.width);
+  }
+
+  INR_HOST_DEVICE SampleWalker samplesOf(const inr::Ray& way, int x, int y) const
+  {
+    const MarchSettings& settings = this->scene->settings;
+    return {this->scene->majorants,
+            settings,
+            way,
+            0,
+            1,
+            JitterOf(settings, this->scene->streams.at(x, y))};
+  }
+
+  /// Sends a ray on behind the next translucent layer; false when there is no more to see.
+  INR_HOST_DEVICE bool enterNextPart(const WaveRay& ray, MarchState& state) const
+  {
+    const RayView& rays = this->scene->rays;
+    if (!rays.layers.any() || !EnterNextPart(rays, ray.pixel, state)) {
+      return false;
+    }
+    state.samples = this->samplesOf(state.ray, X(rays, ray), Y(rays, ray));
+    return true;
+  }
+
   INR_HOST_DEVICE static int NeighborsOf(const WaveRay& ray)
   {
     int count = 0;

@@ -28,6 +28,16 @@ struct RayProgress
   std::int64_t levels = 0;  ///< that samples came from, summed up
 };
 
+/// How many samples a ray has taken, and the mean of the levels that they came from.
+INR_HOST_DEVICE inline void WriteSamples(const RayProgress& ray, const PictureView& picture,
+                                         std::int64_t pixel)
+{
+  const auto count = static_cast<double>(ray.light.samples());
+  picture.samples[2 * pixel] = static_cast<float>(count);
+  picture.samples[2 * pixel + 1] =
+      count > 0 ? static_cast<float>(static_cast<double>(ray.levels) / count) : -1.0f;
+}
+
 /// What happened while a ray came further.
 struct RayCounts
 {
@@ -39,6 +49,18 @@ struct RayCounts
   std::uint32_t scatterings = 0; ///< of paths that ended
   std::uint32_t lightSteps = 0;  ///< samples of these on the way to a light
   std::uint32_t levels = 0;      ///< a bit for each that samples came from
+
+  INR_HOST_DEVICE void add(const RayCounts& part)
+  {
+    this->rays += part.rays;
+    this->samples += part.samples;
+    this->missed += part.missed;
+    this->clamped += part.clamped;
+    this->gradients += part.gradients;
+    this->scatterings += part.scatterings;
+    this->lightSteps += part.lightSteps;
+    this->levels |= part.levels;
+  }
 };
 
 /// A ray while a thread has it. It comes from stretch to stretch, within one from brick to brick,
@@ -47,18 +69,16 @@ struct RayCounts
 class RayMarch
 {
 public:
-  INR_HOST_DEVICE RayMarch(const RenderScene& scene, const CacheView& cache, OnMiss onMiss, int x,
-                           int y, RayProgress& progress)
-      : Scene(scene), Cache(cache), Missing(onMiss), Way(scene.rays.ray(x, y)),
-        Stream(scene.streams.at(x, y)),
+  /// `way`: the ray through pixel (x, y), or a part of it.
+  INR_HOST_DEVICE RayMarch(const RenderScene& scene, const CacheView& cache, OnMiss onMiss,
+                           const Ray& way, int x, int y, RayProgress& progress)
+      : Scene(scene), Cache(cache), Missing(onMiss), Way(way), Stream(scene.streams.at(x, y)),
         Samples(scene.majorants, scene.settings, this->Way, scene.levelOfDetailScale,
                 cache.hierarchy.levels(), JitterOf(scene.settings, this->Stream)),
         State(progress)
   {
     if (progress.interval != RayProgress::NotBegun) {
       this->Samples.resume(progress.interval, progress.stretch, scene.settings);
-    } else {
-      this->Counts.rays = this->Way.length > 0 ? 1 : 0;
     }
     if (scene.lit) {
       this->ToEye = scene.shading.toEye(this->Way);
@@ -90,10 +110,7 @@ public:
         glm::vec4(glm::dvec4(glm::dvec3(light), 1.0 - light.w));
     picture.depth[pixel] =
         at >= 0 ? static_cast<float>(this->Scene.rays.windowDepth(this->Way.at(at))) : 1.0f;
-    const auto count = static_cast<double>(this->State.light.samples());
-    picture.samples[2 * pixel] = static_cast<float>(count);
-    picture.samples[2 * pixel + 1] =
-        count > 0 ? static_cast<float>(static_cast<double>(this->State.levels) / count) : -1.0f;
+    WriteSamples(this->State, picture, pixel);
   }
 
 private:
