@@ -40,7 +40,7 @@ public:
       this->Present = std::make_unique<Picture>(this->Where, this->Bricks, this->Most);
     }
     Picture& picture = *this->Present;
-    picture.setScene(job, colors, steps);
+    picture.setScene(job, colors, steps, this->Layers.of(this->Where, job.frame));
     const bool inTime = limit.isLimited() || this->Options.onlyWhatFits;
     const FrameStatistics statistics = inTime ? this->marchInTime(picture, limit, keepGoing)
                                               : this->marchComplete(picture, keepGoing);
@@ -175,7 +175,8 @@ private:
   Belongings<Machine> OfSteps;
   const float* Entries = nullptr;   ///< of them
   std::unique_ptr<Picture> Present; ///< the latest; null: to be made
-  bool Overfull = false;            ///< it was found to want more than the cache holds
+  LatestLayers<Machine> Layers;
+  bool Overfull = false; ///< it was found to want more than the cache holds
   std::optional<Refinement> Unfinished;
 };
 

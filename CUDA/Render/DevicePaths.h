@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "CUDA/Render/DeviceLayers.h"
 #include "CUDA/Render/DevicePicture.h"
 #include "CUDA/Render/DeviceScene.h"
 #include "CUDA/Render/Kernels/PathKernels.h"
@@ -74,7 +75,8 @@ private:
     this->Waiting.reset();
     const PathScene& given = round.tracer.scene();
     this->OfRound.clear();
-    const PathScene scene = SceneOn(this->Where, given, colors, this->OfRound);
+    const LayersView layers = ViewOf(this->Layers.of(this->Where, round.tracer.frame()));
+    const PathScene scene = SceneOn(this->Where, given, colors, layers, this->OfRound);
     this->Where.toMachine(this->Scene.data(), &scene, 1);
     this->Picture.resize(std::int64_t{given.rays.width} * given.rays.height);
     const std::vector<std::uint32_t> pixels = PixelsOf(round);
@@ -157,6 +159,7 @@ private:
   DevicePicture<Machine> Picture;
   typename Machine::template Array<PathScene> Scene;
   WindowedRays<Machine, Cache, PathProgress> Paths;
+  LatestLayers<Machine> Layers;
   Belongings<Machine> OfRound;
   RayOrder Order{};                    ///< of the round
   std::uint32_t* TileMisses = nullptr; ///< of all tiles of the picture

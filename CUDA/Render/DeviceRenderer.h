@@ -32,6 +32,8 @@ public:
         Paths(this->Shared->machine, this->Shared->cache, options, sizes.paths)
   {}
 
+  bool draws(const Frame& frame) const override { return TakesLayersOf(frame); }
+
   void setColors(const Majorants& majorants, const ColorLookup& colors) override
   {
     const typename Store::Turn turn(*this->Shared);

@@ -6,44 +6,56 @@
 #include "CUDA/Render/DeviceColors.h"
 #include "CUDA/Render/Kernels/RenderScene.h"
 #include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/PreIntegratedColors.h"
 
 #include <cstdint>
-#include <vector>
 
 namespace inr {
 namespace cuda {
 
-/// A frame's rays. `arrays` must outlive them.
+/// A frame's rays. `layers`: there already. `arrays` must outlive them.
 template <class Machine>
-RayView RaysOn(Machine& machine, const RayView& given, Belongings<Machine>& arrays)
+RayView RaysOn(Machine& machine, const RayView& given, const LayersView& layers,
+               Belongings<Machine>& arrays)
 {
-  const std::int64_t pixels = std::int64_t{given.width} * given.height;
   RayView rays = given;
-  rays.opaqueDepth = arrays.put(machine, given.opaqueDepth, pixels);
+  rays.opaqueDepth =
+      arrays.put(machine, given.opaqueDepth, std::int64_t{given.width} * given.height);
   rays.planes = arrays.put(machine, given.planes, given.planeCount);
   rays.piece = arrays.put(machine, given.piece, given.pieceCount);
-  std::vector<SurfaceLayer> layers;
-  for (int k = 0; k < given.layers.count; ++k) {
-    const SurfaceLayer& layer = given.layers.layers[k];
-    layers.push_back(
-        {arrays.put(machine, layer.depth, pixels), arrays.put(machine, layer.colors, pixels)});
-  }
-  rays.layers.layers = arrays.put(machine, layers.data(), given.layers.count);
+  rays.layers = layers;
   return rays;
+}
+
+/// What a frame's rays look for. `colors`: there already.
+template <class Machine>
+MarchSettings SettingsOn(Machine& machine, const MarchSettings& given, const ColorLookup& colors,
+                         Belongings<Machine>& arrays)
+{
+  MarchSettings settings = given;
+  SurfaceLookup& surfaces = settings.projector.surfaces;
+  surfaces.values = arrays.put(machine, surfaces.values, surfaces.count);
+  if (given.preIntegrated != nullptr) {
+    const PreIntegratedLookup& lookup = *given.preIntegrated;
+    const PreIntegratedLookup copy =
+        lookup.with(colors, arrays.put(machine, lookup.nodes(), lookup.nodeCount()));
+    settings.preIntegrated = arrays.put(machine, &copy, 1);
+  }
+  return settings;
 }
 
 /// Of rays that are marched, but for the table of steps. `arrays` must outlive the scene.
 template <class Machine>
 RenderScene SceneOn(Machine& machine, const MarchJob& job, const DeviceColors<Machine>& colors,
-                    Belongings<Machine>& arrays)
+                    const LayersView& layers, Belongings<Machine>& arrays)
 {
   const Frame& frame = job.frame;
   RenderScene scene{};
-  scene.rays = RaysOn(machine, job.geometry.view(), arrays);
+  scene.rays = RaysOn(machine, job.geometry.view(), layers, arrays);
   scene.streams = StreamsOf(frame);
   scene.majorants = colors.majorants();
   scene.colors = colors.lookup();
-  scene.settings = job.settings;
+  scene.settings = SettingsOn(machine, job.settings, scene.colors, arrays);
   scene.levelOfDetailScale = frame.levelOfDetailScale;
   scene.lit = job.shading != nullptr;
   if (scene.lit) {
@@ -58,10 +70,10 @@ RenderScene SceneOn(Machine& machine, const MarchJob& job, const DeviceColors<Ma
 /// Of paths.
 template <class Machine>
 PathScene SceneOn(Machine& machine, const PathScene& given, const DeviceColors<Machine>& colors,
-                  Belongings<Machine>& arrays)
+                  const LayersView& layers, Belongings<Machine>& arrays)
 {
   PathScene scene = given;
-  scene.rays = RaysOn(machine, given.rays, arrays);
+  scene.rays = RaysOn(machine, given.rays, layers, arrays);
   scene.inner =
       given.inner.with(arrays.put(machine, given.inner.planes(), given.inner.planeCount()));
   scene.majorants = colors.majorants();

@@ -7,6 +7,7 @@
 namespace inr {
 namespace cuda {
 
+INR_INSTANTIATE(MarchBothEnds);
 INR_INSTANTIATE(MarchLayeredRays);
 INR_INSTANTIATE(MarchRays);
 INR_INSTANTIATE(TracePaths);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "CUDA/Render/DeviceLayers.h"
 #include "CUDA/Render/DevicePicture.h"
 #include "CUDA/Render/DeviceScene.h"
 #include "CUDA/Render/Kernels/LayeredMarch.h"
@@ -12,6 +13,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 namespace inr {
 namespace cuda {
@@ -23,23 +28,26 @@ public:
   /// `most`: rays that wait at once.
   MarchedPicture(Machine& machine, Cache& cache, std::int64_t most)
       : Where(machine), Bricks(cache), Pixels(machine),
-        Scene(machine.template allocate<RenderScene>(1)), Rays(machine, cache, most),
-        LayeredRays(machine, cache, most)
+        Scene(machine.template allocate<RenderScene>(1)), Most(most),
+        Marched(std::in_place_type<RaysOf<MarchRays>>, machine, cache, most)
   {}
 
   /// A frame's scene. `steps`: its entries are on the machine, and outlive the picture.
-  void setScene(const MarchJob& job, const DeviceColors<Machine>& colors, const StepLookup& steps)
+  void setScene(const MarchJob& job, const DeviceColors<Machine>& colors, const StepLookup& steps,
+                std::shared_ptr<const DeviceLayers<Machine>> layers)
   {
+    if (job.settings.looksAtBothEnds()) {
+      this->template marchBy<MarchBothEnds>();
+    } else if (layers) {
+      this->template marchBy<MarchLayeredRays>();
+    } else {
+      this->template marchBy<MarchRays>();
+    }
     this->Arrays.clear();
-    RenderScene scene = SceneOn(this->Where, job, colors, this->Arrays);
+    this->Layers = std::move(layers);
+    RenderScene scene = SceneOn(this->Where, job, colors, ViewOf(this->Layers), this->Arrays);
     scene.steps = steps;
     this->Where.toMachine(this->Scene.data(), &scene, 1);
-    this->HasLayers = scene.rays.layers.any();
-    if (this->HasLayers) {
-      this->Rays.release();
-    } else {
-      this->LayeredRays.release();
-    }
     this->Order = {job.frame.width, job.frame.height, nullptr, 0};
     this->Pixels.resize(std::int64_t{job.frame.width} * job.frame.height);
   }
@@ -58,11 +66,7 @@ public:
   /// From here on every ray goes on until it has come to its end with the bricks that it asks for.
   void begin()
   {
-    if (this->HasLayers) {
-      this->LayeredRays.begin(this->Order);
-    } else {
-      this->Rays.begin(this->Order);
-    }
+    std::visit([&](auto& rays) { rays.begin(this->Order); }, this->Marched);
   }
   /// As far as `limit`, since begin.
   FrameStatistics goOn(const WorkLimit& limit, int maximumRequests,
@@ -75,7 +79,10 @@ public:
         },
         OnMiss::Stop);
   }
-  bool done() const { return this->HasLayers ? this->LayeredRays.done() : this->Rays.done(); }
+  bool done() const
+  {
+    return std::visit([](const auto& rays) { return rays.done(); }, this->Marched);
+  }
 
   void copyTo(const PassOutput& output) const
   {
@@ -85,6 +92,22 @@ public:
   }
 
 private:
+  /// Rays that a kernel marches.
+  template <class MarchKernel>
+  struct RaysOf : WindowedRays<Machine, Cache, typename MarchKernel::Progress>
+  {
+    using Kernel = MarchKernel;
+    using WindowedRays<Machine, Cache, typename MarchKernel::Progress>::WindowedRays;
+  };
+
+  /// Gives the memory of others back.
+  template <class Kernel> void marchBy()
+  {
+    if (!std::holds_alternative<RaysOf<Kernel>>(this->Marched)) {
+      this->Marched.template emplace<RaysOf<Kernel>>(this->Where, this->Bricks, this->Most);
+    }
+  }
+
   template <class Kernel> Kernel kernelFor(OnMiss onMiss) const
   {
     Kernel kernel{};
@@ -100,11 +123,12 @@ private:
   {
     const Timer timer;
     this->Pixels.clearCounts();
-    if (this->HasLayers) {
-      march(this->kernelFor<MarchLayeredRays>(onMiss), this->LayeredRays);
-    } else {
-      march(this->kernelFor<MarchRays>(onMiss), this->Rays);
-    }
+    std::visit(
+        [&](auto& rays) {
+          using Kernel = typename std::decay_t<decltype(rays)>::Kernel;
+          march(this->kernelFor<Kernel>(onMiss), rays);
+        },
+        this->Marched);
     FrameStatistics statistics = this->Pixels.statistics();
     statistics.marchSeconds = timer.seconds();
     return statistics;
@@ -114,10 +138,10 @@ private:
   Cache& Bricks;
   DevicePicture<Machine> Pixels;
   typename Machine::template Array<RenderScene> Scene;
-  Belongings<Machine> Arrays; ///< of the scene
-  WindowedRays<Machine, Cache, RayProgress> Rays;
-  WindowedRays<Machine, Cache, LayeredProgress> LayeredRays; ///< instead
-  bool HasLayers = false;
+  Belongings<Machine> Arrays; ///< of the scene, and
+  std::shared_ptr<const DeviceLayers<Machine>> Layers;
+  std::int64_t Most;
+  std::variant<RaysOf<MarchRays>, RaysOf<MarchLayeredRays>, RaysOf<MarchBothEnds>> Marched;
   RayOrder Order{};
 };
 

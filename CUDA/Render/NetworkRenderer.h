@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "CUDA/Render/DeviceLayers.h"
 #include "CUDA/Render/DevicePicture.h"
 #include "CUDA/Render/DeviceScene.h"
 #include "CUDA/Render/DeviceWave.h"
@@ -38,6 +39,13 @@ public:
         Marched(this->Own, this->Network, sizes.rays), Traced(this->Own, this->Network, sizes.paths)
   {}
 
+  /// What is looked at at both ends of samples would take rounds of another kind.
+  bool draws(const Frame& frame) const override
+  {
+    return TakesLayersOf(frame) && !frame.preIntegration &&
+           frame.blending.mode != BlendMode::Isosurface;
+  }
+
   void setColors(const Majorants& majorants, const ColorLookup& colors) override
   {
     this->Colors.set(this->Own, majorants, colors);
@@ -48,7 +56,8 @@ public:
   {
     const Timer timer;
     this->OfFrame.clear();
-    const RenderScene scene = SceneOn(this->Own, job, this->Colors, this->OfFrame);
+    const RenderScene scene = SceneOn(this->Own, job, this->Colors,
+                                      ViewOf(this->Layers.of(this->Own, job.frame)), this->OfFrame);
     this->Own.toMachine(this->MarchedScene.data(), &scene, 1);
     this->begin(job.frame.width, job.frame.height);
     this->Traced.release();
@@ -68,7 +77,9 @@ public:
   {
     const Timer timer;
     this->OfFrame.clear();
-    const PathScene scene = SceneOn(this->Own, round.tracer.scene(), this->Colors, this->OfFrame);
+    const PathScene scene =
+        SceneOn(this->Own, round.tracer.scene(), this->Colors,
+                ViewOf(this->Layers.of(this->Own, round.tracer.frame())), this->OfFrame);
     this->Own.toMachine(this->TracedScene.data(), &scene, 1);
     this->begin(scene.rays.width, scene.rays.height);
     const std::vector<std::uint32_t> pixels = PixelsOf(round);
@@ -100,6 +111,7 @@ private:
   DeviceColors<Machine> Colors;
   DevicePicture<Machine> Picture;
   Belongings<Machine> OfFrame;
+  LatestLayers<Machine> Layers;
   typename Machine::template Array<RenderScene> MarchedScene;
   typename Machine::template Array<PathScene> TracedScene;
   DeviceWave<Machine, Inference, MarchStages> Marched;

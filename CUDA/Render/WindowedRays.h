@@ -44,12 +44,6 @@ public:
     this->First = 0;
     this->beginWindow();
   }
-  /// Gives the memory back; none may be on their way.
-  void release()
-  {
-    this->Turns.reset();
-    this->Room.reset();
-  }
   bool done() const { return this->First >= this->Order.rays(); } ///< all have come to their end
 
   /// Goes on by such a kernel with OnMiss::Stop, with every brick that rays stop for, until all

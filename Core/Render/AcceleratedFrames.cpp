@@ -16,17 +16,17 @@ namespace inr {
 namespace {
 
 /// A bit for each kind of picture that kernels make in a way of their own.
-std::uint32_t KindOf(const Frame& frame)
+std::uint64_t KindOf(const Frame& frame)
 {
-  const unsigned layered = frame.layers ? 1 : 0;
+  const int layered = frame.layers && frame.layers->any() ? 1 : 0;
   if (frame.mode == RenderMode::PathTracing) {
-    return 1u << (30 + layered);
+    return std::uint64_t{1} << (62 + layered);
   }
-  constexpr unsigned modes = 6;
-  const unsigned mode = layered != 0 ? modes : static_cast<unsigned>(frame.blending.mode);
-  const unsigned lit = frame.shading ? 1 : 0;
-  const unsigned cropped = frame.cropping && !BoxOf(*frame.cropping).full ? 1 : 0;
-  return 1u << (4 * mode + 2 * lit + cropped);
+  constexpr int modes = static_cast<int>(BlendMode::Isosurface) + 1;
+  const int mode = frame.preIntegration ? modes : static_cast<int>(frame.blending.mode);
+  const int lit = frame.shading ? 1 : 0;
+  const int cropped = frame.cropping && !BoxOf(*frame.cropping).full ? 1 : 0;
+  return std::uint64_t{1} << (8 * mode + 4 * layered + 2 * lit + cropped);
 }
 
 /// Every few pixels of the layers of a picture, for one of edge x edge pixels; null of none.
@@ -101,6 +101,19 @@ double PartOfOthers(const Image& drawn, const Image& truth)
   return shown >= FewestPixels ? others / shown : 0;
 }
 
+/// Whether a picture would be another one without its layers, if it has any.
+bool ShowsLayers(const Frame& frame, const Image& picture, const AcceleratedFrames::Draw& draw)
+{
+  if (!frame.layers) {
+    return true;
+  }
+  Frame bare = frame;
+  bare.layers = nullptr;
+  Image without(frame.width, frame.height, 4);
+  draw(bare, {without, nullptr});
+  return without.pixels != picture.pixels;
+}
+
 /// What is wrong with a picture, beyond rounding; empty if nothing is.
 std::string WhatDiffers(RenderMode mode, Image drawn, Image truth)
 {
@@ -127,8 +140,7 @@ bool AcceleratedFrames::draws(const Frame& frame)
   if (this->Device && this->Field->failure()) { // of which somebody else was told
     this->Device.reset();
   }
-  const bool isKnown = !frame.preIntegration && frame.blending.mode != BlendMode::Isosurface;
-  return this->Device && isKnown;
+  return this->Device && this->Device->draws(frame);
 }
 
 bool AcceleratedFrames::succeeds(const std::function<void()>& call)
@@ -177,7 +189,7 @@ void AcceleratedFrames::prove(const Frame& frame, double scale, const Draw& acce
 {
   constexpr int edge = 24; // pixels: little has to be inferred for them
   constexpr int paths = 4; // through each
-  const std::uint32_t kind = KindOf(frame);
+  const std::uint64_t kind = KindOf(frame);
   if ((this->Proven & kind) != 0 || !this->draws(frame)) {
     return;
   }
@@ -196,13 +208,14 @@ void AcceleratedFrames::prove(const Frame& frame, double scale, const Draw& acce
   }
   Image truth(edge, edge, 4);
   cpu(small, {truth, nullptr});
+  const int fewest = small.mode == RenderMode::PathTracing ? FewestPixels : 1;
+  const bool proves = PixelsShown(truth) >= fewest && ShowsLayers(small, truth, cpu);
   this->succeeds([&] {
     const std::string difference = WhatDiffers(small.mode, drawn, truth);
     if (!difference.empty()) {
       throw Error(ErrorCode::Device, difference);
     }
-    const int fewest = small.mode == RenderMode::PathTracing ? FewestPixels : 1;
-    if (PixelsShown(truth) >= fewest) { // else it proves nothing
+    if (proves) {
       this->Proven |= kind;
     }
   });

@@ -22,8 +22,6 @@ public:
       : Field(std::move(field)), Device(std::move(renderer))
   {}
 
-  /// Whether it draws such a frame: what is composited or projected, or traced, without translucent
-  /// layers or pre-integration.
   bool draws(const Frame& frame);
   /// See AcceleratedRenderer.
   void setColors(const Majorants& majorants, const ColorLookup& colors);
@@ -51,7 +49,7 @@ private:
 
   std::shared_ptr<AcceleratedField> Field;
   std::shared_ptr<AcceleratedRenderer> Device;
-  std::uint32_t Proven = 0; ///< kinds of pictures, a bit for each
+  std::uint64_t Proven = 0; ///< kinds of pictures, a bit for each
 };
 
 } // namespace inr

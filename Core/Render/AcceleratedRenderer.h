@@ -33,10 +33,12 @@ class AcceleratedRenderer
 public:
   virtual ~AcceleratedRenderer() = default;
 
+  /// Whether it draws such frames.
+  virtual bool draws(const Frame& frame) const = 0;
   /// Copies what follows is drawn with. `majorants` are of `colors` and how frames are blended.
   virtual void setColors(const Majorants& majorants, const ColorLookup& colors) = 0;
 
-  /// As Renderer::render, of frames that are composited or projected.
+  /// As Renderer::render, of frames that it draws.
   virtual FrameStatistics march(const MarchJob& job, const WorkLimit& limit,
                                 const PassOutput& output,
                                 const std::function<bool()>& keepGoing) = 0;

@@ -40,12 +40,11 @@ bool CachedRay::enterNextPart(const CachedScene& scene)
   const RayView& rays = scene.geometry.view();
   const double* const rgb = this->color.rgb;
   const auto transmittance = static_cast<float>(this->color.transmittance);
-  const bool goesOn = this->layered.enterNextPart(rays.layers, rays.pixel(this->x, this->y),
-                                                  glm::vec3(rgb[0], rgb[1], rgb[2]), transmittance);
-  if (!goesOn || transmittance <= OpaqueTransmittance) {
+  if (!this->layered.enterNextPart(rays, rays.pixel(this->x, this->y), this->ray,
+                                   glm::vec3(rgb[0], rgb[1], rgb[2]), transmittance,
+                                   this->halfOpaqueAt)) {
     return false;
   }
-  this->layered.noteHalfOpaque(rays, this->ray, this->halfOpaqueAt);
   this->ray = rays.ray(this->x, this->y, this->layered.part);
   this->samples = SamplesOf(scene, this->ray, this->stream, this->x, this->y);
   this->color.ofMany = this->color.ofMany || this->samples.end() > ManySamples;

@@ -2,19 +2,12 @@
 #pragma once
 
 #include "Core/Render/CachedScene.h"
+#include "Core/Render/KnownValue.h"
 #include "Core/Render/LayeredWay.h"
 
 #include <cstdint>
 
 namespace inr {
-
-/// A value of the field as a level has it.
-struct KnownValue
-{
-  std::int64_t at = -2; ///< place on the ray, of the end of an interval of its lattice; -2 = none
-  int level = -1;
-  float value = 0;
-};
 
 /// Samples and, of each, the level that it came from, summed up.
 struct SampleTally

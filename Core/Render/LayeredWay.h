@@ -10,6 +10,10 @@
 
 namespace inr {
 
+/// Opacity at which the rest of a ray no longer shows.
+constexpr float OpaqueEnough = 0.999f;
+constexpr float OpaqueTransmittance = 1.0f - OpaqueEnough;
+
 /// What a ray has gathered that goes from layer to layer: the volume's light as it comes through.
 class LayeredLight
 {
@@ -41,24 +45,30 @@ struct LayeredWay
 {
   int part = 0; ///< how many layers lie behind
   LayeredLight light;
-  double halfOpaqueDepth = -1; ///< in window space, once on another part of the way; -1 = not yet
+  double halfOpaqueDepth = -1; ///< in window space, of parts that have ended; -1 = not yet
 
-  /// At the end of a part of the way: takes in what the ray has gathered so far, premultiplied
-  /// light and the transmittance, and goes on behind the layer there. False where there is none, or
-  /// where nothing behind it is seen.
-  INR_HOST_DEVICE bool enterNextPart(const LayersView& layers, std::int64_t pixel,
-                                     const glm::vec3& color, float transmittance)
+  /// At the end of a part of the way, which is `ray`: takes in what the ray has gathered so far,
+  /// premultiplied light and the transmittance, and goes on behind the layer there. False where
+  /// there is none, or where nothing behind it is seen. `halfOpaqueAt`: t on that part or one
+  /// before; -1 = not yet.
+  INR_HOST_DEVICE bool enterNextPart(const RayView& rays, std::int64_t pixel, const Ray& ray,
+                                     const glm::vec3& color, float transmittance,
+                                     double halfOpaqueAt)
   {
     this->light.gather(color, transmittance);
-    if (layers.depth(this->part, pixel) >= 1.0f) {
+    this->noteHalfOpaque(rays, ray, halfOpaqueAt);
+    if (transmittance <= OpaqueTransmittance || rays.layers.depth(this->part, pixel) >= 1.0f) {
       return false;
     }
-    this->light.pass(layers.color(this->part, pixel));
+    this->light.pass(rays.layers.color(this->part, pixel));
+    if (this->light.passes() <= 0.0f) {
+      return false;
+    }
     ++this->part;
-    return this->light.passes() > 0.0f;
+    return true;
   }
 
-  /// Notes where light was halved, at t = `at` of the part that ends, if it was there.
+private:
   INR_HOST_DEVICE void noteHalfOpaque(const RayView& rays, const Ray& ray, double at)
   {
     if (at >= 0 && this->halfOpaqueDepth < 0) {

@@ -127,7 +127,7 @@ public:
     for (int k = 0; k < this->Place.width * this->Place.height; ++k) {
       const PathState& path = this->Paths[static_cast<std::size_t>(k)];
       const glm::vec4 color =
-          ColorOf(this->Scene, path, this->Scene.rays.pixel(this->x(k), this->y(k)));
+          ShownColor(this->Scene, path, this->Scene.rays.pixel(this->x(k), this->y(k)));
       std::copy_n(&color.x, 4, rgba.pixel(this->x(k), this->y(k)));
       if (depth != nullptr) {
         *depth->pixel(this->x(k), this->y(k)) = path.collided ? this->depthOf(path) : 0.0f;

@@ -331,8 +331,8 @@ INR_HOST_DEVICE inline bool Collide(const PathScene& scene, PathState& path, flo
 
 /// Of a path that has ended, premultiplied, as the camera sees it: through the translucent surfaces
 /// in front of its first collision.
-INR_HOST_DEVICE inline glm::vec4 ColorOf(const PathScene& scene, const PathState& path,
-                                         std::int64_t pixel)
+INR_HOST_DEVICE inline glm::vec4 ShownColor(const PathScene& scene, const PathState& path,
+                                            std::int64_t pixel)
 {
   const float alpha = path.collided ? 1.0f : 0.0f;
   if (!path.collided || !scene.rays.layers.any()) {

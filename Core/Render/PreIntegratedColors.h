@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/HostDevice.h"
 #include "Core/Render/BrickKernel.h"
 #include "Core/Render/ColorTable.h"
 
@@ -24,7 +25,7 @@ public:
   /// either order; where they are equal that is ColorLookup::at. A stretch is opaque if
   /// any part of it to speak of is: its mean extinction is OpaqueFrom then. Linear means in
   /// ColorLookup::coordinate, so in the logarithm where that is taken.
-  glm::vec4 between(float first, float last) const
+  INR_HOST_DEVICE glm::vec4 between(float first, float last) const
   {
     const glm::dvec4 density = this->meanBetween(this->positionOf(first), this->positionOf(last));
     if (!(density.w > 0.0)) {
@@ -39,15 +40,26 @@ public:
   /// Values are to be those of ColorLookup::coordinate for a logarithmic colour table.
   IntegralLookup kernelLookup(double step) const;
 
+  /// For copies: the nodes, and the same of such copies and of a copy of the colours.
+  const IntegralNode* nodes() const { return this->Nodes; }
+  int nodeCount() const { return this->Last + 2; }
+  PreIntegratedLookup with(const ColorLookup& colors, const IntegralNode* nodes) const
+  {
+    PreIntegratedLookup copy = *this;
+    copy.Colors = colors;
+    copy.Nodes = nodes;
+    return copy;
+  }
+
 private:
   friend class PreIntegratedColors;
 
-  double positionOf(float value) const
+  INR_HOST_DEVICE double positionOf(float value) const
   {
     return this->NodesPerEntry * static_cast<double>(this->Colors.coordinate(value));
   }
 
-  const IntegralNode& nodeAt(double position) const
+  INR_HOST_DEVICE const IntegralNode& nodeAt(double position) const
   {
     if (!(position >= 0.0)) { // what is no number, too
       return this->Nodes[0];
@@ -59,7 +71,7 @@ private:
     return this->Nodes[(node < this->Last ? node : this->Last - 1) + 1];
   }
 
-  glm::dvec4 meanBetween(double first, double last) const
+  INR_HOST_DEVICE glm::dvec4 meanBetween(double first, double last) const
   {
     const IntegralNode& a = this->nodeAt(first);
     const IntegralNode& b = this->nodeAt(last);
@@ -79,7 +91,7 @@ private:
     glm::dvec4 density;
     glm::dvec4 integral;
   };
-  Reached reach(const IntegralNode& node, double position) const
+  INR_HOST_DEVICE Reached reach(const IntegralNode& node, double position) const
   {
     const double way = position - static_cast<double>(&node - this->Nodes - 1);
     const glm::dvec4 begin = glm::make_vec4(node.density);

@@ -72,10 +72,6 @@ struct MarchSample
   double end;
 };
 
-/// Opacity at which the rest of a ray no longer shows.
-constexpr float OpaqueEnough = 0.999f;
-constexpr float OpaqueTransmittance = 1.0f - OpaqueEnough;
-
 /// By which the part of a ray is halved where a surface was passed.
 constexpr int Bisections = 10;
 
@@ -155,24 +151,20 @@ INR_HOST_DEVICE inline void Composite(const glm::vec4& entry, const MarchSample&
 
 /// Sends a ray on behind the translucent layer at its end, but for its samples; false when there is
 /// no more to see.
-INR_HOST_DEVICE inline bool EnterNextPart(const RayView& rays, std::int64_t pixel,
-                                          MarchState& state)
+INR_HOST_DEVICE inline bool EnterNextPart(const RayView& rays, int x, int y, MarchState& state)
 {
-  if (!state.layered.enterNextPart(rays.layers, pixel, glm::vec3(state.color),
-                                   static_cast<float>(1.0 - state.color.w))) {
+  if (!state.layered.enterNextPart(rays, rays.pixel(x, y), state.ray, glm::vec3(state.color),
+                                   static_cast<float>(1.0 - state.color.w), state.halfOpaqueAt)) {
     return false;
   }
-  state.layered.noteHalfOpaque(rays, state.ray, state.halfOpaqueAt);
-  const auto x = static_cast<int>(pixel % rays.width);
-  const auto y = static_cast<int>(pixel / rays.width);
   state.ray = rays.ray(x, y, state.layered.part);
   state.knownAt = -1;
   return true;
 }
 
 /// What a ray that has ended shows, premultiplied.
-INR_HOST_DEVICE inline glm::vec4 ColorOf(const MarchState& state, const Projector& projector,
-                                         const ColorLookup& colors, const RayView& rays)
+INR_HOST_DEVICE inline glm::vec4 ShownColor(const MarchState& state, const Projector& projector,
+                                            const ColorLookup& colors, const RayView& rays)
 {
   if (rays.layers.any()) {
     LayeredLight light = state.layered.light;
@@ -184,13 +176,13 @@ INR_HOST_DEVICE inline glm::vec4 ColorOf(const MarchState& state, const Projecto
 }
 
 /// Window-space depth where it was half opaque, or of what it projects; 1 = nowhere.
-INR_HOST_DEVICE inline double DepthOf(const MarchState& state, const Projector& projector,
-                                      const ColorLookup& colors, const RayView& rays)
+INR_HOST_DEVICE inline double ShownDepth(const MarchState& state, const Projector& projector,
+                                         const ColorLookup& colors, const RayView& rays)
 {
   if (state.layered.halfOpaqueDepth >= 0) {
     return state.layered.halfOpaqueDepth;
   }
-  const bool shows = projector.projects() && ColorOf(state, projector, colors, rays).w >= 0.5f;
+  const bool shows = projector.projects() && ShownColor(state, projector, colors, rays).w >= 0.5f;
   const double t = shows ? state.projection.at : state.halfOpaqueAt;
   return t >= 0 ? rays.windowDepth(state.ray.at(t)) : 1.0;
 }

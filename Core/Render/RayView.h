@@ -91,6 +91,14 @@ struct RayView
   {
     return std::int64_t{y} * this->width + x;
   }
+  INR_HOST_DEVICE int column(std::int64_t pixel) const
+  {
+    return static_cast<int>(pixel % this->width);
+  }
+  INR_HOST_DEVICE int row(std::int64_t pixel) const
+  {
+    return static_cast<int>(pixel / this->width);
+  }
 
   /// See RayGeometry.
   INR_HOST_DEVICE Ray ray(int x, int y) const

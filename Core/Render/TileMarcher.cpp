@@ -132,7 +132,7 @@ bool TileMarcher::enterNextPart(int k, bool goesOn)
   const int x = this->Place.x + k % this->Place.width;
   const int y = this->Place.y + k / this->Place.width;
   const RayView& rays = this->Scene.geometry.view();
-  if (!EnterNextPart(rays, rays.pixel(x, y), state)) {
+  if (!EnterNextPart(rays, x, y, state)) {
     return false;
   }
   this->Statistics.work.cells += state.samples.visited();
@@ -149,10 +149,11 @@ void TileMarcher::writePixels(const Tile& tile, Image& rgba, Image* depth) const
     const MarchState& state = this->Rays[static_cast<std::size_t>(k)];
     const Projector& projector = this->Scene.settings.projector;
     const RayView& rays = this->Scene.geometry.view();
-    const glm::vec4 color = ColorOf(state, projector, this->Scene.colors, rays);
+    const glm::vec4 color = ShownColor(state, projector, this->Scene.colors, rays);
     std::copy_n(&color.x, 4, rgba.pixel(x, y));
     if (depth != nullptr) {
-      *depth->pixel(x, y) = static_cast<float>(DepthOf(state, projector, this->Scene.colors, rays));
+      *depth->pixel(x, y) =
+          static_cast<float>(ShownDepth(state, projector, this->Scene.colors, rays));
     }
   }
 }

@@ -31,6 +31,7 @@ struct TranslucentLayers
   std::vector<Layer> layers;
 
   int count() const { return static_cast<int>(this->layers.size()); }
+  bool any() const { return !this->layers.empty(); }
   /// See LayersView.
   float depth(int layer, std::size_t pixel) const
   {

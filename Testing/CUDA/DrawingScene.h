@@ -128,8 +128,17 @@ inline const std::vector<float>& SomeDepth()
   return depth;
 }
 
-/// Three surfaces behind one another: from in front of the volume, row by row, to behind it, and at
-/// some pixels none; from clear to opaque, column by column.
+inline void ShowSurfaces(inr::Frame& frame)
+{
+  const inr::VolumeInfo& volume = TrainedModel()->volume;
+  frame.blending.mode = inr::BlendMode::Isosurface;
+  for (const double value : {0.3, 0.45, 0.6}) {
+    frame.blending.isosurfaces.push_back(volume.low + value * (volume.high - volume.low));
+  }
+}
+
+/// Three surfaces behind one another: from in front of the volume, row by row, to behind it, and in
+/// the last rows none; clear at one pixel, half clear or opaque at the next ones.
 inline void AddLayers(inr::Frame& frame)
 {
   const int pixels = frame.width * frame.height;

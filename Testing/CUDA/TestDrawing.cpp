@@ -5,6 +5,7 @@
 #include "Testing/CUDA/SmallCache.h"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 namespace {
@@ -30,12 +31,38 @@ TEST_P(DrawingOf, GivesThePicturesOfTheCpu)
   EXPECT_EQ(drawn.statistics.levels.coarsest, truth.statistics.levels.coarsest);
 }
 
+/// A Case's name, which it does not keep.
+const char* KeptName(const std::string& name)
+{
+  static std::set<std::string> names;
+  return names.insert(name).first->c_str();
+}
+
 /// And what only a cache makes different.
 std::vector<Case> Cases()
 {
   std::vector<Case> cases = MarchedCases();
   cases.push_back({"FullResolution", [](inr::Frame& frame) { frame.levelOfDetailScale = 0; }});
   cases.push_back({"MixedLevels", [](inr::Frame& frame) { frame.levelOfDetailScale = 2.5; }});
+  const auto integrated = [](inr::Frame& frame) { frame.preIntegration = true; };
+  const std::vector<std::pair<std::string, std::function<void(inr::Frame&)>>> ends = {
+      {"Surfaces", ShowSurfaces}, {"Integrated", integrated}};
+  for (const auto& [name, look] : ends) {
+    for (const Case& more : MarchedCases()) {
+      const std::string other = more.name;
+      if (other.find("Lit") != std::string::npos || other == "Plain" || other == "Cropped" ||
+          other == "Piece" || other == "Layered" || other == "BehindSomething") {
+        cases.push_back({KeptName(name + other), [look = look, more](inr::Frame& frame) {
+                           more.change(frame);
+                           look(frame);
+                         }});
+      }
+    }
+    cases.push_back({KeptName(name + "MixedLevels"), [look = look](inr::Frame& frame) {
+                       look(frame);
+                       frame.levelOfDetailScale = 2.5;
+                     }});
+  }
   cases.push_back({"LayeredMixedLevels", [](inr::Frame& frame) {
                      frame.levelOfDetailScale = 2.5;
                      AddLayers(frame);
@@ -79,9 +106,10 @@ TEST_P(Drawing, GivesDepthsAndSamplesToo)
 /// Paths meet the same random numbers; a few may part ways for rounding.
 TEST_P(Drawing, TracesThePathsOfTheCpu)
 {
-  for (const double scale : {0.0, 2.5}) {
+  for (const auto& [scale, layered] :
+       std::vector<std::pair<double, bool>>{{0.0, false}, {2.5, false}, {2.5, true}}) {
     inr::Frame frame = PlainFrame();
-    if (scale > 0) {
+    if (layered) {
       AddLayers(frame);
     }
     frame.mode = inr::RenderMode::PathTracing;
@@ -106,47 +134,95 @@ TEST_P(Drawing, TracesThePathsOfTheCpu)
 }
 
 /// Draws, but not for ever.
-inr::Image DrawnInTheEnd(const inr::Frame& frame, const inr::RendererOptions& options)
+Drawn DrawnInTheEnd(const inr::Frame& frame, const inr::RendererOptions& options)
 {
   int asked = 0;
   const auto keepGoing = [&] { return ++asked < 20000; };
   inr::Renderer renderer = RendererOf(options);
-  inr::Image image;
-  EXPECT_TRUE(renderer.render(frame, image, nullptr, keepGoing).complete);
+  Drawn drawn;
+  drawn.statistics = renderer.render(frame, drawn.rgba, &drawn.depth, keepGoing);
+  EXPECT_TRUE(drawn.statistics.complete);
+  EXPECT_TRUE(drawn.statistics.accelerated);
   EXPECT_FALSE(renderer.acceleratorFailure());
-  return image;
+  return drawn;
 }
+
+void ExpectSame(const Drawn& drawn, const Drawn& truth)
+{
+  EXPECT_EQ(drawn.rgba.pixels, truth.rgba.pixels);
+  EXPECT_EQ(drawn.depth.pixels, truth.depth.pixels);
+}
+
+/// Kinds of frames whose rays remember different things while they wait.
+std::vector<Case> WaitingCases()
+{
+  return {{"Lit", Shade},
+          {"Layered", AddLayers},
+          {"LitLayered",
+           [](inr::Frame& frame) {
+             Shade(frame);
+             AddLayers(frame);
+           }},
+          {"Surfaces",
+           [](inr::Frame& frame) {
+             Shade(frame);
+             ShowSurfaces(frame);
+           }},
+          {"Integrated",
+           [](inr::Frame& frame) {
+             Shade(frame);
+             frame.preIntegration = true;
+           }},
+          {"LayeredSurfaces",
+           [](inr::Frame& frame) {
+             AddLayers(frame);
+             ShowSurfaces(frame);
+           }},
+          {"Paths",
+           [](inr::Frame& frame) {
+             Shade(frame);
+             frame.mode = inr::RenderMode::PathTracing;
+           }},
+          {"LayeredPaths", [](inr::Frame& frame) {
+             Shade(frame);
+             AddLayers(frame);
+             frame.mode = inr::RenderMode::PathTracing;
+           }}};
+}
+
+class WaitingFor : public CaseInAPlace
+{};
 
 /// Room for few bricks is enough for every picture; it only takes longer. In which order rays come
 /// to wait decides which of them goes on, so that both orders are tried.
-TEST_P(Drawing, NeedsNoMoreThanTheSmallestCache)
+TEST_P(WaitingFor, NeedsNoMoreThanTheSmallestCache)
 {
+  const auto& [place, which] = GetParam();
   HostLaunch backward;
   backward.backward = true;
-  for (const auto& [mode, layered] : std::vector<std::pair<inr::RenderMode, bool>>{
-           {Modes[0], false}, {Modes[0], true}, {Modes[1], false}}) {
-    inr::Frame frame = FullResolution(mode);
-    Shade(frame);
-    if (layered) {
-      AddLayers(frame);
-    }
-    const inr::Image truth = DrawnInTheEnd(frame, RoomFor(GetParam(), 0));
-    for (const std::int64_t bricks : {8, 16}) {
-      EXPECT_EQ(DrawnInTheEnd(frame, RoomFor(GetParam(), bricks)).pixels, truth.pixels) << bricks;
-      EXPECT_EQ(DrawnInTheEnd(frame, RoomFor(GetParam(), bricks, backward)).pixels, truth.pixels)
-          << bricks;
-    }
+  inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
+  which.change(frame);
+  const Drawn truth = DrawnInTheEnd(frame, RoomFor(place, 0));
+  for (const std::int64_t bricks : {8, 16}) {
+    SCOPED_TRACE(bricks);
+    ExpectSame(DrawnInTheEnd(frame, RoomFor(place, bricks)), truth);
+    ExpectSame(DrawnInTheEnd(frame, RoomFor(place, bricks, backward)), truth);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Kernels, WaitingFor,
+                         testing::Combine(testing::Values(Place::Host, Place::Gpu),
+                                          testing::ValuesIn(WaitingCases())),
+                         CaseInAPlace::nameOf);
 
 /// Where a ray waits for one of two bricks, it does not matter that it opens the other one anew.
 TEST_P(Drawing, MixesLevelsTheSameWhereverItWaits)
 {
   inr::Frame frame = SmallFrame(inr::RenderMode::RayMarching);
   frame.levelOfDetailScale = 2.5;
-  const inr::Image truth = DrawnInTheEnd(frame, RoomFor(GetParam(), 0));
-  EXPECT_EQ(DrawnInTheEnd(frame, RoomFor(GetParam(), 8)).pixels, truth.pixels);
-  EXPECT_EQ(Draw(frame, RoomFor(GetParam(), 0)).rgba.pixels, truth.pixels);
+  const Drawn truth = DrawnInTheEnd(frame, RoomFor(GetParam(), 0));
+  ExpectSame(DrawnInTheEnd(frame, RoomFor(GetParam(), 8)), truth);
+  EXPECT_EQ(Draw(frame, RoomFor(GetParam(), 0)).rgba.pixels, truth.rgba.pixels);
 }
 
 TEST_P(Drawing, ComesToTheSamePictureInTime)

@@ -110,7 +110,13 @@ INSTANTIATE_TEST_SUITE_P(Kernels, NetworkDrawingOf,
                          CaseInAPlace::nameOf);
 
 /// Paths meet the same random numbers; a few may part ways for rounding.
-TEST(NetworkDrawing, TracesThePathsOfTheCpu)
+class NetworkPaths : public testing::TestWithParam<bool>
+{};
+
+INSTANTIATE_TEST_SUITE_P(Kernels, NetworkPaths, testing::Bool(),
+                         [](const auto& info) { return info.param ? "Layered" : "Plain"; });
+
+TEST_P(NetworkPaths, AreThoseOfTheCpu)
 {
   inr::Frame frame = PlainFrame();
   frame.mode = inr::RenderMode::PathTracing;
@@ -120,7 +126,9 @@ TEST(NetworkDrawing, TracesThePathsOfTheCpu)
   frame.clippingPlanes = {PlaneAcross({1, 0.3, -0.2})};
   frame.opaqueDepth = SomeDepth().data();
   LightUp(frame);
-  AddLayers(frame);
+  if (GetParam()) {
+    AddLayers(frame);
+  }
   const Drawn truth = Draw(frame, Uncached(nullptr));
   ASSERT_TRUE(ShowsSomething(truth.rgba));
   const Drawn drawn = Draw(frame, Uncached(Device()));
@@ -272,24 +280,18 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"PreIntegration", [](inr::Frame& frame) { frame.preIntegration = true; }}),
     [](const auto& info) { return info.param.name; });
 
-/// What kernels do not draw they infer, with and without a cache.
+/// What kernels do not draw without a cache they infer.
 TEST_P(LeftToTheCpu, IsInferredByTheDevice)
 {
   inr::Frame frame = LitFrame(inr::RenderMode::RayMarching);
   const inr::Image plain = Draw(frame, Uncached(nullptr)).rgba;
   GetParam().change(frame);
-  for (const bool cached : {false, true}) {
-    SCOPED_TRACE(cached);
-    inr::RendererOptions options = OptionsWith(nullptr);
-    options.cached = cached;
-    const Drawn truth = Draw(frame, options);
-    ASSERT_TRUE(ShowsSomething(truth.rgba));
-    EXPECT_LT(inr::ImagePsnr(truth.rgba, plain), 50);
-    options.accelerator = Device();
-    const Drawn drawn = Draw(frame, options);
-    EXPECT_FALSE(drawn.statistics.accelerated);
-    EXPECT_GE(inr::ImagePsnr(drawn.rgba, truth.rgba), 60);
-  }
+  const Drawn truth = Draw(frame, Uncached(nullptr));
+  ASSERT_TRUE(ShowsSomething(truth.rgba));
+  EXPECT_LT(inr::ImagePsnr(truth.rgba, plain), 50);
+  const Drawn drawn = Draw(frame, Uncached(Device()));
+  EXPECT_FALSE(drawn.statistics.accelerated);
+  EXPECT_GE(inr::ImagePsnr(drawn.rgba, truth.rgba), 60);
 }
 
 /// How many of a thousand values leave float32's range on their way.

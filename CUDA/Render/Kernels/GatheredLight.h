@@ -31,13 +31,18 @@ public:
   /// From the next sample, which is counted.
   INR_HOST_DEVICE void add(const glm::vec4& color, float opacity)
   {
+    this->addMore(color, opacity);
+    this->count();
+  }
+  /// From what is not counted.
+  INR_HOST_DEVICE void addMore(const glm::vec4& color, float opacity)
+  {
     const float weight = this->Through * opacity;
     for (int channel = 0; channel < 3; ++channel) {
       this->Part[channel] = fmaf(color[channel], weight, this->Part[channel]);
     }
     this->Held += weight;
     this->Through -= weight;
-    this->count();
   }
   /// A sample that has nothing to add.
   INR_HOST_DEVICE void count()

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rays that meet translucent layers: MarchRays, part by part of their ways. Apart from that, whose
-// rays have neither memory nor registers to spare for what only these need.
+// Rays that meet translucent layers, part by part of their ways, and those of which both ends of
+// samples are looked at. Kernels of their own, so that MarchRays needs no more registers or memory
+// for them.
 #pragma once
 
 #include "CUDA/Device/Kernels/Block.h"
+#include "CUDA/Render/Kernels/EndsMarch.h"
 #include "CUDA/Render/Kernels/FrameCounts.h"
 #include "CUDA/Render/Kernels/RayMarch.h"
 #include "CUDA/Render/Kernels/RayOrder.h"
@@ -13,25 +15,26 @@
 namespace inr {
 namespace cuda {
 
-/// Where such a ray stands, as long as it waits.
-struct LayeredProgress
-{
-  RayProgress ray; ///< on the present part of its way
-  LayeredWay layered;
-};
-
-struct MarchLayeredRays
+/// As MarchRays does, rays of kind `March`; there may be no layers, too.
+template <class March> struct MarchInParts
 {
   static constexpr int Threads = 128;
-  static constexpr int LeastBlocks = 4; ///< they remember more than MarchRays'
+  static constexpr int LeastBlocks = 4; ///< their rays need more than those of MarchRays
   static constexpr int Turns[] = {RayLists::NoLimit};
+
+  /// Where such a ray stands, as long as it waits.
+  struct Progress
+  {
+    typename March::Progress ray; ///< on the present part of its way
+    LayeredWay layered;
+  };
 
   const RenderScene* scene;
   CacheView cache;
   RayLists lists;
   OnMiss onMiss;
-  bool begin;                ///< else rays go on from where they are
-  LayeredProgress* progress; ///< of each ray of the window
+  bool begin;         ///< else rays go on from where they are
+  Progress* progress; ///< of each ray of the window
   PictureView picture;
   FrameCounts* counts;
 
@@ -45,48 +48,44 @@ private:
   INR_HOST_DEVICE void advance(std::uint32_t ray, std::int64_t pixel) const
   {
     const RayView& rays = this->scene->rays;
-    const auto x = static_cast<int>(pixel % rays.width);
-    const auto y = static_cast<int>(pixel / rays.width);
-    LayeredProgress state;
+    const int x = rays.column(pixel);
+    const int y = rays.row(pixel);
+    Progress state;
     RayCounts counts;
+    bool goesOn = true;
     if (this->begin) {
-      counts.rays = rays.ray(x, y).length > 0 ? 1 : 0;
+      goesOn = rays.ray(x, y).length > 0;
+      counts.rays = goesOn ? 1 : 0;
     } else {
       state = this->progress[ray];
     }
-    bool goesOn = true;
+    bool waits = false;
     while (goesOn) {
       const Ray way = rays.ray(x, y, state.layered.part);
-      RayMarch march(*this->scene, this->cache, this->onMiss, way, x, y, state.ray);
-      const bool ended = march.advance();
+      March march(*this->scene, this->cache, this->onMiss, way, x, y, state.ray);
+      waits = !march.advance();
       counts.add(march.counts());
-      if (!ended) {
-        this->progress[ray] = state;
-        this->lists.list(ray, true);
-        break;
-      }
-      goesOn = this->enterNextPart(way, pixel, state);
-      if (!goesOn) {
-        this->write(pixel, state);
-      }
+      goesOn = !waits && this->enterNextPart(way, pixel, state);
+    }
+    if (waits) {
+      this->progress[ray] = state;
+      this->lists.list(ray, true);
+    } else {
+      this->write(pixel, state);
     }
     this->counts->add(counts);
   }
 
   /// Of a ray that has come to the end of a part; false where that was the last one.
-  INR_HOST_DEVICE bool enterNextPart(const Ray& way, std::int64_t pixel,
-                                     LayeredProgress& state) const
+  INR_HOST_DEVICE bool enterNextPart(const Ray& way, std::int64_t pixel, Progress& state) const
   {
-    const RayView& rays = this->scene->rays;
     const glm::dvec4 light = state.ray.light.sum();
-    state.layered.noteHalfOpaque(rays, way, state.ray.halfOpaqueAt);
-    state.ray.interval = RayProgress::NotBegun;
-    return state.layered.enterNextPart(rays.layers, pixel, glm::vec3(light),
-                                       static_cast<float>(light.w)) &&
-           !state.ray.light.isOpaque();
+    March::beginPart(state.ray);
+    return state.layered.enterNextPart(this->scene->rays, pixel, way, glm::vec3(light),
+                                       static_cast<float>(light.w), state.ray.halfOpaqueAt);
   }
 
-  INR_HOST_DEVICE void write(std::int64_t pixel, const LayeredProgress& state) const
+  INR_HOST_DEVICE void write(std::int64_t pixel, const Progress& state) const
   {
     const double through = state.ray.light.sum().w;
     const double depth = state.layered.halfOpaqueDepth;
@@ -96,6 +95,9 @@ private:
     WriteSamples(state.ray, this->picture, pixel);
   }
 };
+
+using MarchLayeredRays = MarchInParts<RayMarch>;
+using MarchBothEnds = MarchInParts<EndsMarch>;
 
 } // namespace cuda
 } // namespace inr

@@ -14,6 +14,8 @@ namespace cuda {
 
 struct MarchRays
 {
+  using Progress = RayProgress;
+
   static constexpr int Threads = 128;
   static constexpr int LeastBlocks = 5; ///< what one waits for, others have time for
   /// A single one: threads whose rays have ended cost less than to part those that were neighbours,

@@ -45,7 +45,7 @@ struct MarchStages
   {
     const RayView& rays = this->scene->rays;
     return ray.state.ray.length > 0 ||
-           (rays.layers.any() && rays.ray(X(rays, ray), Y(rays, ray)).length > 0);
+           (rays.layers.any() && rays.ray(rays.column(ray.pixel), rays.row(ray.pixel)).length > 0);
   }
 
   INR_HOST_DEVICE int place(WaveRay& ray) const
@@ -86,9 +86,9 @@ struct MarchStages
     const MarchState& state = ray.state;
     const Projector& projector = this->scene->settings.projector;
     reinterpret_cast<glm::vec4*>(this->picture.rgba)[pixel] =
-        ColorOf(state, projector, this->scene->colors, this->scene->rays);
+        ShownColor(state, projector, this->scene->colors, this->scene->rays);
     this->picture.depth[pixel] =
-        static_cast<float>(DepthOf(state, projector, this->scene->colors, this->scene->rays));
+        static_cast<float>(ShownDepth(state, projector, this->scene->colors, this->scene->rays));
   }
 
   /// Of those samples of which something is seen; those behind which a ray is opaque are the last.
@@ -129,15 +129,6 @@ struct MarchStages
   }
 
 private:
-  INR_HOST_DEVICE static int X(const RayView& rays, const WaveRay& ray)
-  {
-    return static_cast<int>(ray.pixel % rays.width);
-  }
-  INR_HOST_DEVICE static int Y(const RayView& rays, const WaveRay& ray)
-  {
-    return static_cast<int>(ray.pixel / rays.width);
-  }
-
   INR_HOST_DEVICE SampleWalker samplesOf(const inr::Ray& way, int x, int y) const
   {
     const MarchSettings& settings = this->scene->settings;
@@ -153,10 +144,12 @@ private:
   INR_HOST_DEVICE bool enterNextPart(const WaveRay& ray, MarchState& state) const
   {
     const RayView& rays = this->scene->rays;
-    if (!rays.layers.any() || !EnterNextPart(rays, ray.pixel, state)) {
+    const int x = rays.column(ray.pixel);
+    const int y = rays.row(ray.pixel);
+    if (!rays.layers.any() || !EnterNextPart(rays, x, y, state)) {
       return false;
     }
-    state.samples = this->samplesOf(state.ray, X(rays, ray), Y(rays, ray));
+    state.samples = this->samplesOf(state.ray, x, y);
     return true;
   }
 

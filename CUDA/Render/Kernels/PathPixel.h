@@ -15,7 +15,7 @@ INR_HOST_DEVICE inline void WritePath(const PathScene& scene, const PathState& p
                                       const PictureView& picture, std::int64_t pixel)
 {
   const bool collided = path.collided;
-  reinterpret_cast<glm::vec4*>(picture.rgba)[pixel] = ColorOf(scene, path, pixel);
+  reinterpret_cast<glm::vec4*>(picture.rgba)[pixel] = ShownColor(scene, path, pixel);
   picture.depth[pixel] =
       collided ? static_cast<float>(scene.rays.windowDepth(path.firstCollision)) : 0.0f;
 }

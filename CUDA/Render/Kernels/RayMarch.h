@@ -69,6 +69,13 @@ struct RayCounts
 class RayMarch
 {
 public:
+  using Progress = RayProgress;
+  /// For the next part of the ray's way.
+  INR_HOST_DEVICE static void beginPart(RayProgress& progress)
+  {
+    progress.interval = RayProgress::NotBegun;
+  }
+
   /// `way`: the ray through pixel (x, y), or a part of it.
   INR_HOST_DEVICE RayMarch(const RenderScene& scene, const CacheView& cache, OnMiss onMiss,
                            const Ray& way, int x, int y, RayProgress& progress)
@@ -90,8 +97,7 @@ public:
   {
     while (!this->isDone() && this->moveOn()) {
       if (!this->takeSome()) {
-        this->State.interval = this->Samples.next();
-        this->State.stretch = this->Samples.stretch();
+        this->stop();
         return false;
       }
     }
@@ -113,7 +119,14 @@ public:
     WriteSamples(this->State, picture, pixel);
   }
 
-private:
+protected:
+  /// Notes where the ray waits.
+  INR_HOST_DEVICE void stop()
+  {
+    this->State.interval = this->Samples.next();
+    this->State.stretch = this->Samples.stretch();
+  }
+
   /// Samples that are taken together, from one brick or two: of more, other threads that have fewer
   /// would wait for too long.
   static constexpr int MostOfOne = 64;
@@ -242,13 +255,15 @@ private:
   }
 
   /// The level of the cache that sample k is from.
-  INR_HOST_DEVICE int levelAt(int k) const
+  INR_HOST_DEVICE int levelAt(int k) const { return this->levelAt(k, this->intervalOf(k)); }
+  /// The same by a number that chooses between the two.
+  INR_HOST_DEVICE int levelAt(int k, std::int64_t counter) const
   {
     const LevelOfDetail& detail = this->Samples.detail();
     const double fraction = detail.fractionAtEntry() +
                             detail.fractionGrowth() * this->Scene.settings.step * this->placeOf(k);
     const float random =
-        RandomUnit32(DitherSeed(this->Stream), static_cast<std::uint32_t>(this->intervalOf(k)));
+        RandomUnit32(DitherSeed(this->Stream), static_cast<std::uint32_t>(counter));
     return detail.level() + (random < static_cast<float>(fraction) ? 1 : 0);
   }
 
@@ -388,17 +403,26 @@ private:
       this->State.light.count();
       return true;
     }
-    GradientFinder finder(this->Cache, reader, this->alongOf(reader, k), this->Missing,
-                          this->State.light.through());
+    if (!this->shade(reader, this->alongOf(reader, k), this->at(k), color)) {
+      return false;
+    }
+    this->addLight(color, OpacityOver(length, color.w), k);
+    return true;
+  }
+
+  /// Lights what is at t, `along` a reader's path; false where the gradient waits for a brick.
+  INR_HOST_DEVICE bool shade(const BrickReader& reader, float along, double t, glm::vec4& color)
+  {
+    GradientFinder finder(this->Cache, reader, along, this->Missing, this->State.light.through());
     glm::vec3 gradient(0.0f);
     if (!finder.find(gradient)) {
       return false;
     }
     ++this->Counts.gradients;
     this->Counts.missed += static_cast<std::uint32_t>(finder.missed());
-    const glm::vec3 lit = this->Scene.shading.shade(glm::vec3(color), this->ToEye,
-                                                    this->Way.at(this->at(k)), gradient);
-    this->addLight(glm::vec4(lit, color.w), OpacityOver(length, color.w), k);
+    const glm::vec3 lit =
+        this->Scene.shading.shade(glm::vec3(color), this->ToEye, this->Way.at(t), gradient);
+    color = glm::vec4(lit, color.w);
     return true;
   }
 
@@ -406,8 +430,12 @@ private:
   INR_HOST_DEVICE void addLight(const glm::vec4& color, float opacity, int k)
   {
     this->State.light.add(color, opacity);
+    this->noteHalfOpaque(this->at(k));
+  }
+  INR_HOST_DEVICE void noteHalfOpaque(double t)
+  {
     if (this->State.light.isHalfOpaque() && this->State.halfOpaqueAt < 0) {
-      this->State.halfOpaqueAt = this->at(k);
+      this->State.halfOpaqueAt = t;
     }
   }
 

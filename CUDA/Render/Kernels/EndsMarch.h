@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A ray through the cache of which both ends of samples are looked at, for isosurfaces and for
+// colours of all values in between; Core's CachedSurfaces and CachedIntegration do the same.
+#pragma once
+
+#include "CUDA/Render/Kernels/RayMarch.h"
+#include "Core/Render/KnownValue.h"
+#include "Core/Render/PreIntegratedColors.h"
+
+namespace inr {
+namespace cuda {
+
+class EndsMarch : public RayMarch
+{
+public:
+  struct Progress : RayProgress
+  {
+    KnownValue known; ///< the latest
+  };
+
+  INR_HOST_DEVICE EndsMarch(const RenderScene& scene, const CacheView& cache, OnMiss onMiss,
+                            const Ray& way, int x, int y, Progress& progress)
+      : RayMarch(scene, cache, onMiss, way, x, y, progress), Known(progress.known)
+  {}
+  INR_HOST_DEVICE static void beginPart(Progress& progress)
+  {
+    RayMarch::beginPart(progress);
+    progress.known = {};
+  }
+
+  /// See RayMarch.
+  INR_HOST_DEVICE bool advance()
+  {
+    while (!this->isDone() && this->moveOn()) {
+      if (!this->takeNext()) {
+        this->stop();
+        return false;
+      }
+    }
+    return true;
+  }
+
+private:
+  /// A sample, and the brick that it is read from.
+  struct Taken
+  {
+    const BrickReader& reader;
+    float value;
+  };
+
+  /// False where it, or what is looked at for it, waits for a brick: then nothing has changed.
+  INR_HOST_DEVICE bool takeNext()
+  {
+    const bool finds = this->Scene.settings.projector.findsSurfaces();
+    const LevelOfDetail& detail = this->Samples.detail();
+    // A surface would be torn where one sample is of this and the next of that level.
+    const std::int64_t counter = finds ? 0 : this->Samples.next();
+    const int level = detail.isDithered() ? this->levelAt(0, counter) : detail.level();
+    this->Coarser = static_cast<std::uint64_t>(level - detail.level());
+    if (!this->open(level)) {
+      return false;
+    }
+    const BrickReader& reader = this->readerOf(0);
+    const float found = ValueOn(this->Cache, reader.path(), this->alongOf(reader, 0));
+    Taken taken{reader, found};
+    ClampToRange(this->rangeOf(reader), taken.value);
+    const float through = this->State.light.through();
+    if (!(finds ? this->crossSurfaces(taken) : this->integrate(taken))) {
+      return false;
+    }
+    this->count(reader, 1, through);
+    this->Counts.clamped += std::abs(found - taken.value) > RoundingOfStorage ? 1 : 0;
+    this->pass(1);
+    return true;
+  }
+
+  /// The value at a place as `level` has it; false where the ray waits for that.
+  INR_HOST_DEVICE bool probe(int level, double place, float& value)
+  {
+    this->Probe = BrickReader(); // places may fall
+    if (!this->Probe.open(this->Cache, this->Way, level, place, this->Scene.settings.step,
+                          this->Missing)) {
+      this->Cache.request(this->Probe.wish(), 1.0f);
+      return false;
+    }
+    if (!this->Probe.exact()) {
+      ++this->Counts.missed;
+      this->Cache.request(this->Probe.wish(), this->State.light.through());
+    }
+    value = ValueOn(this->Cache, this->Probe.path(), this->Probe.along(place));
+    return true;
+  }
+
+  /// The colours of all values since the sample before.
+  INR_HOST_DEVICE bool integrate(const Taken& taken)
+  {
+    const std::int64_t interval = this->Samples.next();
+    float begin = this->Known.value;
+    if (interval >= 0 && this->Known.at != interval &&
+        !this->probe(taken.reader.servedLevel(), static_cast<double>(interval), begin)) {
+      return false;
+    }
+    glm::vec4 color(0.0f);
+    if (interval >= 0) { // else it is in front of the ray
+      color = this->Scene.settings.preIntegrated->between(begin, taken.value);
+    }
+    if (color.w > 0.0f) {
+      const double steps =
+          this->Alike.last ? this->Samples.rest() : static_cast<double>(this->Alike.steps());
+      const MarchSettings& settings = this->Scene.settings;
+      const auto length = static_cast<float>(steps * settings.step * settings.unitsPerT);
+      const float along = this->alongOf(taken.reader, 0);
+      if (this->Scene.lit && !this->shade(taken.reader, along, this->at(0), color)) {
+        return false;
+      }
+      this->addLight(color, OpacityOver(length, color.w), 0);
+    } else {
+      this->State.light.count();
+    }
+    this->Known = {interval + this->Alike.steps(), -1, taken.value};
+    return true;
+  }
+
+  /// A part of the ray, as a level has it, with its ends' values.
+  struct Passed
+  {
+    int level;
+    double begin; ///< places
+    double end;
+    float first;
+    float last;
+  };
+
+  INR_HOST_DEVICE bool crossSurfaces(const Taken& taken)
+  {
+    const std::int64_t interval = this->Samples.next();
+    const int level = taken.reader.servedLevel();
+    Passed passed{level, static_cast<double>(interval), this->placeOf(0), this->Known.value,
+                  taken.value};
+    const bool isFirst = interval < 0; // of the ray: nothing is in front of it
+    const bool isKnown = this->Known.at == interval && this->Known.level == level;
+    if (!isFirst && !isKnown && !this->probe(level, passed.begin, passed.first)) {
+      return false;
+    }
+    if (!isFirst && !this->drawSurfaces(passed)) {
+      return false;
+    }
+    this->State.light.count();
+    this->Known = {interval + this->Alike.steps(), level, taken.value};
+    return true;
+  }
+
+  /// All of them, or none where one waits.
+  INR_HOST_DEVICE bool drawSurfaces(Passed passed)
+  {
+    const SurfaceLookup& surfaces = this->Scene.settings.projector.surfaces;
+    const int first = surfaces.below(passed.first);
+    const int last = surfaces.below(passed.last);
+    const GatheredLight light = this->State.light;
+    const double halfOpaqueAt = this->State.halfOpaqueAt;
+    for (int at = first; at != last && !this->State.light.isOpaque(); at += first < last ? 1 : -1) {
+      const float value = surfaces.values[first < last ? at : at - 1];
+      double place = 0;
+      if (!this->findSurface(passed, value, place) ||
+          !this->drawSurface(passed.level, value, place)) {
+        this->State.light = light;
+        this->State.halfOpaqueAt = halfOpaqueAt;
+        return false;
+      }
+      passed.begin = place; // the next one is behind it
+    }
+    return true;
+  }
+
+  INR_HOST_DEVICE bool findSurface(const Passed& passed, float value, double& place)
+  {
+    const bool rises = passed.first < passed.last;
+    double low = passed.begin;
+    double high = passed.end;
+    for (int k = 0; k < Bisections; ++k) {
+      const double middle = 0.5 * (low + high);
+      float found = 0;
+      if (!this->probe(passed.level, middle, found)) {
+        return false;
+      }
+      ((found >= value) == rises ? high : low) = middle;
+    }
+    place = 0.5 * (low + high);
+    return true;
+  }
+
+  INR_HOST_DEVICE bool drawSurface(int level, float value, double place)
+  {
+    const double t = place * this->Scene.settings.step;
+    if (!this->Way.isInPiece(t)) {
+      return true; // that of another picture finds it, too, from the same samples
+    }
+    glm::vec4 color = this->Scene.colors.at(value);
+    if (this->Scene.lit) {
+      float found = 0;
+      if (!this->probe(level, place, found) ||
+          !this->shade(this->Probe, this->Probe.along(place), t, color)) {
+        return false;
+      }
+    }
+    this->State.light.addMore(color, color.w);
+    this->noteHalfOpaque(t);
+    return true;
+  }
+
+  KnownValue& Known;
+  BrickReader Probe;
+};
+
+} // namespace cuda
+} // namespace inr
