@@ -9,6 +9,8 @@
 #include "CUDA/CudaAccelerator.h"
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
+#include "Core/Render/RayGeometry.h"
+#include "Core/Render/TranslucentLayers.h"
 #include "Testing/Benchmarks/FrameScenes.h"
 #include "Testing/Benchmarks/Models.h"
 
@@ -184,6 +186,62 @@ void BenchLarge(const inr::ModelPointer& model, const Engine& gpu)
   }
 }
 
+/// Two panes of glass, before the volume and within it.
+void AddLayers(inr::Frame& frame)
+{
+  const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
+  const inr::RayGeometry geometry(frame, glm::i64vec3(256));
+  const glm::dvec3 middle(127.5);
+  const auto inside = static_cast<float>(geometry.windowDepth(middle));
+  const glm::vec4 glass(0.1f, 0.2f, 0.2f, 0.3f);
+  auto layers = std::make_shared<inr::TranslucentLayers>();
+  for (const float depth : {0.01f, inside}) {
+    layers->layers.push_back(
+        {std::vector<float>(pixels, depth), std::vector<glm::vec4>(pixels, glass)});
+  }
+  frame.layers = layers;
+}
+
+/// A kind of frame that kernels of its own draw.
+struct Kind
+{
+  const char* name;
+  void (*change)(inr::Frame& frame);
+};
+
+constexpr Kind Kinds[] = {
+    {"lit", [](inr::Frame& frame) { frame.shading = inr::Material(); }},
+    {"layered", AddLayers},
+    {"surfaces",
+     [](inr::Frame& frame) {
+       frame.blending.mode = inr::BlendMode::Isosurface;
+       frame.blending.isosurfaces = {-0.4, 0.1, 0.6};
+     }},
+    {"integrated", [](inr::Frame& frame) { frame.preIntegration = true; }},
+};
+
+/// Such frames through the cache, beside the CPU's.
+void BenchKinds(const inr::ModelPointer& model, const Engine& gpu)
+{
+  const Look look = Looks(model->volume).back();
+  for (const Kind& kind : Kinds) {
+    inr::Image pictures[2];
+    for (const Engine& engine : {gpu, Engine{"CPU", nullptr, 5, 1}}) {
+      inr::Frame frame = Lit(FrameFor(model, false));
+      frame.mode = inr::RenderMode::RayMarching;
+      kind.change(frame);
+      inr::Renderer renderer = RendererFor(model, look, engine, true);
+      Frames(renderer, frame, 1); // brings the bricks
+      const Timed timed = Frames(renderer, frame, engine.cachedFrames);
+      Report(std::string("cached frame ") + kind.name + " " + look.name + ", " + engine.name,
+             1000 * timed.seconds, "ms", "lower");
+      pictures[engine.accelerator ? 0 : 1] = timed.picture;
+    }
+    Report(std::string("picture ") + kind.name + " " + look.name + ", the GPU's beside the CPU's",
+           Likeness(pictures[0], pictures[1]), "dB", "higher", Target(50));
+  }
+}
+
 void Bench(const inr::ModelPointer& model, const Engine& gpu)
 {
   for (const Look& look : Looks(model->volume)) {
@@ -210,6 +268,7 @@ int main()
     const inr::ModelPointer model = MakeModel();
     const Engine gpu{"GPU", found.accelerator, 15, 3};
     Bench(model, gpu);
+    BenchKinds(model, gpu);
     BenchLarge(model, gpu);
     return 0;
   } catch (const inr::Error& error) {
