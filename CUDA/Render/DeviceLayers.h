@@ -7,69 +7,76 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace inr {
 namespace cuda {
 
-/// Translucent layers in a machine's memory.
+/// A frame's translucent layers in a machine's memory. What has come is kept as long as frames have
+/// the same ones: a picture takes many calls, of paths one for each sample. The memory stays for
+/// the next ones, as taking and giving it back makes a GPU wait for all that it does.
 template <class Machine> class DeviceLayers
 {
 public:
-  DeviceLayers(Machine& machine, const TranslucentLayers& layers, std::int64_t pixels)
-      : Depths(machine.template allocate<float>(layers.count() * pixels)),
-        Colors(machine.template allocate<glm::vec4>(layers.count() * pixels)),
-        List(machine.template allocate<SurfaceLayer>(layers.count())), View{this->List.data(),
-                                                                            layers.count()}
+  /// Of the latest frame; nothing that reads those of the one before may be on its way. Without
+  /// any, the memory is given back.
+  LayersView of(Machine& machine, const Frame& frame)
   {
+    if (!frame.layers || !frame.layers->any()) {
+      this->clear();
+    } else if (frame.layers != this->Given) {
+      this->Given.reset(); // until all of it is there
+      this->copy(machine, *frame.layers, std::int64_t{frame.width} * frame.height);
+      this->Given = frame.layers;
+    }
+    return this->View;
+  }
+
+  void clear()
+  {
+    this->Room.reset();
+    this->Given.reset();
+    this->View = {};
+  }
+
+private:
+  struct Arrays
+  {
+    Arrays(Machine& machine, std::int64_t layers, std::int64_t pixels)
+        : depths(machine.template allocate<float>(layers * pixels)),
+          colors(machine.template allocate<glm::vec4>(layers * pixels)),
+          list(machine.template allocate<SurfaceLayer>(layers))
+    {}
+
+    typename Machine::template Array<float> depths;
+    typename Machine::template Array<glm::vec4> colors;
+    typename Machine::template Array<SurfaceLayer> list;
+  };
+
+  void copy(Machine& machine, const TranslucentLayers& layers, std::int64_t pixels)
+  {
+    const std::int64_t count = layers.count();
+    if (!this->Room || this->Room->depths.size() < count * pixels ||
+        this->Room->list.size() < count) {
+      this->clear();
+      this->Room.emplace(machine, count, pixels);
+    }
     std::vector<SurfaceLayer> list;
     for (const TranslucentLayers::Layer& layer : layers.layers) {
       const std::int64_t at = static_cast<std::int64_t>(list.size()) * pixels;
-      list.push_back({this->Depths.data() + at, this->Colors.data() + at});
-      machine.toMachine(this->Depths.data() + at, layer.depth.data(), pixels);
-      machine.toMachine(this->Colors.data() + at, layer.colors.data(), pixels);
+      list.push_back({this->Room->depths.data() + at, this->Room->colors.data() + at});
+      machine.toMachine(this->Room->depths.data() + at, layer.depth.data(), pixels);
+      machine.toMachine(this->Room->colors.data() + at, layer.colors.data(), pixels);
     }
-    machine.toMachine(this->List.data(), list.data(), layers.count());
+    machine.toMachine(this->Room->list.data(), list.data(), count);
+    this->View = {this->Room->list.data(), layers.count()};
   }
 
-  const LayersView& view() const { return this->View; }
-
-private:
-  typename Machine::template Array<float> Depths;
-  typename Machine::template Array<glm::vec4> Colors;
-  typename Machine::template Array<SurfaceLayer> List;
+  std::shared_ptr<const TranslucentLayers> Given; ///< held, so that no other gets its address
+  std::optional<Arrays> Room;
   LayersView View;
 };
-
-/// Those of the latest frame that had any: a picture comes by many calls, of paths one for each
-/// sample. Given up when a frame has none.
-template <class Machine> class LatestLayers
-{
-public:
-  /// A copy; null of none. Lives as long as somebody has it.
-  std::shared_ptr<const DeviceLayers<Machine>> of(Machine& machine, const Frame& frame)
-  {
-    if (frame.layers != this->Given) {
-      this->Latest.reset();
-      this->Given = frame.layers;
-      if (frame.layers && frame.layers->any()) {
-        this->Latest = std::make_shared<const DeviceLayers<Machine>>(
-            machine, *frame.layers, std::int64_t{frame.width} * frame.height);
-      }
-    }
-    return this->Latest;
-  }
-
-private:
-  std::shared_ptr<const TranslucentLayers> Given; ///< held, so that no other gets its address
-  std::shared_ptr<const DeviceLayers<Machine>> Latest;
-};
-
-template <class Machine>
-LayersView ViewOf(const std::shared_ptr<const DeviceLayers<Machine>>& layers)
-{
-  return layers ? layers->view() : LayersView();
-}
 
 /// Whether a machine is to have a frame's layers: it would be given up where they do not fit.
 inline bool TakesLayersOf(const Frame& frame)

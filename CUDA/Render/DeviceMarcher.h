@@ -40,7 +40,7 @@ public:
       this->Present = std::make_unique<Picture>(this->Where, this->Bricks, this->Most);
     }
     Picture& picture = *this->Present;
-    picture.setScene(job, colors, steps, this->Layers.of(this->Where, job.frame));
+    picture.setScene(job, colors, steps);
     const bool inTime = limit.isLimited() || this->Options.onlyWhatFits;
     const FrameStatistics statistics = inTime ? this->marchInTime(picture, limit, keepGoing)
                                               : this->marchComplete(picture, keepGoing);
@@ -51,6 +51,13 @@ public:
     return statistics;
   }
 
+  /// For when another kind of pictures is drawn.
+  void clearLayers()
+  {
+    if (this->Present) {
+      this->Present->clearLayers();
+    }
+  }
   /// For when colours change.
   void forget()
   {
@@ -175,8 +182,7 @@ private:
   Belongings<Machine> OfSteps;
   const float* Entries = nullptr;   ///< of them
   std::unique_ptr<Picture> Present; ///< the latest; null: to be made
-  LatestLayers<Machine> Layers;
-  bool Overfull = false; ///< it was found to want more than the cache holds
+  bool Overfull = false;            ///< it was found to want more than the cache holds
   std::optional<Refinement> Unfinished;
 };
 

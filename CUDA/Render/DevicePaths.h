@@ -47,6 +47,13 @@ public:
     return traced;
   }
 
+  /// For when another kind of pictures is drawn.
+  void clearLayers()
+  {
+    if (!this->Waiting) {
+      this->Layers.clear();
+    }
+  }
   /// For when colours change.
   void forget()
   {
@@ -75,7 +82,7 @@ private:
     this->Waiting.reset();
     const PathScene& given = round.tracer.scene();
     this->OfRound.clear();
-    const LayersView layers = ViewOf(this->Layers.of(this->Where, round.tracer.frame()));
+    const LayersView layers = this->Layers.of(this->Where, round.tracer.frame());
     const PathScene scene = SceneOn(this->Where, given, colors, layers, this->OfRound);
     this->Where.toMachine(this->Scene.data(), &scene, 1);
     this->Picture.resize(std::int64_t{given.rays.width} * given.rays.height);
@@ -159,7 +166,7 @@ private:
   DevicePicture<Machine> Picture;
   typename Machine::template Array<PathScene> Scene;
   WindowedRays<Machine, Cache, PathProgress> Paths;
-  LatestLayers<Machine> Layers;
+  DeviceLayers<Machine> Layers;
   Belongings<Machine> OfRound;
   RayOrder Order{};                    ///< of the round
   std::uint32_t* TileMisses = nullptr; ///< of all tiles of the picture

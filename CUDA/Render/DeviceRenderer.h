@@ -15,7 +15,8 @@ namespace cuda {
 /// How many rays of a picture wait at once: for each the machine has memory.
 struct WindowSizes
 {
-  std::int64_t rays = 1 << 20;  ///< 160 MiB of their progress, 232 at most for those of LayeredMarch.h
+  std::int64_t rays =
+      1 << 20; ///< 160 MiB of their progress, 232 at most for those of LayeredMarch.h
   std::int64_t paths = 1 << 17; ///< 69 MB
 };
 
@@ -46,6 +47,7 @@ public:
                         const std::function<bool()>& keepGoing) override
   {
     const typename Store::Turn turn(*this->Shared);
+    this->Paths.clearLayers();
     return this->Marcher.march(job, this->Colors, limit, output, keepGoing);
   }
 
@@ -53,6 +55,7 @@ public:
                          const std::function<bool()>& keepGoing) override
   {
     const typename Store::Turn turn(*this->Shared);
+    this->Marcher.clearLayers();
     return this->Paths.trace(round, this->Colors, limit, keepGoing);
   }
 

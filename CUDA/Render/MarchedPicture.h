@@ -13,7 +13,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -33,19 +32,18 @@ public:
   {}
 
   /// A frame's scene. `steps`: its entries are on the machine, and outlive the picture.
-  void setScene(const MarchJob& job, const DeviceColors<Machine>& colors, const StepLookup& steps,
-                std::shared_ptr<const DeviceLayers<Machine>> layers)
+  void setScene(const MarchJob& job, const DeviceColors<Machine>& colors, const StepLookup& steps)
   {
     if (job.settings.looksAtBothEnds()) {
       this->template marchBy<MarchBothEnds>();
-    } else if (layers) {
+    } else if (job.geometry.view().layers.any()) {
       this->template marchBy<MarchLayeredRays>();
     } else {
       this->template marchBy<MarchRays>();
     }
     this->Arrays.clear();
-    this->Layers = std::move(layers);
-    RenderScene scene = SceneOn(this->Where, job, colors, ViewOf(this->Layers), this->Arrays);
+    RenderScene scene =
+        SceneOn(this->Where, job, colors, this->Layers.of(this->Where, job.frame), this->Arrays);
     scene.steps = steps;
     this->Where.toMachine(this->Scene.data(), &scene, 1);
     this->Order = {job.frame.width, job.frame.height, nullptr, 0};
@@ -83,6 +81,9 @@ public:
   {
     return std::visit([](const auto& rays) { return rays.done(); }, this->Marched);
   }
+
+  /// Of a picture that is not gone on with.
+  void clearLayers() { this->Layers.clear(); }
 
   void copyTo(const PassOutput& output) const
   {
@@ -138,8 +139,8 @@ private:
   Cache& Bricks;
   DevicePicture<Machine> Pixels;
   typename Machine::template Array<RenderScene> Scene;
-  Belongings<Machine> Arrays; ///< of the scene, and
-  std::shared_ptr<const DeviceLayers<Machine>> Layers;
+  Belongings<Machine> Arrays;   ///< of the scene
+  DeviceLayers<Machine> Layers; ///< of the scene, too
   std::int64_t Most;
   std::variant<RaysOf<MarchRays>, RaysOf<MarchLayeredRays>, RaysOf<MarchBothEnds>> Marched;
   RayOrder Order{};

@@ -56,8 +56,8 @@ public:
   {
     const Timer timer;
     this->OfFrame.clear();
-    const RenderScene scene = SceneOn(this->Own, job, this->Colors,
-                                      ViewOf(this->Layers.of(this->Own, job.frame)), this->OfFrame);
+    const RenderScene scene =
+        SceneOn(this->Own, job, this->Colors, this->Layers.of(this->Own, job.frame), this->OfFrame);
     this->Own.toMachine(this->MarchedScene.data(), &scene, 1);
     this->begin(job.frame.width, job.frame.height);
     this->Traced.release();
@@ -79,7 +79,7 @@ public:
     this->OfFrame.clear();
     const PathScene scene =
         SceneOn(this->Own, round.tracer.scene(), this->Colors,
-                ViewOf(this->Layers.of(this->Own, round.tracer.frame())), this->OfFrame);
+                this->Layers.of(this->Own, round.tracer.frame()), this->OfFrame);
     this->Own.toMachine(this->TracedScene.data(), &scene, 1);
     this->begin(scene.rays.width, scene.rays.height);
     const std::vector<std::uint32_t> pixels = PixelsOf(round);
@@ -111,7 +111,7 @@ private:
   DeviceColors<Machine> Colors;
   DevicePicture<Machine> Picture;
   Belongings<Machine> OfFrame;
-  LatestLayers<Machine> Layers;
+  DeviceLayers<Machine> Layers;
   typename Machine::template Array<RenderScene> MarchedScene;
   typename Machine::template Array<PathScene> TracedScene;
   DeviceWave<Machine, Inference, MarchStages> Marched;

@@ -22,6 +22,7 @@ public:
       : Field(std::move(field)), Device(std::move(renderer))
   {}
 
+  /// Whether it draws such a frame, and has not failed.
   bool draws(const Frame& frame);
   /// See AcceleratedRenderer.
   void setColors(const Majorants& majorants, const ColorLookup& colors);
@@ -50,6 +51,7 @@ private:
   std::shared_ptr<AcceleratedField> Field;
   std::shared_ptr<AcceleratedRenderer> Device;
   std::uint64_t Proven = 0; ///< kinds of pictures, a bit for each
+  int Unlayered = 0;        ///< tries with layers that did not show
 };
 
 } // namespace inr

@@ -33,7 +33,7 @@ class AcceleratedRenderer
 public:
   virtual ~AcceleratedRenderer() = default;
 
-  /// Whether it draws such frames.
+  /// Whether it draws such a frame; others are the CPU's.
   virtual bool draws(const Frame& frame) const = 0;
   /// Copies what follows is drawn with. `majorants` are of `colors` and how frames are blended.
   virtual void setColors(const Majorants& majorants, const ColorLookup& colors) = 0;

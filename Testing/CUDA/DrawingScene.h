@@ -209,6 +209,16 @@ inline double LargestDifference(const inr::Image& a, const inr::Image& b)
   return largest;
 }
 
+/// Which part of the values is off by more than `most`.
+inline double Others(const inr::Image& a, const inr::Image& b, float most)
+{
+  std::size_t others = 0;
+  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+    others += std::abs(a.pixels[k] - b.pixels[k]) <= most ? 0 : 1;
+  }
+  return static_cast<double>(others) / static_cast<double>(a.pixels.size());
+}
+
 /// What draws in a place.
 inline std::shared_ptr<const inr::Accelerator> DeviceIn(Place place)
 {

@@ -62,16 +62,6 @@ bool ShowsSomething(const inr::Image& image)
   return *std::max_element(image.pixels.begin(), image.pixels.end()) > 0.1f;
 }
 
-/// Which part of the values is off by more than `most`.
-double Others(const inr::Image& a, const inr::Image& b, float most)
-{
-  std::size_t others = 0;
-  for (std::size_t k = 0; k < a.pixels.size(); ++k) {
-    others += std::abs(a.pixels[k] - b.pixels[k]) <= most ? 0 : 1;
-  }
-  return static_cast<double>(others) / static_cast<double>(a.pixels.size());
-}
-
 void ExpectAsMany(std::int64_t drawn, std::int64_t truth)
 {
   // Rounding ends a few rays a round earlier or later.
@@ -109,13 +99,13 @@ INSTANTIATE_TEST_SUITE_P(Kernels, NetworkDrawingOf,
                                           testing::ValuesIn(MarchedCases())),
                          CaseInAPlace::nameOf);
 
-/// Paths meet the same random numbers; a few may part ways for rounding.
 class NetworkPaths : public testing::TestWithParam<bool>
 {};
 
 INSTANTIATE_TEST_SUITE_P(Kernels, NetworkPaths, testing::Bool(),
                          [](const auto& info) { return info.param ? "Layered" : "Plain"; });
 
+/// Paths meet the same random numbers; a few may part ways for rounding.
 TEST_P(NetworkPaths, AreThoseOfTheCpu)
 {
   inr::Frame frame = PlainFrame();

@@ -333,6 +333,25 @@ TEST(Proof, IsOfTheDevice)
   EXPECT_FALSE(other.render(FrameOf(KindNamed("Largest")), image).accelerated);
 }
 
+/// Layers that are not in sight of the volume prove nothing, but not for ever.
+TEST(Proof, OfLayersIsNotTriedForEver)
+{
+  inr::Renderer renderer = RendererOf(OptionsWith(Device()));
+  inr::Frame frame = FrameOf(KindNamed("Plain"));
+  const auto pixels = static_cast<std::size_t>(frame.width) * frame.height;
+  auto layers = std::make_shared<inr::TranslucentLayers>();
+  layers->layers.push_back({std::vector<float>(pixels, 0.999999f),
+                            std::vector<glm::vec4>(pixels, glm::vec4(0.2f, 0.2f, 0.2f, 0.5f))});
+  frame.layers = layers;
+  const std::int64_t first = Asked(renderer, frame);
+  std::int64_t asked = first;
+  for (int k = 0; k < 4; ++k) {
+    ++frame.seed;
+    asked = Asked(renderer, frame);
+  }
+  EXPECT_LT(asked, first);
+}
+
 /// The next picture of a kind is the device's alone.
 TEST(Proof, IsAskedForOnce)
 {

@@ -58,7 +58,8 @@ void Blank(inr::Renderer& renderer, inr::Frame frame)
 TEST(UnfinishedDrawing, ShowsWhatIsThere)
 {
   for (const Case& kind :
-       {Case{"Plain", [](inr::Frame&) {}}, Case{"Lit", Shade}, Case{"Layered", AddLayers}}) {
+       {Case{"Plain", [](inr::Frame&) {}}, Case{"Lit", Shade}, Case{"Layered", AddLayers},
+        Case{"Integrated", [](inr::Frame& frame) { frame.preIntegration = true; }}}) {
     for (const double distance : {0.7, 0.05}) {
       SCOPED_TRACE(kind.name);
       SCOPED_TRACE(distance);

@@ -50,7 +50,7 @@ public:
     return true;
   }
 
-  /// Steps along path() at a place that is a whole number.
+  /// Steps along path() at a place: exactly that, if it is a whole number.
   INR_HOST_DEVICE float along(double place) const
   {
     return static_cast<float>(place - this->Reference);

@@ -66,10 +66,12 @@ private:
     Taken taken{reader, found};
     ClampToRange(this->rangeOf(reader), taken.value);
     const float through = this->State.light.through();
+    this->ProbeMissed = false;
     if (!(finds ? this->crossSurfaces(taken) : this->integrate(taken))) {
       return false;
     }
     this->count(reader, 1, through);
+    this->Counts.missed += this->ProbeMissed && reader.exact() ? 1 : 0; // as a whole, once
     this->Counts.clamped += std::abs(found - taken.value) > RoundingOfStorage ? 1 : 0;
     this->pass(1);
     return true;
@@ -85,7 +87,7 @@ private:
       return false;
     }
     if (!this->Probe.exact()) {
-      ++this->Counts.missed;
+      this->ProbeMissed = true;
       this->Cache.request(this->Probe.wish(), this->State.light.through());
     }
     value = ValueOn(this->Cache, this->Probe.path(), this->Probe.along(place));
@@ -211,6 +213,7 @@ private:
 
   KnownValue& Known;
   BrickReader Probe;
+  bool ProbeMissed = false; ///< something that the present sample looked at was a coarser level's
 };
 
 } // namespace cuda

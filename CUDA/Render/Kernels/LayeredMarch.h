@@ -15,11 +15,11 @@
 namespace inr {
 namespace cuda {
 
-/// As MarchRays does, rays of kind `March`; there may be no layers, too.
+/// Marches rays of kind `March` as MarchRays does its own, with or without layers.
 template <class March> struct MarchInParts
 {
   static constexpr int Threads = 128;
-  static constexpr int LeastBlocks = 4; ///< their rays need more than those of MarchRays
+  static constexpr int LeastBlocks = 4; ///< more registers than for MarchRays
   static constexpr int Turns[] = {RayLists::NoLimit};
 
   /// Where such a ray stands, as long as it waits.
