@@ -225,6 +225,12 @@ std::vector<Case> WaitingCases()
              Shade(frame);
              frame.preIntegration = true;
            }},
+          {"SurfacesBetweenFew", // samples, so that what is looked at may be bricks away
+           [](inr::Frame& frame) {
+             Shade(frame);
+             ShowSurfaces(frame);
+             frame.sampleDistance = 6;
+           }},
           {"LayeredSurfaces",
            [](inr::Frame& frame) {
              AddLayers(frame);
