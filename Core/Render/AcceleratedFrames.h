@@ -51,7 +51,7 @@ private:
   std::shared_ptr<AcceleratedField> Field;
   std::shared_ptr<AcceleratedRenderer> Device;
   std::uint64_t Proven = 0; ///< kinds of pictures, a bit for each
-  int Unlayered = 0;        ///< tries with layers that did not show
+  int Tries = 0;            ///< with rays that told nothing, of layers or of few pixels
 };
 
 } // namespace inr
