@@ -50,7 +50,7 @@ int CachedMarcher::findBegins(CachedRay& state)
       std::copy_n(this->Batch.value + k, count - 1, this->Batch.begin + k + 1);
       k += count;
       rest &= ~(LowestBits(count) << place);
-      state.known = {origin.interval + (place + count) * origin.steps, -1,
+      state.known = {static_cast<double>(origin.interval + (place + count) * origin.steps), -1,
                      this->Batch.value[k - 1]};
     }
   }
@@ -63,7 +63,7 @@ bool CachedMarcher::findBegin(const CachedRay& state, const SampleOrigin& origin
   const std::int64_t interval = origin.interval + place * origin.steps;
   float& begin = this->Batch.begin[sample];
   begin = this->Batch.value[sample];
-  if (interval == state.known.at) {
+  if (static_cast<double>(interval) == state.known.at) {
     begin = state.known.value;
     return true;
   }
@@ -126,7 +126,8 @@ int CachedMarcher::findIntegrated(CachedRay& state, glm::vec4* colors, float* op
 KnownValue CachedMarcher::knownBehind(int sample) const
 {
   const SampleOrigin& origin = this->Placed.originOf(sample);
-  return {origin.intervalOf(sample) + origin.steps, -1, this->Batch.value[sample]};
+  return {static_cast<double>(origin.intervalOf(sample) + origin.steps), -1,
+          this->Batch.value[sample]};
 }
 
 } // namespace inr

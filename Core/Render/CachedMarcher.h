@@ -33,16 +33,6 @@ public:
   RequestList& absent() { return this->Notes.absent; }
 
 private:
-  /// A part of a ray at whose ends the field is on different sides of surfaces.
-  struct SurfaceInterval
-  {
-    int level;
-    double begin; ///< places
-    double end;
-    float first; ///< values there
-    float last;
-  };
-
   /// The same for the part of the way that the ray is on.
   bool marchPart(CachedRay& ray);
   /// Fills the batch and finds its values, unless the ray ends or has to wait.
@@ -87,10 +77,10 @@ private:
   void advanceSurfaces(CachedRay& state);
   /// A sample of the batch and the surfaces in front of it; false when a brick is not there.
   bool crossSurfaces(CachedRay& state, int sample);
-  bool drawSurfaces(CachedRay& state, const SurfaceInterval& interval);
-  bool drawSurface(CachedRay& state, int surface, int level, double place);
-  bool findSurface(const CachedRay& state, const SurfaceInterval& interval, float value,
-                   double& place);
+  /// Those in an interval of the ray's lattice up to `length` steps behind its begin, where the
+  /// value is `last`, and what is left of it since the ray waited here.
+  bool drawSurfaces(CachedRay& state, int level, std::int64_t interval, double length, float last);
+  bool drawSurface(CachedRay& state, float value, int level, double place);
   void clampToRanges();
   /// Of the first `count` samples.
   void takeLogarithms(int count);

@@ -2,6 +2,9 @@
 //
 // What CachedMarcher does with the values of a batch where it looks for isosurfaces.
 #include "Core/Render/CachedMarcher.h"
+#include "Core/Render/SurfaceCrossings.h"
+
+#include <algorithm>
 
 namespace inr {
 
@@ -22,69 +25,48 @@ bool CachedMarcher::crossSurfaces(CachedRay& state, int sample)
 {
   const SampleOrigin& origin = this->Placed.originOf(sample);
   const std::int64_t interval = origin.intervalOf(sample);
-  const auto begin = static_cast<double>(interval);
   const int level = this->Placed.levelOf(sample);
-  SurfaceInterval passed{level, begin, begin + origin.offset, state.known.value,
-                         this->Batch.value[sample]};
-  const bool isFirst = interval < 0; // of the ray: nothing is in front of it
-  const bool isKnown = state.known.at == interval && state.known.level == level;
-  if (!isFirst && !isKnown &&
-      !this->Probe->find(state.ray, level, begin, state.color.transmittance, this->Notes.requests,
-                         passed.first)) {
+  const float value = this->Batch.value[sample];
+  if (interval >= 0 && // else it is of the ray's first, and nothing is in front of that
+      !this->drawSurfaces(state, level, interval, origin.offset, value)) {
     return false;
   }
-  if (!isFirst && !this->drawSurfaces(state, passed)) {
-    return false;
-  }
-  state.known = {interval + origin.steps, level, passed.last};
+  state.known = {static_cast<double>(interval + origin.steps), level, value};
   return true;
 }
 
-bool CachedMarcher::drawSurfaces(CachedRay& state, const SurfaceInterval& interval)
+bool CachedMarcher::drawSurfaces(CachedRay& state, int level, std::int64_t interval, double length,
+                                 float last)
 {
-  const SurfaceLookup& surfaces = this->Scene.settings.projector.surfaces;
-  const int first = surfaces.below(interval.first);
-  const int last = surfaces.below(interval.last);
-  const CachedRay before = state;
-  SurfaceInterval rest = interval;
-  for (int at = first; at != last; at += first < last ? 1 : -1) {
-    const int surface = first < last ? at : at - 1;
-    if (state.color.transmittance <= OpaqueTransmittance) {
-      break;
-    }
-    double place = 0;
-    if (!this->findSurface(state, rest, surfaces.values[surface], place) ||
-        !this->drawSurface(state, surface, interval.level, place)) {
-      state = before;
+  const auto begin = static_cast<double>(interval);
+  KnownValue& known = state.known;
+  const auto look = [&](double place, float& value) {
+    return this->Probe->find(state.ray, level, place, state.color.transmittance,
+                             this->Notes.requests, value);
+  };
+  if (known.at < begin || known.level != level) {
+    const double place = std::max(begin, known.at);
+    float value = 0;
+    if (!look(place, value)) {
       return false;
     }
-    rest.begin = place; // the next one is behind it
+    known = {place, level, value};
   }
-  return true;
+  SurfaceInterval passed{known.at, begin + length, known.value, last};
+  const bool done = DrawSurfaces(
+      this->Scene.settings.projector.surfaces, passed, look, [&](float value, double place) {
+        if (!this->drawSurface(state, value, level, place)) {
+          return BehindSurface::Wait;
+        }
+        const bool isOpaque = state.color.transmittance <= OpaqueTransmittance;
+        return isOpaque ? BehindSurface::End : BehindSurface::GoOn;
+      });
+  known = {passed.begin, level, passed.first}; // what is drawn is not to be drawn again
+  return done;
 }
 
-bool CachedMarcher::findSurface(const CachedRay& state, const SurfaceInterval& interval,
-                                float value, double& place)
+bool CachedMarcher::drawSurface(CachedRay& state, float value, int level, double place)
 {
-  const bool rises = interval.first < interval.last;
-  double low = interval.begin;
-  double high = interval.end;
-  for (int k = 0; k < Bisections; ++k) {
-    const double middle = 0.5 * (low + high);
-    float found = 0;
-    if (!this->Probe->find(state.ray, interval.level, middle, state.color.transmittance,
-                           this->Notes.requests, found)) {
-      return false;
-    }
-    ((found >= value) == rises ? high : low) = middle;
-  }
-  place = 0.5 * (low + high);
-  return true;
-}
-
-bool CachedMarcher::drawSurface(CachedRay& state, int surface, int level, double place)
-{
-  const float value = this->Scene.settings.projector.surfaces.values[surface];
   const double t = place * this->Scene.settings.step;
   if (!state.ray.isInPiece(t)) {
     return true; // that of another picture finds it, too, from the same samples

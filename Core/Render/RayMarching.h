@@ -72,9 +72,6 @@ struct MarchSample
   double end;
 };
 
-/// By which the part of a ray is halved where a surface was passed.
-constexpr int Bisections = 10;
-
 /// Where a field is asked for at a point of a ray: inside a slab of a single voxel, always at it.
 INR_HOST_DEVICE inline glm::vec3 FieldPosition(const MarchSettings& settings,
                                                const glm::dvec3& index)

@@ -6,6 +6,7 @@
 #include "Core/Render/Majorants.h"
 #include "Core/Render/RayMarching.h"
 #include "Core/Render/Shading.h"
+#include "Core/Render/SurfaceCrossings.h"
 #include "Core/Render/Tiling.h"
 
 #include <functional>
@@ -38,14 +39,9 @@ public:
   FrameStatistics march(const Tile& tile, Image& rgba, Image* depth);
 
 private:
-  /// A surface between two places of a ray.
-  struct Crossing
+  struct Crossing : SurfaceCrossing ///< its places are t
   {
     int live; ///< which ray
-    float value;
-    bool rises;
-    double low; ///< t
-    double high;
   };
 
   void generateRays(const Tile& tile);

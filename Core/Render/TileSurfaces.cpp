@@ -35,8 +35,9 @@ void TileMarcher::listCrossing(int live, const MarchSample& sample, float first,
   const Ray& ray =
       this->Rays[static_cast<std::size_t>(this->Live[static_cast<std::size_t>(live)])].ray;
   for (int surface = std::min(from, to); surface < std::max(from, to); ++surface) {
-    this->Crossings.push_back({live, surfaces.values[surface], from < to, sample.begin,
-                               std::min(sample.end, ray.length)});
+    this->Crossings.push_back(
+        {{sample.begin, std::min(sample.end, ray.length), surfaces.values[surface], from < to},
+         live});
   }
 }
 
@@ -45,20 +46,17 @@ void TileMarcher::bisectCrossings()
   const auto count = static_cast<std::int64_t>(this->Crossings.size());
   this->Positions.resize(this->Crossings.size());
   std::vector<float> values(this->Crossings.size());
-  for (int round = 0; round < Bisections; ++round) {
+  for (int round = 0; round < SurfaceCrossing::Halvings; ++round) {
     std::transform(this->Crossings.begin(), this->Crossings.end(), this->Positions.begin(),
                    [this](const Crossing& crossing) {
                      const auto live = static_cast<std::size_t>(crossing.live);
                      const Ray& ray = this->Rays[static_cast<std::size_t>(this->Live[live])].ray;
-                     return FieldPosition(this->Scene.settings,
-                                          ray.at(0.5 * (crossing.low + crossing.high)));
+                     return FieldPosition(this->Scene.settings, ray.at(crossing.middle()));
                    });
     this->Scene.evaluator.evaluate(this->Positions.data(), count, values.data());
     this->Statistics.samples += count;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      Crossing& crossing = this->Crossings[k];
-      const bool isBehind = (values[k] >= crossing.value) == crossing.rises;
-      (isBehind ? crossing.high : crossing.low) = 0.5 * (crossing.low + crossing.high);
+      this->Crossings[k].halve(values[k]);
     }
   }
 }
@@ -75,7 +73,7 @@ void TileMarcher::placeOnSurfaces()
   for (const Crossing& crossing : this->Crossings) {
     const auto live = static_cast<std::size_t>(crossing.live);
     const Ray& ray = this->Rays[static_cast<std::size_t>(this->Live[live])].ray;
-    const double t = 0.5 * (crossing.low + crossing.high);
+    const double t = crossing.middle();
     if (!ray.isInPiece(t)) {
       continue; // another picture's
     }

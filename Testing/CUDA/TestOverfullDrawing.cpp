@@ -104,8 +104,12 @@ INSTANTIATE_TEST_SUITE_P(Kernels, OverfullDrawing, testing::Values(Place::Host, 
 /// Every sample is taken once, and what is finished is final.
 TEST_P(OverfullDrawing, GoesOnWithTheSameRays)
 {
-  for (const inr::Frame& frame :
-       {FullResolution(inr::RenderMode::RayMarching), LitFrame(inr::RenderMode::RayMarching)}) {
+  inr::Frame surfaces = LitFrame(inr::RenderMode::RayMarching);
+  ShowSurfaces(surfaces);
+  inr::Frame integrated = LitFrame(inr::RenderMode::RayMarching);
+  integrated.preIntegration = true;
+  for (const inr::Frame& frame : {FullResolution(inr::RenderMode::RayMarching),
+                                  LitFrame(inr::RenderMode::RayMarching), surfaces, integrated}) {
     const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
     inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
     inr::Image image;
@@ -141,6 +145,25 @@ TEST_P(OverfullDrawing, EndsAtOnceWithoutALimit)
     EXPECT_TRUE(renderer.render(frame, image).complete);
     EXPECT_EQ(image.pixels, truth.rgba.pixels);
   }
+}
+
+/// Of which a step crosses several, each lit by bricks around it.
+TEST_P(OverfullDrawing, GoesOnBetweenTheSurfacesOfAStep)
+{
+  inr::Frame frame = LitFrame(inr::RenderMode::RayMarching);
+  const inr::VolumeInfo& volume = TrainedModel()->volume;
+  frame.sampleDistance = 5;
+  frame.blending.mode = inr::BlendMode::Isosurface;
+  for (double value = 0.55; value < 0.75; value += 0.02) { // where colours are translucent
+    frame.blending.isosurfaces.push_back(volume.low + value * (volume.high - volume.low));
+  }
+  const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
+  inr::Renderer renderer = RendererOf(RoomFor(GetParam(), inr::BrickCache::FewestBricks));
+  inr::Image image;
+  int asked = 0;
+  renderer.render(frame, image, nullptr, [&] { return ++asked < 1000000; });
+  EXPECT_EQ(image.pixels, truth.rgba.pixels);
+  EXPECT_FALSE(renderer.acceleratorFailure());
 }
 
 TEST_P(OverfullDrawing, BeginsAnewForOtherPicturesAndColours)

@@ -7,6 +7,7 @@
 #include "CUDA/Render/Kernels/RayMarch.h"
 #include "Core/Render/KnownValue.h"
 #include "Core/Render/PreIntegratedColors.h"
+#include "Core/Render/SurfaceCrossings.h"
 
 namespace inr {
 namespace cuda {
@@ -49,7 +50,8 @@ private:
     float value;
   };
 
-  /// False where it, or what is looked at for it, waits for a brick: then nothing has changed.
+  /// False where it, or what is looked at for it, waits for a brick: then nothing has changed, but
+  /// that surfaces in front of it may be drawn.
   INR_HOST_DEVICE bool takeNext()
   {
     const bool finds = this->Scene.settings.projector.findsSurfaces();
@@ -99,7 +101,7 @@ private:
   {
     const std::int64_t interval = this->Samples.next();
     float begin = this->Known.value;
-    if (interval >= 0 && this->Known.at != interval &&
+    if (interval >= 0 && this->Known.at != static_cast<double>(interval) &&
         !this->probe(taken.reader.servedLevel(), static_cast<double>(interval), begin)) {
       return false;
     }
@@ -120,76 +122,46 @@ private:
     } else {
       this->State.light.count();
     }
-    this->Known = {interval + this->Alike.steps(), -1, taken.value};
+    this->Known = {static_cast<double>(interval + this->Alike.steps()), -1, taken.value};
     return true;
   }
-
-  /// A part of the ray, as a level has it, with its ends' values.
-  struct Passed
-  {
-    int level;
-    double begin; ///< places
-    double end;
-    float first;
-    float last;
-  };
 
   INR_HOST_DEVICE bool crossSurfaces(const Taken& taken)
   {
     const std::int64_t interval = this->Samples.next();
-    const int level = taken.reader.servedLevel();
-    Passed passed{level, static_cast<double>(interval), this->placeOf(0), this->Known.value,
-                  taken.value};
-    const bool isFirst = interval < 0; // of the ray: nothing is in front of it
-    const bool isKnown = this->Known.at == interval && this->Known.level == level;
-    if (!isFirst && !isKnown && !this->probe(level, passed.begin, passed.first)) {
-      return false;
-    }
-    if (!isFirst && !this->drawSurfaces(passed)) {
+    if (interval >= 0 && !this->drawSurfaces(taken)) { // else nothing is in front of it
       return false;
     }
     this->State.light.count();
-    this->Known = {interval + this->Alike.steps(), level, taken.value};
+    this->Known = {static_cast<double>(interval + this->Alike.steps()), taken.reader.servedLevel(),
+                   taken.value};
     return true;
   }
 
-  /// All of them, or none where one waits.
-  INR_HOST_DEVICE bool drawSurfaces(Passed passed)
+  /// Those in front of the next sample, and what is left of them since the ray waited here.
+  INR_HOST_DEVICE bool drawSurfaces(const Taken& taken)
   {
-    const SurfaceLookup& surfaces = this->Scene.settings.projector.surfaces;
-    const int first = surfaces.below(passed.first);
-    const int last = surfaces.below(passed.last);
-    const GatheredLight light = this->State.light;
-    const double halfOpaqueAt = this->State.halfOpaqueAt;
-    for (int at = first; at != last && !this->State.light.isOpaque(); at += first < last ? 1 : -1) {
-      const float value = surfaces.values[first < last ? at : at - 1];
-      double place = 0;
-      if (!this->findSurface(passed, value, place) ||
-          !this->drawSurface(passed.level, value, place)) {
-        this->State.light = light;
-        this->State.halfOpaqueAt = halfOpaqueAt;
+    const int level = taken.reader.servedLevel();
+    const auto begin = static_cast<double>(this->Samples.next());
+    const auto look = [&](double place, float& value) { return this->probe(level, place, value); };
+    if (this->Known.at < begin || this->Known.level != level) {
+      const double place = this->Known.at < begin ? begin : this->Known.at;
+      float value = 0;
+      if (!look(place, value)) {
         return false;
       }
-      passed.begin = place; // the next one is behind it
+      this->Known = {place, level, value};
     }
-    return true;
-  }
-
-  INR_HOST_DEVICE bool findSurface(const Passed& passed, float value, double& place)
-  {
-    const bool rises = passed.first < passed.last;
-    double low = passed.begin;
-    double high = passed.end;
-    for (int k = 0; k < Bisections; ++k) {
-      const double middle = 0.5 * (low + high);
-      float found = 0;
-      if (!this->probe(passed.level, middle, found)) {
-        return false;
-      }
-      ((found >= value) == rises ? high : low) = middle;
-    }
-    place = 0.5 * (low + high);
-    return true;
+    SurfaceInterval passed{this->Known.at, this->placeOf(0), this->Known.value, taken.value};
+    const bool done = DrawSurfaces(
+        this->Scene.settings.projector.surfaces, passed, look, [&](float value, double place) {
+          if (!this->drawSurface(level, value, place)) {
+            return BehindSurface::Wait;
+          }
+          return this->State.light.isOpaque() ? BehindSurface::End : BehindSurface::GoOn;
+        });
+    this->Known = {passed.begin, level, passed.first}; // what is drawn is not to be drawn again
+    return done;
   }
 
   INR_HOST_DEVICE bool drawSurface(int level, float value, double place)

@@ -41,6 +41,19 @@ inr::Frame LitFrame(const BlendScene& scene)
   return frame;
 }
 
+/// Bytes that hold no more than what a cache can do its work with.
+std::int64_t SmallestCache(const glm::i64vec3& dims, inr::CacheOptions options)
+{
+  for (options.bytes = 1024;; options.bytes += 256) {
+    try {
+      inr::Renderer renderer = CachedRenderer(dims, Waves, options, 1);
+      return options.bytes;
+    } catch (const inr::Error&) {
+      continue; // too few
+    }
+  }
+}
+
 struct Truth
 {
   glm::dvec4 color{0.0};
@@ -250,6 +263,45 @@ TEST(Isosurface, DependsOnNeitherThreadsNorTheSizeOfTheCache)
   EXPECT_TRUE(other.render(frame, second).complete);
   EXPECT_EQ(first.pixels, second.pixels);
   EXPECT_GT(other.cachedBricks(), one.cachedBricks());
+}
+
+// What the light of them all depends on is eight bricks, and one more is always there.
+TEST(Isosurface, OfManyAtACornerOfBricksComesFromTheSmallestCache)
+{
+  constexpr std::int64_t edge = 33;
+  const glm::dvec3 corner(16.0);
+  const auto field = [](const glm::vec3& u) {
+    const float along = (u.x + u.y + u.z - 1.5f) * edge; // point index 16 is at u = 0.5
+    return std::clamp(0.5f + along / 6, 0.0f, 1.0f);
+  };
+  inr::Frame frame;
+  frame.width = frame.height = 12;
+  const glm::dmat4 view =
+      glm::lookAt(corner - glm::dvec3(20, 22, 24), corner, glm::dvec3(0.1, 1, 0));
+  frame.clipToWorld = glm::inverse(glm::ortho(-1.5, 1.5, -1.5, 1.5, 1.0, 80.0) * view);
+  frame.levelOfDetailScale = 0;
+  frame.sampleDistance = 4; // a step may cross all of them
+  frame.blending.mode = inr::BlendMode::Isosurface;
+  frame.blending.isosurfaces = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+  frame.shading.emplace();
+  frame.lights = {inr::Light{}};
+
+  inr::Image pictures[2];
+  std::int64_t held[2];
+  for (const bool isSmall : {false, true}) {
+    inr::CacheOptions cache = Options(inr::CachePrecision::Float32, 9);
+    cache.bytes = isSmall ? SmallestCache({edge, edge, edge}, cache) : cache.bytes;
+    inr::Renderer renderer = CachedRenderer({edge, edge, edge}, field, cache, 1);
+    renderer.setTransferFunction(UniformMedium(0.2f));
+    int asked = 0;
+    renderer.render(frame, pictures[isSmall], nullptr, [&] { return ++asked < 100000; });
+    held[isSmall] = renderer.cachedBricks();
+  }
+  EXPECT_EQ(held[1], inr::BrickCache::FewestBricks);
+  EXPECT_GT(held[0], held[1]);
+  EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
+  const float* middle = pictures[0].pixel(6, 6);
+  EXPECT_NEAR(middle[3], 1 - std::pow(0.8, 9), 0.02); // it does cross them all
 }
 
 TEST(Isosurface, RefinesWithinATimeLimit)

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where a ray crosses isosurfaces, by halving what it passed; the same for all backends.
+#pragma once
+
+#include "Core/HostDevice.h"
+#include "Core/Render/Isosurfaces.h"
+
+#include <cmath>
+
+namespace inr {
+
+/// A place between two others on a ray, in whatever unit these are, where the field takes a value.
+struct SurfaceCrossing
+{
+  static constexpr int Halvings = 10;
+
+  double low;
+  double high;
+  float value;
+  bool rises; ///< the field, from low to high
+
+  INR_HOST_DEVICE double middle() const { return 0.5 * (this->low + this->high); }
+  /// To the half that it is in, when the field is `found` in the middle.
+  INR_HOST_DEVICE void halve(float found)
+  {
+    ((found >= this->value) == this->rises ? this->high : this->low) = this->middle();
+  }
+};
+
+/// A part of a ray, and the field's values at its ends.
+struct SurfaceInterval
+{
+  double begin;
+  double end;
+  float first;
+  float last;
+
+  INR_HOST_DEVICE bool rises() const { return this->first < this->last; }
+  /// Only what is behind a place where it takes `value`.
+  INR_HOST_DEVICE void cutBehind(double place, float value)
+  {
+    // A field that falls has passed the value when it is below.
+    this->first = this->rises() ? value : std::nextafter(value, -static_cast<float>(Infinite));
+    this->begin = place;
+  }
+};
+
+/// What a ray does behind a surface that it was to draw.
+enum class BehindSurface {
+  GoOn,
+  End, ///< nothing behind it shows
+  Wait ///< it could not be drawn yet
+};
+
+/// Draws the surfaces in `interval` from front to back, as long as they show. `look(place, value)`:
+/// the field there, false where the ray waits for that; `draw(value, place)`: see BehindSurface.
+/// False when the ray waits: `interval` is then what is behind the latest surface drawn.
+template <class Look, class Draw>
+INR_HOST_DEVICE bool DrawSurfaces(const SurfaceLookup& surfaces, SurfaceInterval& interval,
+                                  Look&& look, Draw&& draw)
+{
+  const bool rises = interval.rises();
+  const int last = surfaces.below(interval.last);
+  for (int at = surfaces.below(interval.first); at != last; at += rises ? 1 : -1) {
+    SurfaceCrossing crossing{interval.begin, interval.end, surfaces.values[rises ? at : at - 1],
+                             rises};
+    for (int k = 0; k < SurfaceCrossing::Halvings; ++k) {
+      float found = 0;
+      if (!look(crossing.middle(), found)) {
+        return false;
+      }
+      crossing.halve(found);
+    }
+    const BehindSurface behind = draw(crossing.value, crossing.middle());
+    if (behind != BehindSurface::GoOn) {
+      return behind == BehindSurface::End;
+    }
+    interval.cutBehind(crossing.middle(), crossing.value);
+  }
+  return true;
+}
+
+} // namespace inr
