@@ -1,4 +1,4 @@
-# The plugin's pages in ParaView's own help (F1): from the README and the XML, by Plugin/Help. Only
+# The plugin's pages in ParaView's own help (F1): from README, Documentation and the XML, by Plugin/Help. Only
 # where Qt's documentation tools are, as ParaView's functions need them.
 
 # inr_help_arguments(OUTPUT XML...): what paraview_add_plugin is to be told of help.
@@ -16,7 +16,8 @@ function (inr_help_arguments output)
   endif ()
 
   set(scripts "${PROJECT_SOURCE_DIR}/Plugin/Help")
-  set(readme "${PROJECT_SOURCE_DIR}/README.md")
+  set(documents "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/Documentation/Guide.md"
+    "${PROJECT_SOURCE_DIR}/Documentation/GPU.md")
   set(pages "${CMAKE_CURRENT_BINARY_DIR}/help")
   list(TRANSFORM ARGN PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" OUTPUT_VARIABLE xmls)
   # ParaView's function wants the table of contents now.
@@ -26,9 +27,9 @@ function (inr_help_arguments output)
     OUTPUT_VARIABLE contents OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   add_custom_command(
     OUTPUT "${pages}/index.html"
-    COMMAND "${Python3_EXECUTABLE}" -B "${scripts}/make_help.py" "${readme}" "${pages}" ${xmls}
-    DEPENDS "${scripts}/make_help.py" "${scripts}/readme_pages.py" "${scripts}/proxy_pages.py"
-      "${readme}" ${xmls}
+    COMMAND "${Python3_EXECUTABLE}" -B "${scripts}/make_help.py" "${pages}" ${documents} ${xmls}
+    DEPENDS "${scripts}/make_help.py" "${scripts}/markdown_pages.py" "${scripts}/proxy_pages.py"
+      ${documents} ${xmls}
     COMMENT "Writing the pages of the help")
   set_property(GLOBAL PROPERTY INR_HELP_FILE "${CMAKE_CURRENT_BINARY_DIR}/paraview_help/INRVolume.qch")
   set("${output}"

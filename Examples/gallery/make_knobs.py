@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the README's figure of what the settings of quality do to a picture and to its time.
+"""Makes the guide's figure of what the settings of quality do to a picture and to its time.
 
     PYTHONPATH=build/lib/python pvpython Examples/gallery/make_knobs.py MODELS PICTURES
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the pages of the plugin's help: of the README what somebody at ParaView's window needs, and a
-page for every proxy from the XML that describes it.
+"""Writes the pages of the plugin's help: of README and Documentation what somebody at ParaView's window
+needs, and a page for every proxy from the XML that describes it.
 
-    python3 make_help.py README.md FOLDER XML...   empties FOLDER first and writes index.html last
-    python3 make_help.py --contents XML...         prints the table of contents, as Qt's help wants it
+    python3 make_help.py FOLDER README.md MARKDOWN... XML...   empties FOLDER first, writes index.html last
+    python3 make_help.py --contents XML...                     prints the table of contents for Qt's help
 """
 import html
 import os
@@ -11,9 +11,9 @@ import shutil
 import sys
 
 import proxy_pages
-from readme_pages import Markdown, anchor, sections
+from markdown_pages import Markdown, anchor
 
-# The README's headings that become pages, in this order.
+# The headings that become pages, in this order.
 TOPICS = (
     "In ParaView's window",
     "What to turn",
@@ -21,6 +21,7 @@ TOPICS = (
     "What is in a file",
     "Volumes larger than memory",
     "Time series",
+    "Training in parallel",
     "In situ",
     "Filters and exact pictures",
     "With a server",
@@ -40,21 +41,28 @@ def page(title, body):
     )
 
 
-def topic_pages(readme):
-    """Titles and contents of the README's pages by file name, the README's first words, and the
+def topic_pages(documents):
+    """Titles and contents of the documents' pages by file name, the README's first words, and the
     pictures that the pages show."""
-    with open(readme, encoding="utf-8") as file:
-        found = {heading: body for _, heading, body in sections(file.read())}
-    names = {anchor(topic): anchor(topic) + ".html" for topic in TOPICS}
-    markdown = Markdown(os.path.dirname(os.path.abspath(readme)), names)
-    pages = {}
+    found, pages = {}, {}
+    markdowns = [Markdown(path, pages) for path in documents]
+    for markdown in markdowns:
+        for heading, body in markdown.sections():
+            found[heading] = markdown, body
+            if heading in TOPICS:
+                name = anchor(heading)
+                pages[markdown.path, name] = name + ".html"
+                pages.setdefault((markdown.path, ""), name + ".html")
+    topics = {}
     for topic in TOPICS:
         if topic in found:
-            pages[names[anchor(topic)]] = topic, markdown.convert(found[topic])
+            markdown, body = found[topic]
+            topics[anchor(topic) + ".html"] = topic, markdown.convert(body)
         else:  # a plugin can be built all the same; the test fails
-            print(f"make_help.py: the README has no section {topic!r}", file=sys.stderr)
-    first = markdown.convert(found["INRVolume"])
-    return pages, first, markdown.pictures
+            print(f"make_help.py: no document has a section {topic!r}", file=sys.stderr)
+    markdown, body = found["INRVolume"]
+    first = markdown.convert(body)
+    return topics, first, set().union(*(markdown.pictures for markdown in markdowns))
 
 
 def proxy_list(files):
@@ -89,9 +97,9 @@ def print_contents(*files):
     print(f'<toc><section title="INRVolume" ref="index.html">{"".join(parts)}</section></toc>')
 
 
-def write_pages(readme, folder, *files):
-    topics, first, pictures = topic_pages(readme)
-    proxies, briefs = proxy_list(files)
+def write_pages(folder, *files):
+    topics, first, pictures = topic_pages([file for file in files if file.endswith(".md")])
+    proxies, briefs = proxy_list([file for file in files if file.endswith(".xml")])
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     texts = {name: page(*content) for name, content in {**topics, **proxies}.items()}

@@ -80,7 +80,7 @@ page = "representations.INRVolumeRepresentation.html"
 for row in "Opacity Unit Distance<br><code>INRUnitDistance</code>", "Render Mode<br><code>RenderMode</code>":
     check(row in texts[page], page, "has no row", row)
 
-# The README's: headings, tables, and links between them.
+# README's and Documentation's: headings, tables, and links between them.
 check("<td><code>RenderMode</code></td>" in texts["what-to-turn.html"], texts["what-to-turn.html"])
 check("troubleshooting.html" in listed and listed[0] == "index.html", listed)
 check(len(set(listed)) == len(listed), "listed twice", listed)

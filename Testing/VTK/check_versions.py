@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The README's table of VTK versions is true: of this build, of the wheel's, and of the last run of
+"""Documentation/Wheel.md's table of VTK versions is true: of this build, of the wheel's, and of the last run of
 Testing/Wheel/run.sh; and only VTKCompat.h asks for VTK's version.
 
     check_versions.py VERSION      that of the VTK that this build is against
@@ -12,8 +12,8 @@ from pathlib import Path
 version = sys.argv[1]
 sources = Path(__file__).resolve().parents[2]
 
-readme = (sources / "README.md").read_text()
-table = readme.split("| VTK | where it comes from | tested by |\n")[1].split("\n\n")[0]
+wheel_page = (sources / "Documentation/Wheel.md").read_text()
+table = wheel_page.split("| VTK | where it comes from | tested by |\n")[1].split("\n\n")[0]
 rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[1:]]
 tested = {row[0]: row for row in rows if row[2] != "not tested"}
 print("\n".join(" | ".join(row) for row in rows))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parts of the README as HTML pages: of Markdown, what the README uses."""
+"""Sections of Markdown files as HTML pages: of Markdown, what README and Documentation use."""
 import html
 import os
 import re
@@ -22,38 +22,47 @@ def png_width(path):
 
 
 def sections(text):
-    """Yields (level, heading, body) of each heading of `text`; what is in fences is no heading."""
-    level, heading, body, fenced = 1, "", [], False
+    """Yields heading and body of each section of `text`; what is in fences is no heading."""
+    heading, body, fenced = "", [], False
     for line in text.splitlines():
         fenced ^= line.startswith("```")
-        found = None if fenced else re.match(r"(#{1,3}) (.*)", line)
+        found = None if fenced else re.match(r"#{1,3} (.*)", line)
         if not found:
             body.append(line)
             continue
-        yield level, heading, "\n".join(body)
-        level, heading, body = len(found[1]), found[2], []
-    yield level, heading, "\n".join(body)
+        yield heading, "\n".join(body)
+        heading, body = found[1], []
+    yield heading, "\n".join(body)
 
 
 class Markdown:
-    """Turns Markdown into HTML. `pages`: from anchors to the pages they are on; other links become
-    plain text. `root`: the folder that pictures are relative to; `pictures` collects those seen."""
+    """Turns a file's Markdown into HTML. `pages`: by path and anchor of what became pages; links to
+    other things become plain text. `pictures` collects those seen."""
 
-    def __init__(self, root, pages):
-        self.root = root
+    def __init__(self, path, pages):
+        self.path = os.path.abspath(path)
         self.pages = pages
         self.pictures = set()
         self.room = sys.maxsize  # pixels for a picture
+
+    def sections(self):
+        """Yields heading and body of each."""
+        with open(self.path, encoding="utf-8") as file:
+            yield from sections(file.read())
+
+    def absolute(self, target):
+        return os.path.normpath(os.path.join(os.path.dirname(self.path), target))
 
     def link(self, found):
         text, target = found.groups()
         if target.startswith(("http:", "https:")):
             return f'<a href="{target}">{text}</a>'
-        page = self.pages.get(target[1:]) if target.startswith("#") else None
+        path, _, name = target.partition("#")
+        page = self.pages.get((self.absolute(path) if path else self.path, name))
         return f'<a href="{page}">{text}</a>' if page else text
 
     def picture(self, found):
-        path = os.path.join(self.root, found[1])
+        path = self.absolute(found[1])
         if not os.path.dirname(path).endswith("gallery"):
             return ""  # plots belong to the measurements, which are not in the help
         self.pictures.add(path)
