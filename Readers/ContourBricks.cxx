@@ -92,15 +92,16 @@ std::int64_t CrossedCells::Count() const
 int ContourBricks::CoarsestLevel(const glm::i64vec3& dims, const inr::MacroCells& cells)
 {
   int level = 0;
-  while (!IsSmall(LevelDims(dims, level + 1)) &&
+  while (!IsSmall(inr::VoxelsAtLevel(dims, level + 1)) &&
          inr::Hierarchy(dims, BrickSize(dims, cells, level + 1)).levels() > level + 1) {
     ++level;
   }
   return level;
 }
 
-ContourBricks::ContourBricks(const glm::i64vec3& dims, const inr::MacroCells& cells, int level)
-    : Cells(cells), Level(level), Levels(dims, BrickSize(dims, cells, level))
+ContourBricks::ContourBricks(const inr::Model& model, int level)
+    : Cells(model.macroCells), Level(level), Points(SamplesPerAxis(model, level)),
+      Levels(model.volume.dims, BrickSize(model.volume.dims, model.macroCells, level))
 {}
 
 ContourBricks::Box ContourBricks::BoxOf(inr::BrickKey key) const
@@ -112,7 +113,7 @@ ContourBricks::Box ContourBricks::BoxOf(inr::BrickKey key) const
 double ContourBricks::SamplesPerBrick() const
 {
   const glm::dvec3 voxels = glm::dvec3(this->Levels.brickDims()) + 2.0;
-  return voxels.x * voxels.y * voxels.z * (this->Level > 0 ? 8 : 1);
+  return voxels.x * voxels.y * voxels.z * (this->Points * this->Points * this->Points);
 }
 
 /// A brick needs the ranges of as few macro-cells as hold, with what they know of their

@@ -40,8 +40,9 @@ public:
   /// The last level that has two voxels or more along every axis, or is a single brick.
   static int CoarsestLevel(const glm::i64vec3& dims, const inr::MacroCells& cells);
 
-  /// Throws inr::Error for too many bricks along an axis. `level` is CoarsestLevel at most.
-  ContourBricks(const glm::i64vec3& dims, const inr::MacroCells& cells, int level);
+  /// Throws inr::Error for too many bricks along an axis. `level` is CoarsestLevel at most. `model`
+  /// must outlive this.
+  ContourBricks(const inr::Model& model, int level);
 
   int GetLevel() const { return this->Level; }
   glm::i64vec3 Size() const { return this->Levels.size(this->Level); } ///< in voxels
@@ -70,5 +71,6 @@ private:
 
   const inr::MacroCells& Cells;
   int Level;
+  int Points; ///< that a voxel is the mean of, per axis
   inr::Hierarchy Levels;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/LevelPoints.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Model/Model.h"
 
@@ -10,23 +11,21 @@
 #include <cstdint>
 #include <vector>
 
-/// Voxels per axis of a level: each has half as many as the one before, rounded up.
-inline glm::i64vec3 LevelDims(glm::i64vec3 dims, int level)
+/// How many samples per axis a voxel of a level is the mean of.
+inline int SamplesPerAxis(const inr::Model& model, int level)
 {
-  for (; level > 0; --level) {
-    dims = (dims + std::int64_t{1}) / std::int64_t{2};
-  }
-  return dims;
+  const std::int64_t resolution = inr::Layout(model.description).finestResolution();
+  return inr::PointsPerAxis(model.volume.dims, level, resolution);
 }
 
-/// The voxels of a level: a sample each on level 0, else the mean of two per axis.
+/// The voxels of a level, as the renderer has them.
 struct LevelSampler
 {
-  LevelSampler(const inr::VolumeInfo& volume, int level)
-      : Dims(LevelDims(volume.dims, level)), PerAxis(1)
+  LevelSampler(const inr::Model& model, int level)
+      : Dims(inr::VoxelsAtLevel(model.volume.dims, level)), PerAxis(1)
   {
     for (int axis = 0; axis < 3; ++axis) {
-      this->PerAxis[axis] = level > 0 && volume.dims[axis] > 1 ? 2 : 1;
+      this->PerAxis[axis] = model.volume.dims[axis] > 1 ? SamplesPerAxis(model, level) : 1;
     }
   }
 

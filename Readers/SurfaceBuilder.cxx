@@ -57,7 +57,7 @@ SurfaceBuilder::SurfaceBuilder(const NativeGrid& grid, int level, std::size_t su
                                bool normals)
     : ArrayName(grid.arrayName), Axes(grid.Axes()), Shared(surfaces)
 {
-  const glm::i64vec3 size = LevelDims(grid.model->volume.dims, level);
+  const glm::i64vec3 size = inr::VoxelsAtLevel(grid.model->volume.dims, level);
   const glm::dvec3 growth = glm::dvec3(grid.model->volume.dims) / glm::dvec3(size);
   this->Origin = grid.origin + this->Axes * (0.5 * (growth - 1.0));
   for (int axis = 0; axis < 3; ++axis) {

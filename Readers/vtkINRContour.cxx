@@ -46,8 +46,7 @@ public:
   PatchMaker(const inr::ModelPointer& model, const ContourBricks& bricks,
              const std::vector<double>& values, bool gradients)
       : Volume(model->volume), Evaluator(inr::MakeEvaluator(model)),
-        Sampler(model->volume, bricks.GetLevel()), Bricks(bricks), Values(values),
-        Gradients(gradients)
+        Sampler(*model, bricks.GetLevel()), Bricks(bricks), Values(values), Gradients(gradients)
   {}
 
   /// By brick, then by value.
@@ -182,7 +181,7 @@ void vtkINRContour::Contour(const NativeGrid& grid, vtkInformation* outInfo,
   this->NumberOfCells = static_cast<vtkIdType>(model.macroCells.ranges.size());
   this->SkippedCells = this->NumberOfCells - crossed.Count();
   const Selection selection = this->Select(model, crossed);
-  const ContourBricks bricks(model.volume.dims, model.macroCells, selection.level);
+  const ContourBricks bricks(model, selection.level);
   this->LevelInUse = selection.level;
   this->NumberOfBricks = bricks.Bricks().x * bricks.Bricks().y * bricks.Bricks().z;
 
@@ -206,14 +205,14 @@ vtkINRContour::Selection vtkINRContour::Select(const inr::Model& model,
   const int coarsest = ContourBricks::CoarsestLevel(dims, model.macroCells);
   int level = std::clamp(this->Level, 0, coarsest);
   for (; this->Level < 0 && level < coarsest; ++level) {
-    const ContourBricks bricks(dims, model.macroCells, level);
+    const ContourBricks bricks(model, level);
     const double limit = static_cast<double>(this->MaximumSamples) / bricks.SamplesPerBrick();
     const auto selected = bricks.Select(crossed, static_cast<std::int64_t>(limit));
     if (selected) {
       return {level, *selected};
     }
   }
-  const auto selected = ContourBricks(dims, model.macroCells, level).Select(crossed, MostBricks);
+  const auto selected = ContourBricks(model, level).Select(crossed, MostBricks);
   if (!selected) {
     throw inr::Error(inr::ErrorCode::TooLarge,
                      "the surface may run through more than " + std::to_string(MostBricks) +

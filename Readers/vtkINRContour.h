@@ -58,9 +58,9 @@ public:
   ///@}
 
   ///@{
-  /// Evaluations of the network that an automatic Level may take: one per voxel on level 0, eight
-  /// per voxel on the others. Default 2^27, on two cores some seconds with a small model and some
-  /// 20 with one of instantvnr's size.
+  /// Evaluations of the network that an automatic Level may take: one per voxel on level 0, and one
+  /// or eight per voxel on the others. Default 2^27, on two cores some seconds with a small model
+  /// and some 20 with one of instantvnr's size.
   vtkSetClampMacro(MaximumSamples, vtkIdType, 1, VTK_ID_MAX);
   vtkGetMacro(MaximumSamples, vtkIdType);
   ///@}

@@ -107,7 +107,7 @@ bool vtkINRDecode::DescribeOutput(vtkInformation* outInfo)
     return false;
   }
   const inr::VolumeInfo& volume = grid->model->volume;
-  const glm::i64vec3 dims = LevelDims(volume.dims, this->Level);
+  const glm::i64vec3 dims = inr::VoxelsAtLevel(volume.dims, this->Level);
   const glm::dvec3 growth = glm::dvec3(volume.dims) / glm::dvec3(dims);
   const glm::dvec3 spacing = grid->spacing * growth;
   const glm::dvec3 origin = grid->origin + grid->direction * (0.5 * grid->spacing * (growth - 1.0));
@@ -194,7 +194,7 @@ bool vtkINRDecode::Fill(const NativeGrid& grid, const int extent[6], T* values, 
   const auto evaluator = inr::MakeEvaluator(grid.model);
   const inr::Arena arena;
   const inr::VolumeInfo& volume = grid.model->volume;
-  const LevelSampler sampler(volume, this->Level);
+  const LevelSampler sampler(*grid.model, this->Level);
   const std::int64_t width = extent[1] - extent[0] + 1;
   const std::int64_t height = extent[3] - extent[2] + 1;
   const std::int64_t depth = extent[5] - extent[4] + 1;

@@ -39,7 +39,7 @@ void RequireAgreement(const Evaluator& device, const Evaluator& cpu)
   RequireEqual(values[0], values[1]);
 }
 
-/// One layer in the middle of the finest level, and one of the coarsest, which is filtered.
+/// One layer in the middle of the finest level, and one of the coarsest.
 void RequireAgreement(const BrickSource& device, const BrickSource& cpu)
 {
   const Hierarchy& levels = cpu.hierarchy();
@@ -55,7 +55,12 @@ void RequireAgreement(const BrickSource& device, const BrickSource& cpu)
 
 bool IsSame(const Hierarchy& a, const Hierarchy& b)
 {
-  return a.dims() == b.dims() && a.brickDims() == b.brickDims();
+  const auto isAlike = [&](int level) { return a.points(level) == b.points(level); };
+  bool isSame = a.dims() == b.dims() && a.brickDims() == b.brickDims();
+  for (int level = 0; isSame && level < a.levels(); ++level) {
+    isSame = isAlike(level);
+  }
+  return isSame;
 }
 
 /// Whether `device`, which may be null, has done what `call` asks of it.
@@ -98,6 +103,7 @@ public:
     const std::shared_ptr<const Evaluator> device = this->Field->evaluator(*this->Cpu);
     return device ? device->pointsAtOnce() : 0;
   }
+  std::int64_t resolution() const override { return this->Cpu->resolution(); }
   std::string kernel() const override { return this->Cpu->kernel(); }
 
 private:

@@ -46,4 +46,11 @@ INR_HOST_DEVICE inline std::int64_t VoxelsAtLevel(std::int64_t voxels, int level
   return (voxels + together - 1) / together; // rounding up level by level is the same
 }
 
+/// The same along all axes.
+INR_HOST_DEVICE inline glm::i64vec3 VoxelsAtLevel(const glm::i64vec3& voxels, int level)
+{
+  return {VoxelsAtLevel(voxels.x, level), VoxelsAtLevel(voxels.y, level),
+          VoxelsAtLevel(voxels.z, level)};
+}
+
 } // namespace inr

@@ -28,9 +28,6 @@ BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
   return {first, glm::min(glm::i64vec3(hierarchy.brickDims()), hierarchy.size(id.level) - first)};
 }
 
-/// Points of each voxel of a level, along an axis.
-std::int64_t PointsPerAxis(int level) { return level == 0 ? 1 : 2; }
-
 /// Of all cells that a brick's voxels reach into.
 ValueRange RangeWithin(const MacroCells& cells, const Hierarchy& hierarchy, BrickKey key)
 {
@@ -109,7 +106,7 @@ private:
   /// A single layer of voxels.
   std::vector<float> valuesIn(int level, const glm::i64vec3& begin, const glm::i64vec3& count) const
   {
-    const std::int64_t points = PointsPerAxis(level);
+    const std::int64_t points = this->hierarchy().points(level);
     std::vector<float> axes[3];
     for (int axis = 0; axis < 3; ++axis) {
       const auto size = static_cast<double>(this->hierarchy().size(level)[axis]);
@@ -177,7 +174,7 @@ std::int64_t BrickSource::points(const BrickPart& part) const
       });
     }
   }
-  const std::int64_t points = PointsPerAxis(IdOf(part.key).level);
+  const std::int64_t points = this->Levels.points(IdOf(part.key).level);
   return voxels * points * points * points;
 }
 

@@ -75,9 +75,9 @@ private:
   BlockLattice Lattice;
 };
 
-/// Bricks of any field over the unit cube: level 0 holds its values at the voxels, a coarser level
-/// the mean over 2 x 2 x 2 points of each voxel (a box filter). `cells`: of the field, whose ranges
-/// hold; may be null.
+/// Bricks of any field over the unit cube: levels hold its values at the voxels, or the mean over 2
+/// x 2 x 2 points of each, as `hierarchy` says. `cells`: of the field, whose ranges hold; may be
+/// null.
 std::shared_ptr<const BrickSource>
 MakeBrickSource(std::shared_ptr<const Evaluator> field, const Hierarchy& hierarchy,
                 std::shared_ptr<const MacroCells> cells = nullptr);

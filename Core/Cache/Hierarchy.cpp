@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/Hierarchy.h"
 
+#include "Core/Cache/LevelPoints.h"
 #include "Core/Error.h"
 
 #include <glm/common.hpp>
@@ -40,7 +41,7 @@ void RequireSizes(const glm::i64vec3& dims, int brickSize)
 
 } // namespace
 
-Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize)
+Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize, std::int64_t resolution)
 {
   RequireSizes(dims, brickSize);
   for (int axis = 0; axis < 3; ++axis) {
@@ -53,6 +54,7 @@ Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize)
       level.size[axis] = VoxelsAtLevel(dims[axis], this->levels());
       level.bricks[axis] = BricksAlong(level.size[axis], this->BrickDims[axis] - 1);
     }
+    level.points = PointsPerAxis(dims, this->levels(), resolution);
     level.scale = glm::dvec3(level.size) / glm::dvec3(dims);
     level.bias = 0.5 * level.scale - 0.5;
     level.brickScale = level.scale / glm::dvec3(this->BrickDims - 1);

@@ -24,13 +24,16 @@ public:
   static constexpr int LargestBrick = 1024;
 
   /// `brickSize`: voxels per side, as said. Throws Error(InvalidArgument) for sizes out of range
-  /// and Error(TooLarge) for more than 2^19 bricks along an axis.
-  Hierarchy(const glm::i64vec3& dims, int brickSize);
+  /// and Error(TooLarge) for more than 2^19 bricks along an axis. `resolution`: of the field that
+  /// the voxels are of, see Evaluator.
+  Hierarchy(const glm::i64vec3& dims, int brickSize, std::int64_t resolution = 0);
 
   int levels() const { return static_cast<int>(this->Levels.size()); }
   const glm::i64vec3& dims() const { return this->size(0); }
   const glm::i64vec3& size(int level) const { return this->at(level).size; }     ///< in voxels
   const glm::i64vec3& bricks(int level) const { return this->at(level).bricks; } ///< per axis
+  /// At which the field is asked for a voxel, per axis; see PointsPerAxis.
+  int points(int level) const { return this->at(level).points; }
 
   /// Voxels stored per brick and axis: the brick size, or less where the volume is thinner.
   const glm::ivec3& brickDims() const { return this->BrickDims; }

@@ -21,6 +21,7 @@ struct HierarchyLevel
   glm::dvec3 bias;
   glm::dvec3 brickScale;
   glm::dvec3 brickBias;
+  std::int32_t points; ///< per voxel and axis
 };
 
 struct BrickLocation
@@ -42,6 +43,14 @@ public:
   INR_HOST_DEVICE int levels() const { return this->Count; }
   INR_HOST_DEVICE const HierarchyLevel& level(int level) const { return this->Levels[level]; }
   INR_HOST_DEVICE const glm::ivec3& brickDims() const { return this->BrickDims; }
+
+  /// Whether a level is on the way to finer ones. Where its voxels are means of 2 x 2 x 2 points,
+  /// as many as the next level has voxels in its place and points for these, those come as soon
+  /// without it.
+  INR_HOST_DEVICE bool isOnTheWay(int level) const
+  {
+    return level == 0 || this->Levels[level].points == this->Levels[level - 1].points;
+  }
 
   INR_HOST_DEVICE glm::i64vec3 firstVoxel(const BrickId& id) const
   {

@@ -2,6 +2,7 @@
 #include "Core/Cache/LevelErrors.h"
 
 #include "Core/Cache/FieldWindow.h"
+#include "Core/Cache/LevelPoints.h"
 #include "Core/Cache/LevelResampling.h"
 #include "Core/Cache/LongLines.h"
 
@@ -59,10 +60,28 @@ struct LevelErrors::Part
 
 struct LevelErrors::Work
 {
-  FieldWindow field;
+  const Evaluator& source;
+  FieldWindow field;             ///< level 0
+  std::int64_t coarsePoints = 0; ///< that `source` was asked for besides
   const LineKernel& kernel;
   const std::function<void()>& beforeCell;
   std::vector<Cell> cells;
+
+  /// What a level has at the voxels `seen` of level 0.
+  ValueBox levelAt(const VoxelSpan (&seen)[3], const glm::i64vec3& dims, int level)
+  {
+    const int points = PointsPerAxis(dims, level, this->source.resolution());
+    const LevelResampling resampling(seen, dims, level, points);
+    const VoxelSpan needed[3] = {resampling.needed(0), resampling.needed(1), resampling.needed(2)};
+    if (points > 1) {
+      this->field.extendTo(needed);
+      return resampling.apply(this->field.cut(needed), LowOf(needed));
+    }
+    FieldWindow voxels(this->source, VoxelsAtLevel(dims, level));
+    voxels.extendTo(needed);
+    this->coarsePoints += voxels.points();
+    return resampling.apply(voxels.cut(needed), LowOf(needed));
+  }
 
   /// Errors of samples of `taken`, which has the voxels `seen`.
   void find(const std::vector<Part>& parts, Powers Cell::*which, int power, const ValueBox& taken,
@@ -174,14 +193,14 @@ std::int64_t LevelErrors::measure(std::int64_t block, const Evaluator& field,
                                   const std::function<void()>& beforeCell)
 {
   std::vector<Cell>& measured = this->Measured[static_cast<std::size_t>(block)];
-  Work work{{field, this->Dims}, kernel, beforeCell, measured};
+  Work work{field, {field, this->Dims}, 0, kernel, beforeCell, measured};
   work.cells.resize(static_cast<std::size_t>(this->cellsPerBlock()));
   const std::vector<Part> parts = this->partsOf(block);
   for (int power = 1; power <= std::max(question.levels, question.steps); ++power) {
     this->measurePower(power, parts, question, work);
   }
   measured = std::move(work.cells);
-  return work.field.points();
+  return work.field.points() + work.coarsePoints;
 }
 
 void LevelErrors::measurePower(int power, const std::vector<Part>& parts, const Question& question,
@@ -205,11 +224,7 @@ void LevelErrors::measurePower(int power, const std::vector<Part>& parts, const 
   this->findSeen({&levels, &steps}, power, seen);
   work.field.extendTo(seen);
   if (!levels.empty()) {
-    const LevelResampling level(seen, this->Dims, power);
-    const VoxelSpan needed[3] = {level.needed(0), level.needed(1), level.needed(2)};
-    work.field.extendTo(needed);
-    const ValueBox coarse = level.apply(work.field.cut(needed), LowOf(needed));
-    work.find(levels, &Cell::levels, power, coarse, seen, question);
+    work.find(levels, &Cell::levels, power, work.levelAt(seen, this->Dims, power), seen, question);
   }
   work.find(steps, &Cell::steps, power, work.field.cut(seen), seen, question);
 }

@@ -20,8 +20,8 @@ namespace inr {
 ///
 /// All of it is the largest of what is found along lines of voxels of level 0 through a cell, in 13
 /// directions, wherever samples may begin; see FindLongLineErrors. LevelResampling says what a
-/// level is; the field is asked for nothing but voxels of level 0, and taken to be linear in
-/// between.
+/// level is; the field is asked for nothing but voxels, and taken to be linear between those of
+/// level 0.
 class LevelErrors
 {
 public:

@@ -26,26 +26,32 @@ struct Between
 
 } // namespace
 
-LevelResampling::LevelResampling(const VoxelSpan (&seen)[3], const glm::i64vec3& dims, int level)
+LevelResampling::LevelResampling(const VoxelSpan (&seen)[3], const glm::i64vec3& dims, int level,
+                                 int points)
 {
   for (int axis = 0; axis < 3; ++axis) {
     VoxelSpan& needed = this->Needed[axis];
-    needed = seen[axis];
+    const std::int64_t coarse = VoxelsAtLevel(dims[axis], level);
+    needed = points == 1 ? VoxelSpan{coarse - 1, 0} : seen[axis];
     for (std::int64_t voxel = seen[axis].low; voxel <= seen[axis].high; ++voxel) {
-      const Taps taps = tapsOf(voxel, dims[axis], VoxelsAtLevel(dims[axis], level));
-      const auto [low, high] = std::minmax_element(taps.voxel.begin(), taps.voxel.end());
+      const double place = (static_cast<double>(voxel) + 0.5) / static_cast<double>(dims[axis]) *
+                               static_cast<double>(coarse) -
+                           0.5;
+      const Taps taps = points == 1 ? pointsAt(place, coarse) : meansAt(place, dims[axis], coarse);
+      const auto end = taps.voxel.begin() + static_cast<std::ptrdiff_t>(taps.count);
+      const auto [low, high] = std::minmax_element(taps.voxel.begin(), end);
       needed = {std::min(needed.low, *low), std::max(needed.high, *high)};
       this->Sums[axis].push_back(taps);
     }
   }
 }
 
-LevelResampling::Taps LevelResampling::tapsOf(std::int64_t voxel, std::int64_t size,
-                                              std::int64_t coarseSize)
+LevelResampling::Taps LevelResampling::meansAt(double place, std::int64_t size,
+                                               std::int64_t coarseSize)
 {
   const auto fine = static_cast<double>(size);
   const auto coarse = static_cast<double>(coarseSize);
-  const Between around((static_cast<double>(voxel) + 0.5) / fine * coarse - 0.5, coarseSize);
+  const Between around(place, coarseSize);
   Taps taps{};
   for (std::size_t k = 0; k < 4; ++k) { // two points of each of two coarse voxels
     const bool far = k >= 2;
@@ -53,17 +59,24 @@ LevelResampling::Taps LevelResampling::tapsOf(std::int64_t voxel, std::int64_t s
     const double at = static_cast<double>(far ? around.far : around.near) + within;
     const double share = 0.5 * (far ? around.weight : 1.0 - around.weight);
     const Between point(at / coarse * fine - 0.5, size);
-    taps.voxel[2 * k] = point.near;
-    taps.weight[2 * k] = static_cast<float>(share * (1.0 - point.weight));
-    taps.voxel[2 * k + 1] = point.far;
-    taps.weight[2 * k + 1] = static_cast<float>(share * point.weight);
+    taps.add(point.near, share * (1.0 - point.weight));
+    taps.add(point.far, share * point.weight);
   }
   return taps;
 }
 
-ValueBox LevelResampling::apply(const ValueBox& fine, const glm::i64vec3& first) const
+LevelResampling::Taps LevelResampling::pointsAt(double place, std::int64_t coarseSize)
 {
-  const ValueBox z = across(fine, 2, this->Sums[2], first.z);
+  const Between around(place, coarseSize);
+  Taps taps{};
+  taps.add(around.near, 1.0 - around.weight);
+  taps.add(around.far, around.weight);
+  return taps;
+}
+
+ValueBox LevelResampling::apply(const ValueBox& voxels, const glm::i64vec3& first) const
+{
+  const ValueBox z = across(voxels, 2, this->Sums[2], first.z);
   const ValueBox yz = across(z, 1, this->Sums[1], first.y);
   return alongX(yz, this->Sums[0], first.x);
 }
@@ -78,7 +91,7 @@ ValueBox LevelResampling::alongX(const ValueBox& in, const std::vector<Taps>& ta
     float* to = &out.values[static_cast<std::size_t>(line * size.x)];
     for (std::size_t x = 0; x < taps.size(); ++x) {
       float sum = 0;
-      for (std::size_t k = 0; k < taps[x].voxel.size(); ++k) {
+      for (std::size_t k = 0; k < taps[x].count; ++k) {
         sum += taps[x].weight[k] * from[taps[x].voxel[k] - first];
       }
       to[x] = sum;
@@ -99,7 +112,7 @@ ValueBox LevelResampling::across(const ValueBox& in, int axis, const std::vector
       const Taps& sum = taps[static_cast<std::size_t>(axis == 1 ? y : z)];
       const float* from = &in.values[axis == 1 ? in.index(0, 0, z) : in.index(0, y, 0)];
       float* to = &out.values[out.index(0, y, z)];
-      for (std::size_t k = 0; k < sum.voxel.size(); ++k) {
+      for (std::size_t k = 0; k < sum.count; ++k) {
         const float* line = from + (sum.voxel[k] - first) * stride;
         for (std::int64_t x = 0; x < size.x; ++x) {
           to[x] += sum.weight[k] * line[x];

@@ -159,6 +159,10 @@ public:
     }
   }
 
+  std::int64_t resolution() const override
+  {
+    return Layout(this->Source->description).finestResolution();
+  }
   std::string kernel() const override { return this->Kernels.name; }
   bool splits() const { return this->Kernels.layout == WeightLayout::SplitTiles; }
 

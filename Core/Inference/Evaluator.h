@@ -40,6 +40,10 @@ public:
   /// value does not depend on the lattice around it.
   virtual void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const;
 
+  /// Lattice points of its finest grid, along each axis of the unit cube: the field is smooth
+  /// between them. 0: not known.
+  virtual std::int64_t resolution() const { return 0; }
+
   /// Points that a call should have where there are as many: a device is far away. 0: any number.
   virtual std::int64_t pointsAtOnce() const { return 0; }
 

@@ -106,7 +106,7 @@ void CachedSampler::findCoarser(const FieldPoint& point, Cell& cell)
       this->Served.add({level, level});
       break;
     }
-    finer = IsOnTheWay(level) ? key : finer;
+    finer = this->Cache.hierarchy().view().isOnTheWay(level) ? key : finer;
   }
   if (this->Missing == OnPathMiss::Approach) {
     this->Wishes.push_back(finer);

@@ -36,8 +36,8 @@ StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<co
   const StoreKey key{identity, field->kernel(),    dims,       options.brickSize, options.precision,
                      bytes,    options.background, accelerator};
   return budget->storeFor(key, [&] {
-    std::shared_ptr<const BrickSource> source =
-        MakeBrickSource(field, Hierarchy(dims, options.brickSize), std::move(cells));
+    std::shared_ptr<const BrickSource> source = MakeBrickSource(
+        field, Hierarchy(dims, options.brickSize, field->resolution()), std::move(cells));
     if (accelerator) {
       source = MakeBrickSource(accelerator, model, std::move(source));
     }

@@ -10,11 +10,11 @@ namespace inr {
 /// Value ranges joined with a transfer function, for samples of every cache level.
 ///
 /// A sample of level l shows what is within 1.25 voxels of that level: between it and the centre of
-/// the furthest voxel that it is interpolated from lies one, and that voxel is the mean of points a
-/// quarter of a voxel from its centre. Samples of level 0, and of as many others as the apron of
-/// the model's own cells is wide enough for, go by these (grid 0). Those of coarser levels go by
-/// grids whose cells, of a power of two times that size, are at least so large and bound all that
-/// their neighbours do too.
+/// the furthest voxel that it is interpolated from lies one, and that voxel may be the mean of
+/// points a quarter of a voxel from its centre. Samples of level 0, and of as many others as the
+/// apron of the model's own cells is wide enough for, go by these (grid 0). Those of coarser levels
+/// go by grids whose cells, of a power of two times that size, are at least so large and bound all
+/// that their neighbours do too.
 class Majorants
 {
 public:

@@ -396,7 +396,7 @@ std::int32_t SamplePlacer::openCoarser(BrickRun& run, const Ray& ray, const Bric
       return slot;
     }
     this->Notes.absent.add(served.brick(), 0.0f);
-    wish = IsOnTheWay(level) ? served.brick() : wish;
+    wish = hierarchy.view().isOnTheWay(level) ? served.brick() : wish;
   }
 }
 

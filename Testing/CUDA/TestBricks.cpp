@@ -53,8 +53,11 @@ protected:
 /// All levels, with rims, axes that are thinner than a brick, and bricks of several levels at once.
 TEST_P(Bricks, AreThoseOfCore)
 {
-  for (const glm::i64vec3& dims : {glm::i64vec3(37, 22, 9), glm::i64vec3(50, 1, 21)}) {
-    const inr::Hierarchy levels(dims, 9);
+  const glm::i64vec3 sizes[2] = {{37, 22, 9}, {50, 1, 21}};
+  // Coarse voxels as means of 2 x 2 x 2 points, or as their centres.
+  for (const auto& [dims, resolution] :
+       {std::pair(sizes[0], 0), std::pair(sizes[1], 0), std::pair(sizes[0], 12)}) {
+    const inr::Hierarchy levels(dims, 9, resolution);
     const auto model = BrickModel();
     const auto core = inr::MakeBrickSource(inr::MakeEvaluator(model), levels);
     std::vector<inr::BrickKey> keys;

@@ -285,8 +285,9 @@ public:
   {
     if (!this->Store) {
       this->Store = std::make_shared<WatchedStore>(
-          this->Orders, this->inferenceOf(model), inr::Hierarchy(dims, options.brickSize),
-          options.precision, BytesFor(this->Capacity, 0), model->macroCells);
+          this->Orders, this->inferenceOf(model),
+          inr::Hierarchy(dims, options.brickSize, ResolutionOf(*model)), options.precision,
+          BytesFor(this->Capacity, 0), model->macroCells);
     }
     return std::make_shared<inr::cuda::DeviceRenderer<FailingMachine, WatchedCache>>(
         this->Store, options, inr::cuda::WindowSizes{50, 40});

@@ -104,6 +104,8 @@ TEST(UnfinishedDrawing, IsNotMovedIntoOtherLevelsRanges)
 /// Level by level, or the wanted ones at once.
 TEST(UnfinishedDrawing, AsksForWhatItIsToAskFor)
 {
+  const inr::Hierarchy levels(TrainedModel()->volume.dims, SmallBricks(true).cache.brickSize,
+                              ResolutionOf(*TrainedModel()));
   for (const inr::RenderMode mode : Modes) {
     for (const bool preloading : {true, false}) {
       SCOPED_TRACE(preloading);
@@ -116,7 +118,7 @@ TEST(UnfinishedDrawing, AsksForWhatItIsToAskFor)
       ASSERT_GE(coarsest, 3);
       for (int level = coarsest - 1; level >= 0; --level) {
         const inr::FrameStatistics next = renderer.render(frame, image);
-        const int step = preloading && inr::IsOnTheWay(level) ? level : 0;
+        const int step = preloading && levels.view().isOnTheWay(level) ? level : 0;
         EXPECT_EQ(next.levels.finest, step);
         if (mode == inr::RenderMode::RayMarching) { // paths go elsewhere once they see more
           EXPECT_EQ(next.complete, step == 0);

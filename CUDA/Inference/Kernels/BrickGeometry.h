@@ -64,7 +64,8 @@ INR_HOST_DEVICE inline BrickJob JobOf(const HierarchyView& levels, BrickKey key,
 {
   const BrickId id = IdOf(key);
   const glm::i64vec3 first = levels.firstVoxel(id);
-  const glm::i64vec3& size = levels.level(id.level).size;
+  const HierarchyLevel& level = levels.level(id.level);
+  const glm::i64vec3& size = level.size;
   BrickJob job{};
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t dim = levels.brickDims()[axis];
@@ -76,7 +77,7 @@ INR_HOST_DEVICE inline BrickJob JobOf(const HierarchyView& levels, BrickKey key,
     job.voxels[axis] = static_cast<std::int32_t>(voxels);
     job.inside[axis] = static_cast<std::int32_t>(glm::min(inside - begin, voxels));
   }
-  job.points = id.level == 0 ? 1 : 2;
+  job.points = level.points;
   job.firstItem = end.items;
   job.firstValue = end.values;
   return job;

@@ -76,7 +76,7 @@ private:
         this->enter(cache, served, slot, step);
         return;
       }
-      next = IsOnTheWay(level) ? served.brick() : next;
+      next = cache.hierarchy.isOnTheWay(level) ? served.brick() : next;
     }
   }
 

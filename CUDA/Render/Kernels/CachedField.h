@@ -48,7 +48,7 @@ private:
         this->Cache.request(this->Missing == OnMiss::Approach ? next : wish, 1.0f);
         return this->read(slot, served.local, level);
       }
-      next = IsOnTheWay(level) ? KeyOf(served.brick) : next;
+      next = this->Cache.hierarchy.isOnTheWay(level) ? KeyOf(served.brick) : next;
     }
   }
 

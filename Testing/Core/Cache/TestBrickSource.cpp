@@ -61,6 +61,23 @@ TEST(BrickSource, FiltersWhatACoarseVoxelCannotShow)
                [](const glm::i64vec3&, float value) { EXPECT_EQ(value, 0.5f); });
 }
 
+// Where its finest grid has at most 2.5 cells a voxel; else a coarse voxel is the mean of 2 x 2
+// x 2.
+TEST(BrickSource, TakesTheCentreWhereTheFieldIsSmoothInIt)
+{
+  const inr::Hierarchy levels({64, 64, 64}, 8, 80);
+  const auto bowl = [](const glm::vec3& u) { return u.x * u.x; };
+  for (int level = 0; level < levels.levels(); ++level) {
+    const double size = 64 >> level;
+    const double off = level < 2 ? 0 : 0.25 / size; // whose mean is further up
+    ForEachVoxel(levels, {level, {0, 0, 0}}, Infer(levels, bowl, {level, {0, 0, 0}}),
+                 [&](const glm::i64vec3& v, float value) {
+                   const double u = (static_cast<double>(v.x) + 0.5) / size;
+                   EXPECT_NEAR(value, u * u + off * off, 1e-6) << level;
+                 });
+  }
+}
+
 TEST(BrickSource, ClampsToTheNormalisedRange)
 {
   const inr::Hierarchy levels({16, 16, 16}, 8);

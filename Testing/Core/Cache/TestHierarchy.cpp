@@ -175,6 +175,38 @@ TEST(Hierarchy, ALinearFieldIsContinuousAcrossTheFacesOfEveryLevel)
   }
 }
 
+std::vector<int> PointsOf(const inr::Hierarchy& levels)
+{
+  std::vector<int> points;
+  for (int level = 0; level < levels.levels(); ++level) {
+    points.push_back(levels.points(level));
+  }
+  return points;
+}
+
+TEST(Hierarchy, AsksForOnePointWhereAVoxelSpansFewCellsOfTheField)
+{
+  using Points = std::vector<int>;
+  EXPECT_EQ(PointsOf({i64vec3(256), 40, 308}), Points({1, 1, 2, 2})); // 1.2, 2.4, 4.8, 9.6 cells
+  EXPECT_EQ(PointsOf({i64vec3(256), 40, 320}), Points({1, 1, 2, 2})); // 2.5 just yet
+  EXPECT_EQ(PointsOf({i64vec3(256), 40, 321}), Points({1, 2, 2, 2}));
+  EXPECT_EQ(PointsOf({i64vec3(1024), 40, 308}), Points({1, 1, 1, 1, 2, 2}));
+  EXPECT_EQ(PointsOf({i64vec3(256), 40, 9999}),
+            Points({1, 2, 2, 2}));                               // voxels of level 0 are points
+  EXPECT_EQ(PointsOf({i64vec3(256), 40}), Points({1, 2, 2, 2})); // nothing is known
+  EXPECT_EQ(PointsOf({{256, 256, 100}, 40, 308}), Points({1, 2, 2, 2})); // 6.2 along z
+}
+
+TEST(Hierarchy, LeavesOutLevelsThatCostAsMuchAsTheNext)
+{
+  const inr::Hierarchy levels(i64vec3(1024), 40, 308);
+  std::vector<bool> onTheWay;
+  for (int level = 0; level < levels.levels(); ++level) {
+    onTheWay.push_back(levels.view().isOnTheWay(level));
+  }
+  EXPECT_EQ(onTheWay, std::vector<bool>({true, true, true, true, false, true}));
+}
+
 TEST(Hierarchy, CountsTheBricksOfLargeVolumes)
 {
   const inr::Hierarchy wide({10240, 7680, 1536}, 40);

@@ -19,8 +19,8 @@ using Field = FieldEvaluator::Function;
 class BrickedLevel
 {
 public:
-  BrickedLevel(const Field& field, const glm::i64vec3& dims, int level)
-      : Levels(dims, 4), Level(level),
+  BrickedLevel(const Field& field, const glm::i64vec3& dims, int level, std::int64_t resolution = 0)
+      : Levels(dims, 4, resolution), Level(level),
         Source(inr::MakeBrickSource(std::make_shared<FieldEvaluator>(field), Levels))
   {}
 
@@ -64,24 +64,34 @@ Field RoughField(const glm::i64vec3& dims)
   return [voxels](const glm::vec3& u) { return voxels.at(u); };
 }
 
+/// A level's voxels, in the order of their box.
+inr::ValueBox VoxelsOf(const Field& field, const glm::i64vec3& size)
+{
+  inr::ValueBox box(size);
+  for (std::int64_t k = 0; k < size.x * size.y * size.z; ++k) {
+    const glm::dvec3 at(k % size.x, k / size.x % size.y, k / (size.x * size.y));
+    box.values[static_cast<std::size_t>(k)] = field(glm::vec3((at + 0.5) / glm::dvec3(size)));
+  }
+  return box;
+}
+
 TEST(LevelResampling, HasWhatBricksHave)
 {
   for (const glm::i64vec3& dims : {glm::i64vec3(21, 16, 9), glm::i64vec3(14, 1, 41)}) {
     const Field field = RoughField(dims);
     const inr::VoxelSpan all[3] = {{0, dims.x - 1}, {0, dims.y - 1}, {0, dims.z - 1}};
-    inr::ValueBox fine(dims);
-    for (std::int64_t k = 0; k < dims.x * dims.y * dims.z; ++k) {
-      const glm::dvec3 at(k % dims.x, k / dims.x % dims.y, k / (dims.x * dims.y));
-      fine.values[static_cast<std::size_t>(k)] = field(glm::vec3((at + 0.5) / glm::dvec3(dims)));
-    }
     for (const int level : {1, 2, 3}) {
-      const BrickedLevel truth(field, dims, level);
-      const inr::ValueBox resampled =
-          inr::LevelResampling(all, dims, level).apply(fine, glm::i64vec3(0));
-      for (std::int64_t k = 0; k < dims.x * dims.y * dims.z; k += 7) {
-        const glm::dvec3 at(k % dims.x, k / dims.x % dims.y, k / (dims.x * dims.y));
-        EXPECT_NEAR(resampled.values[static_cast<std::size_t>(k)], truth.at(at), 2e-5)
-            << level << " " << k;
+      for (const int points : {1, 2}) {
+        const BrickedLevel truth(field, dims, level, points == 1 ? 1 : 0);
+        const inr::ValueBox made =
+            VoxelsOf(field, points == 1 ? inr::VoxelsAtLevel(dims, level) : dims);
+        const inr::ValueBox resampled =
+            inr::LevelResampling(all, dims, level, points).apply(made, glm::i64vec3(0));
+        for (std::int64_t k = 0; k < dims.x * dims.y * dims.z; k += 7) {
+          const glm::dvec3 at(k % dims.x, k / dims.x % dims.y, k / (dims.x * dims.y));
+          EXPECT_NEAR(resampled.values[static_cast<std::size_t>(k)], truth.at(at), 2e-5)
+              << level << " " << points << " " << k;
+        }
       }
     }
   }
@@ -102,6 +112,28 @@ inr::LevelErrors Measured(const Field& field, const glm::i64vec3& dims, int edge
                    Everything, [] {});
   }
   return errors;
+}
+
+// A field that is nothing but peaks between the voxels of level 0: at centres of voxels of level 1.
+TEST(LevelErrors, SeeWhatACoarseLevelSeesBetweenVoxels)
+{
+  const glm::i64vec3 dims(32);
+  const auto peaks = [](const glm::vec3& u) {
+    const glm::vec3 at = u * 32.0f;
+    return glm::length(at - glm::round(at)) < 0.1f ? 0.5f : 0.0f;
+  };
+  const inr::MacroCells cells = inr::MakeMacroCells(dims, 16);
+  float largest[2];
+  for (const int resolution : {0, 40}) { // 2.5 cells a voxel of level 1
+    inr::LevelErrors errors(dims, cells.dims, cells.spacing);
+    const FieldEvaluator field(peaks, resolution);
+    const std::int64_t asked = errors.measure(
+        0, field, inr::LineKernelFor(inr::ChooseInstructionSet("")), Everything, [] {});
+    EXPECT_EQ(asked > 32 * 32 * 32, resolution > 0);
+    largest[resolution > 0] = errors.of(0).levels.errors[0].largest;
+  }
+  EXPECT_EQ(largest[0], 0);
+  EXPECT_NEAR(largest[1], 0.5, 1e-6);
 }
 
 TEST(LevelErrors, OfASlopeAreNoneButAtTheVolumesEnds)

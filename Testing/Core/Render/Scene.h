@@ -14,7 +14,9 @@ class FieldEvaluator : public inr::Evaluator
 public:
   using Function = std::function<float(const glm::vec3& u)>;
 
-  explicit FieldEvaluator(Function function) : Field(std::move(function)) {}
+  explicit FieldEvaluator(Function function, std::int64_t resolution = 0)
+      : Field(std::move(function)), Resolution(resolution)
+  {}
 
   void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const override
   {
@@ -22,10 +24,12 @@ public:
       values[k] = this->Field(positions[k]);
     }
   }
+  std::int64_t resolution() const override { return this->Resolution; }
   std::string kernel() const override { return "field"; }
 
 private:
   Function Field;
+  std::int64_t Resolution;
 };
 
 inline inr::VolumeInfo VolumeOf(const glm::i64vec3& dims)

@@ -18,7 +18,7 @@ std::vector<Rounding> Roundings()
 {
   using inr::InferencePrecision;
   const inr::InstructionSet best = inr::ChooseInstructionSet("");
-  return {{InferencePrecision::BFloat16, inr::IsUsable(InferencePrecision::BFloat16, best), 35},
+  return {{InferencePrecision::BFloat16, inr::IsUsable(InferencePrecision::BFloat16, best), 33},
           {InferencePrecision::SplitBFloat16, inr::IsTileKernelUsable(), 80}};
 }
 

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What coarse voxels cost and show as means of 2 x 2 x 2 points of the field, and as its values at
+// their centres.
+//
+//   bench_levels MODEL.inr NAME      prints one JSON object per line
+//
+// levels.py writes the result file.
+#include "Core/Image/Metrics.h"
+#include "Core/Inference/Evaluator.h"
+#include "Core/Model/ModelFile.h"
+#include "Core/Random.h"
+#include "Testing/Benchmarks/FrameScenes.h"
+#include "Testing/Benchmarks/InTurn.h"
+
+#include <cmath>
+
+namespace {
+
+constexpr double CellsPerVoxel[] = {2, 2.5, 3, 4, 5};
+constexpr std::int64_t Places = 200000;
+
+/// A field of which nobody knows how fine it is: its coarse voxels are means.
+class OfUnknownResolution : public inr::Evaluator
+{
+public:
+  explicit OfUnknownResolution(std::shared_ptr<const inr::Evaluator> field)
+      : Field(std::move(field))
+  {}
+
+  void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const override
+  {
+    this->Field->evaluate(positions, count, values);
+  }
+  void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const override
+  {
+    this->Field->evaluateGrid(axes, values);
+  }
+  std::string kernel() const override { return this->Field->kernel(); }
+
+private:
+  std::shared_ptr<const inr::Evaluator> Field;
+};
+
+/// Voxels of a volume of edge^3, each the mean of points^3.
+class Voxels
+{
+public:
+  Voxels(const inr::Evaluator& field, std::int64_t edge, int points) : Edge(edge)
+  {
+    std::vector<float> axes[3];
+    for (std::int64_t k = 0; k < edge * points; ++k) {
+      const auto sample = static_cast<double>(k);
+      axes[0].push_back(static_cast<float>((sample + 0.5) / static_cast<double>(edge * points)));
+    }
+    axes[1] = axes[2] = axes[0];
+    const std::size_t width = axes[0].size();
+    std::vector<float> samples(width * width * width);
+    field.evaluateGrid(axes, samples.data());
+    this->Values.assign(static_cast<std::size_t>(edge * edge * edge), 0.0f);
+    const auto count = static_cast<std::size_t>(points);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const std::size_t x = k % width / count;
+      const std::size_t y = k / width % width / count;
+      const std::size_t z = k / (width * width) / count;
+      this->Values[x + static_cast<std::size_t>(edge) * (y + static_cast<std::size_t>(edge) * z)] +=
+          samples[k] / static_cast<float>(count * count * count);
+    }
+  }
+
+  /// Linear between them.
+  double at(const glm::vec3& u) const
+  {
+    const auto last = static_cast<double>(this->Edge - 1);
+    const glm::dvec3 place = glm::clamp(glm::dvec3(u) * (last + 1) - 0.5, 0.0, last);
+    const glm::dvec3 cell = glm::min(glm::floor(place), last - 1);
+    double sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::dvec3 near = 1.0 - glm::abs(place - cell - step);
+      const glm::i64vec3 v(cell + step);
+      sum += near.x * near.y * near.z *
+             this->Values[static_cast<std::size_t>(v.x + this->Edge * (v.y + this->Edge * v.z))];
+    }
+    return sum;
+  }
+
+private:
+  std::int64_t Edge;
+  std::vector<float> Values;
+};
+
+/// How near voxels are to the field between them: dB of the value range.
+double Nearness(const inr::Evaluator& field, const Voxels& voxels)
+{
+  std::vector<glm::vec3> places;
+  for (std::uint64_t k = 0; k < 3 * Places; k += 3) {
+    places.emplace_back(inr::RandomUnit(1, k), inr::RandomUnit(1, k + 1),
+                        inr::RandomUnit(1, k + 2));
+  }
+  std::vector<float> truth(places.size());
+  field.evaluate(places.data(), Places, truth.data());
+  double squares = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    squares += std::pow(voxels.at(places[k]) - truth[k], 2);
+  }
+  return -10 * std::log10(squares / static_cast<double>(Places));
+}
+
+void MeasureVoxels(const inr::Evaluator& field, const std::string& name)
+{
+  for (const double cells : CellsPerVoxel) {
+    const std::int64_t edge = std::lround(static_cast<double>(field.resolution()) / cells);
+    for (const int points : {1, 2}) {
+      std::ostringstream text;
+      text << (points == 1 ? "centres, " : "means, ") << cells << " cells a voxel, " << name;
+      Report(text.str(), Nearness(field, Voxels(field, edge, points)), "dB", "higher");
+    }
+  }
+}
+
+/// The first complete picture of a renderer that has decoded nothing.
+struct First
+{
+  First(std::shared_ptr<const inr::Evaluator> field, const inr::ModelPointer& model,
+        const Look& look, const inr::Frame& frame)
+  {
+    inr::Renderer renderer(std::move(field), model->volume, model->macroCells, Unrounded());
+    renderer.setTransferFunction(look.function);
+    const std::clock_t start = std::clock();
+    this->points = renderer.render(frame, this->picture).work.bricks.points;
+    this->seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  }
+  inr::Image picture;
+  std::int64_t points;
+  double seconds;
+};
+
+/// Of a volume of so many times the model's voxels along each axis.
+void MeasurePictures(const inr::ModelPointer& source, const std::string& name, int times)
+{
+  const inr::ModelPointer model = Scaled(source, source->volume.dims * std::int64_t{times});
+  const std::shared_ptr<const inr::Evaluator> field = inr::MakeEvaluator(model);
+  const auto unknown = std::make_shared<OfUnknownResolution>(field);
+  inr::Frame frame = View(model->volume);
+  frame.sampleDistance = 0.5;
+  inr::Frame finest = frame;
+  finest.levelOfDetailScale = 0;
+  for (const Look& look : Looks(model->volume)) {
+    const First means(unknown, model, look, frame);
+    const First centres(field, model, look, frame);
+    const inr::Image truth = First(field, model, look, finest).picture;
+    const std::string scene = look.name + ", " + name + " times " + std::to_string(times);
+    Report("first picture by centres, points, " + scene,
+           static_cast<double>(centres.points) / static_cast<double>(means.points), "", "lower",
+           ", \"baseline\": \"by means\"");
+    Report("first picture by centres, time, " + scene, centres.seconds / means.seconds, "", "lower",
+           ", \"baseline\": \"by means\"");
+    Report("picture by centres, " + scene, inr::ImagePsnr(centres.picture, truth), "dB", "higher");
+    Report("picture by means, " + scene, inr::ImagePsnr(means.picture, truth), "dB", "higher");
+  }
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  if (argc != 3) {
+    std::cerr << "usage: bench_levels MODEL.inr NAME\n";
+    return 2;
+  }
+  try {
+    const inr::ModelPointer model = inr::ReadModel(argv[1]);
+    MeasureVoxels(*inr::MakeEvaluator(model), argv[2]);
+    for (const int times : {1, 2, 4}) {
+      MeasurePictures(model, argv[2], times);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+}
