@@ -152,7 +152,7 @@ TEST_P(OverfullDrawing, GoesOnBetweenTheSurfacesOfAStep)
 {
   inr::Frame frame = LitFrame(inr::RenderMode::RayMarching);
   const inr::VolumeInfo& volume = TrainedModel()->volume;
-  frame.sampleDistance = 5;
+  frame.sampleDistance = 25; // several bricks
   frame.blending.mode = inr::BlendMode::Isosurface;
   for (double value = 0.55; value < 0.75; value += 0.02) { // where colours are translucent
     frame.blending.isosurfaces.push_back(volume.low + value * (volume.high - volume.low));

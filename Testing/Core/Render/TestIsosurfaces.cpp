@@ -265,43 +265,60 @@ TEST(Isosurface, DependsOnNeitherThreadsNorTheSizeOfTheCache)
   EXPECT_GT(other.cachedBricks(), one.cachedBricks());
 }
 
-// What the light of them all depends on is eight bricks, and one more is always there.
-TEST(Isosurface, OfManyAtACornerOfBricksComesFromTheSmallestCache)
+/// Many surfaces around a corner of bricks of 9 voxels, lit, seen from either side.
+class AtACorner : public testing::TestWithParam<double>
 {
-  constexpr std::int64_t edge = 33;
-  const glm::dvec3 corner(16.0);
-  const auto field = [](const glm::vec3& u) {
-    const float along = (u.x + u.y + u.z - 1.5f) * edge; // point index 16 is at u = 0.5
-    return std::clamp(0.5f + along / 6, 0.0f, 1.0f);
-  };
-  inr::Frame frame;
-  frame.width = frame.height = 12;
-  const glm::dmat4 view =
-      glm::lookAt(corner - glm::dvec3(20, 22, 24), corner, glm::dvec3(0.1, 1, 0));
-  frame.clipToWorld = glm::inverse(glm::ortho(-1.5, 1.5, -1.5, 1.5, 1.0, 80.0) * view);
-  frame.levelOfDetailScale = 0;
-  frame.sampleDistance = 4; // a step may cross all of them
-  frame.blending.mode = inr::BlendMode::Isosurface;
-  frame.blending.isosurfaces = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
-  frame.shading.emplace();
-  frame.lights = {inr::Light{}};
+protected:
+  static constexpr std::int64_t Edge = 33;
 
-  inr::Image pictures[2];
-  std::int64_t held[2];
-  for (const bool isSmall : {false, true}) {
-    inr::CacheOptions cache = Options(inr::CachePrecision::Float32, 9);
-    cache.bytes = isSmall ? SmallestCache({edge, edge, edge}, cache) : cache.bytes;
-    inr::Renderer renderer = CachedRenderer({edge, edge, edge}, field, cache, 1);
-    renderer.setTransferFunction(UniformMedium(0.2f));
-    int asked = 0;
-    renderer.render(frame, pictures[isSmall], nullptr, [&] { return ++asked < 100000; });
-    held[isSmall] = renderer.cachedBricks();
+  static inr::Frame frame()
+  {
+    const glm::dvec3 corner(16.0);
+    inr::Frame frame;
+    frame.width = frame.height = 12;
+    const glm::dmat4 view =
+        glm::lookAt(corner - GetParam() * glm::dvec3(20, 22, 24), corner, glm::dvec3(0.1, 1, 0));
+    frame.clipToWorld = glm::inverse(glm::ortho(-1.5, 1.5, -1.5, 1.5, 1.0, 80.0) * view);
+    frame.levelOfDetailScale = 0;
+    frame.sampleDistance = 4; // a step may cross all of them
+    frame.blending.mode = inr::BlendMode::Isosurface;
+    frame.blending.isosurfaces = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+    frame.shading.emplace();
+    frame.lights = {inr::Light{}};
+    return frame;
   }
-  EXPECT_EQ(held[1], inr::BrickCache::FewestBricks);
-  EXPECT_GT(held[0], held[1]);
-  EXPECT_EQ(pictures[0].pixels, pictures[1].pixels);
-  const float* middle = pictures[0].pixel(6, 6);
-  EXPECT_NEAR(middle[3], 1 - std::pow(0.8, 9), 0.02); // it does cross them all
+  static inr::CacheOptions cache() { return Options(inr::CachePrecision::Float32, 9); }
+  static inr::Renderer renderer(const inr::CacheOptions& cache)
+  {
+    const auto field = [](const glm::vec3& u) {
+      const float along = (u.x + u.y + u.z - 1.5f) * Edge; // point index 16 is at u = 0.5
+      return std::clamp(0.5f + along / 6, 0.0f, 1.0f);
+    };
+    inr::Renderer renderer = CachedRenderer({Edge, Edge, Edge}, field, cache, 1);
+    renderer.setTransferFunction(UniformMedium(0.2f));
+    return renderer;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Isosurfaces, AtACorner, testing::Values(1.0, -1.0), [](const auto& from) {
+  return std::string(from.param > 0 ? "Rising" : "Falling");
+});
+
+// What the light of them all depends on is eight bricks, and one more is always there.
+TEST_P(AtACorner, ComesFromTheSmallestCache)
+{
+  inr::CacheOptions smallest = cache();
+  smallest.bytes = SmallestCache({Edge, Edge, Edge}, smallest);
+  inr::Renderer large = renderer(cache());
+  inr::Renderer small = renderer(smallest);
+  const inr::Image truth = Render(large, frame());
+  inr::Image picture;
+  int asked = 0;
+  small.render(frame(), picture, nullptr, [&] { return ++asked < 100000; });
+  EXPECT_EQ(small.cachedBricks(), inr::BrickCache::FewestBricks);
+  EXPECT_GT(large.cachedBricks(), small.cachedBricks());
+  EXPECT_EQ(picture.pixels, truth.pixels);
+  EXPECT_NEAR(truth.pixel(6, 6)[3], 1 - std::pow(0.8, 9), 0.02); // it does cross them all
 }
 
 TEST(Isosurface, RefinesWithinATimeLimit)
