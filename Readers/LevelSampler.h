@@ -14,8 +14,7 @@
 /// How many samples per axis a voxel of a level is the mean of.
 inline int SamplesPerAxis(const inr::Model& model, int level)
 {
-  const std::int64_t resolution = inr::Layout(model.description).finestResolution();
-  return inr::PointsPerAxis(model.volume.dims, level, resolution);
+  return inr::PointsPerAxis(model.volume.dims, level, inr::ResolutionOf(model));
 }
 
 /// The voxels of a level, as the renderer has them.

@@ -30,10 +30,10 @@ std::shared_ptr<GpuStore> DeviceStores::storeFor(const std::shared_ptr<const Dev
   const int device = model->device().ordinal;
   const std::int64_t bytes = std::min(wanted, FreeMemory(device) / 2);
   const ModelPointer& source = model->source();
-  auto store = std::make_shared<GpuStore>(
-      device, DeviceInference(model, std::min(bytes / 16, mostScratch)),
-      Hierarchy(dims, options.brickSize, Layout(source->description).finestResolution()),
-      options.precision, bytes, source->macroCells);
+  auto store =
+      std::make_shared<GpuStore>(device, DeviceInference(model, std::min(bytes / 16, mostScratch)),
+                                 Hierarchy(dims, options.brickSize, ResolutionOf(*source)),
+                                 options.precision, bytes, source->macroCells);
   this->Entries.push_back({dims, options.brickSize, options.precision, wanted, store});
   return store;
 }

@@ -103,7 +103,7 @@ public:
     const std::shared_ptr<const Evaluator> device = this->Field->evaluator(*this->Cpu);
     return device ? device->pointsAtOnce() : 0;
   }
-  std::int64_t resolution() const override { return this->Cpu->resolution(); }
+  glm::i64vec3 resolution() const override { return this->Cpu->resolution(); }
   std::string kernel() const override { return this->Cpu->kernel(); }
 
 private:

@@ -41,7 +41,7 @@ void RequireSizes(const glm::i64vec3& dims, int brickSize)
 
 } // namespace
 
-Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize, std::int64_t resolution)
+Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize, const glm::i64vec3& resolution)
 {
   RequireSizes(dims, brickSize);
   for (int axis = 0; axis < 3; ++axis) {

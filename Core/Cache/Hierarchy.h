@@ -26,7 +26,8 @@ public:
   /// `brickSize`: voxels per side, as said. Throws Error(InvalidArgument) for sizes out of range
   /// and Error(TooLarge) for more than 2^19 bricks along an axis. `resolution`: of the field that
   /// the voxels are of, see Evaluator.
-  Hierarchy(const glm::i64vec3& dims, int brickSize, std::int64_t resolution = 0);
+  Hierarchy(const glm::i64vec3& dims, int brickSize,
+            const glm::i64vec3& resolution = glm::i64vec3(0));
 
   int levels() const { return static_cast<int>(this->Levels.size()); }
   const glm::i64vec3& dims() const { return this->size(0); }

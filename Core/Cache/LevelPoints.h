@@ -5,7 +5,6 @@
 
 #include <glm/gtc/type_precision.hpp>
 
-#include <algorithm>
 #include <cstdint>
 
 namespace inr {
@@ -14,16 +13,19 @@ namespace inr {
 /// voxels: 1, its centre, or 2, a quarter of a voxel from there, whose mean is its value (a box
 /// filter). `resolution`: see Evaluator.
 ///
-/// A voxel of level 0 is a point, and one that spans few cells of the field's finest lattice may
-/// be: linear interpolation between voxels smooths what is in them once more, and is nearer to the
-/// field when the voxels do not. Up to 2.5 cells that is so of every model that was looked at
-/// (levels.json of Testing/Benchmarks); of more, points alone show what is between the voxels as
+/// A voxel of level 0 is a point, and one in which a field tells few places apart may be: linear
+/// interpolation between voxels smooths what is in them once more, and is nearer to the field when
+/// the voxels do not. Of up to 2.5 places along each axis that is so of every model that was looked
+/// at (levels.json of Testing/Benchmarks); of more, points alone show what is between them as
 /// grain.
-inline int PointsPerAxis(const glm::i64vec3& dims, int level, std::int64_t resolution)
+inline int PointsPerAxis(const glm::i64vec3& dims, int level, const glm::i64vec3& resolution)
 {
   const glm::i64vec3 voxels = VoxelsAtLevel(dims, level);
-  const std::int64_t fewest = std::min({voxels.x, voxels.y, voxels.z});
-  return level == 0 || (resolution > 0 && 2 * resolution <= 5 * fewest) ? 1 : 2;
+  bool isFine = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    isFine = isFine && resolution[axis] > 0 && 2 * resolution[axis] <= 5 * voxels[axis];
+  }
+  return level == 0 || isFine ? 1 : 2;
 }
 
 } // namespace inr

@@ -159,10 +159,7 @@ public:
     }
   }
 
-  std::int64_t resolution() const override
-  {
-    return Layout(this->Source->description).finestResolution();
-  }
+  glm::i64vec3 resolution() const override { return ResolutionOf(*this->Source); }
   std::string kernel() const override { return this->Kernels.name; }
   bool splits() const { return this->Kernels.layout == WeightLayout::SplitTiles; }
 

@@ -5,6 +5,7 @@
 #include "Core/Model/Model.h"
 #include "Core/Parallel.h"
 
+#include <glm/gtc/type_precision.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -40,9 +41,9 @@ public:
   /// value does not depend on the lattice around it.
   virtual void evaluateGrid(const std::vector<float> (&axes)[3], float* values) const;
 
-  /// Lattice points of its finest grid, along each axis of the unit cube: the field is smooth
-  /// between them. 0: not known.
-  virtual std::int64_t resolution() const { return 0; }
+  /// Places along each axis of the unit cube that the field tells apart: between them it is smooth.
+  /// 0: not known. Of a model see ResolutionOf.
+  virtual glm::i64vec3 resolution() const { return glm::i64vec3(0); }
 
   /// Points that a call should have where there are as many: a device is far away. 0: any number.
   virtual std::int64_t pointsAtOnce() const { return 0; }

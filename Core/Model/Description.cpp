@@ -177,12 +177,4 @@ Layout::Layout(const Description& description)
   }
 }
 
-std::int64_t Layout::finestResolution() const
-{
-  const auto isCoarser = [](const GridLevel& a, const GridLevel& b) {
-    return a.resolution < b.resolution;
-  };
-  return std::max_element(this->levels.begin(), this->levels.end(), isCoarser)->resolution;
-}
-
 } // namespace inr

@@ -120,8 +120,6 @@ struct Layout
   int outputWidth = 0;          ///< 1 padded; row 0 of the last matrix is the value
   std::uint64_t gridOffset = 0; ///< = number of MLP weights
   std::uint64_t parameterCount = 0;
-
-  std::int64_t finestResolution() const; ///< of the levels
 };
 
 } // namespace inr

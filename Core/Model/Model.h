@@ -114,11 +114,19 @@ struct Model
   ParameterType storedAs = ParameterType::Half; ///< precision of `parameters` in the file
   std::vector<float> steps; ///< of quantised parameters, one for each of their ParameterGroups
   VolumeInfo volume;
+  /// Not in the file. Voxels of the volume that it was trained from, where `volume` is another grid
+  /// of the same (see ScaledModel).
+  std::optional<glm::i64vec3> nativeDims;
   MacroCells macroCells;
   std::optional<Quality> quality;
   std::optional<TrainingRecord> training;
 };
 
 using ModelPointer = std::shared_ptr<const Model>;
+
+/// Places along each axis that the field tells apart, between which it is smooth: the points of its
+/// finest lattice, or the voxels that it was trained from where those are fewer, as samples between
+/// them are linear.
+glm::i64vec3 ResolutionOf(const Model& model);
 
 } // namespace inr

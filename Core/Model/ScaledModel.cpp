@@ -77,6 +77,7 @@ ModelPointer ScaledModel(const ModelPointer& model, double factor)
   if (factor < 1 && !scaled->macroCells.empty()) {
     scaled->macroCells = WidenedFor(volume, std::move(scaled->macroCells));
   }
+  scaled->nativeDims = model->nativeDims.value_or(model->volume.dims);
   scaled->volume = std::move(volume);
   return scaled;
 }

@@ -119,6 +119,7 @@ inline inr::RendererOptions Unrounded()
 inline inr::ModelPointer Scaled(const inr::ModelPointer& model, const glm::i64vec3& dims)
 {
   auto scaled = std::make_shared<inr::Model>(*model);
+  scaled->nativeDims = model->volume.dims;
   scaled->volume.dims = dims;
   return scaled;
 }

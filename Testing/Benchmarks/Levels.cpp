@@ -17,7 +17,7 @@
 
 namespace {
 
-constexpr double CellsPerVoxel[] = {2, 2.5, 3, 4, 5};
+constexpr double PlacesPerVoxel[] = {2, 2.5, 3, 4, 5}; ///< that the field tells apart, per axis
 constexpr std::int64_t Places = 200000;
 
 /// A field of which nobody knows how fine it is: its coarse voxels are means.
@@ -42,51 +42,54 @@ private:
   std::shared_ptr<const inr::Evaluator> Field;
 };
 
-/// Voxels of a volume of edge^3, each the mean of points^3.
+/// Voxels of a volume, each the mean of points^3.
 class Voxels
 {
 public:
-  Voxels(const inr::Evaluator& field, std::int64_t edge, int points) : Edge(edge)
+  Voxels(const inr::Evaluator& field, const glm::i64vec3& dims, int points) : Dims(dims)
   {
     std::vector<float> axes[3];
-    for (std::int64_t k = 0; k < edge * points; ++k) {
-      const auto sample = static_cast<double>(k);
-      axes[0].push_back(static_cast<float>((sample + 0.5) / static_cast<double>(edge * points)));
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t count = dims[axis] * points;
+      for (std::int64_t k = 0; k < count; ++k) {
+        const double u = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+        axes[axis].push_back(static_cast<float>(u));
+      }
     }
-    axes[1] = axes[2] = axes[0];
-    const std::size_t width = axes[0].size();
-    std::vector<float> samples(width * width * width);
+    std::vector<float> samples(axes[0].size() * axes[1].size() * axes[2].size());
     field.evaluateGrid(axes, samples.data());
-    this->Values.assign(static_cast<std::size_t>(edge * edge * edge), 0.0f);
-    const auto count = static_cast<std::size_t>(points);
+    this->Values.assign(static_cast<std::size_t>(dims.x * dims.y * dims.z), 0.0f);
+    const glm::i64vec3 all = dims * std::int64_t{points};
     for (std::size_t k = 0; k < samples.size(); ++k) {
-      const std::size_t x = k % width / count;
-      const std::size_t y = k / width % width / count;
-      const std::size_t z = k / (width * width) / count;
-      this->Values[x + static_cast<std::size_t>(edge) * (y + static_cast<std::size_t>(edge) * z)] +=
-          samples[k] / static_cast<float>(count * count * count);
+      const auto row = static_cast<std::int64_t>(k) / all.x;
+      const glm::i64vec3 at(static_cast<std::int64_t>(k) % all.x, row % all.y, row / all.y);
+      this->Values[this->index(at / std::int64_t{points})] +=
+          samples[k] / static_cast<float>(points * points * points);
     }
   }
 
   /// Linear between them.
   double at(const glm::vec3& u) const
   {
-    const auto last = static_cast<double>(this->Edge - 1);
-    const glm::dvec3 place = glm::clamp(glm::dvec3(u) * (last + 1) - 0.5, 0.0, last);
-    const glm::dvec3 cell = glm::min(glm::floor(place), last - 1);
+    const glm::dvec3 last(this->Dims - std::int64_t{1});
+    const glm::dvec3 place = glm::clamp(glm::dvec3(u) * (last + 1.0) - 0.5, glm::dvec3(0.0), last);
+    const glm::dvec3 cell = glm::min(glm::floor(place), last - 1.0);
     double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
       const glm::dvec3 near = 1.0 - glm::abs(place - cell - step);
-      const glm::i64vec3 v(cell + step);
-      sum += near.x * near.y * near.z *
-             this->Values[static_cast<std::size_t>(v.x + this->Edge * (v.y + this->Edge * v.z))];
+      sum += near.x * near.y * near.z * this->Values[this->index(glm::i64vec3(cell + step))];
     }
     return sum;
   }
 
 private:
-  std::int64_t Edge;
+  std::size_t index(const glm::i64vec3& at) const
+  {
+    return static_cast<std::size_t>(at.x + this->Dims.x * (at.y + this->Dims.y * at.z));
+  }
+
+  glm::i64vec3 Dims;
   std::vector<float> Values;
 };
 
@@ -109,12 +112,12 @@ double Nearness(const inr::Evaluator& field, const Voxels& voxels)
 
 void MeasureVoxels(const inr::Evaluator& field, const std::string& name)
 {
-  for (const double cells : CellsPerVoxel) {
-    const std::int64_t edge = std::lround(static_cast<double>(field.resolution()) / cells);
+  for (const double places : PlacesPerVoxel) {
+    const glm::i64vec3 dims(glm::round(glm::dvec3(field.resolution()) / places));
     for (const int points : {1, 2}) {
       std::ostringstream text;
-      text << (points == 1 ? "centres, " : "means, ") << cells << " cells a voxel, " << name;
-      Report(text.str(), Nearness(field, Voxels(field, edge, points)), "dB", "higher");
+      text << (points == 1 ? "centres, " : "means, ") << places << " places a voxel, " << name;
+      Report(text.str(), Nearness(field, Voxels(field, dims, points)), "dB", "higher");
     }
   }
 }

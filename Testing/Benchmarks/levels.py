@@ -22,7 +22,7 @@ for argument in sys.argv[2:]:
     for line in run.stdout.splitlines():
         result = json.loads(line)
         result["value"] = float(f"{result['value']:.4g}")
-        if "cells a voxel" in result["name"]:
+        if "places a voxel" in result["name"]:
             result["note"] = "linear between voxels, against the model, at 200,000 places"
         else:
             result["note"] = ("2 threads, 512x512, nothing decoded before; against the full "

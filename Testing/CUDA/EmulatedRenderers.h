@@ -8,7 +8,6 @@
 #include "CUDA/Render/DeviceRenderer.h"
 #include "CUDA/Render/NetworkRenderer.h"
 #include "Testing/CUDA/EmulatedInference.h"
-#include "Testing/CUDA/TrainedModel.h"
 
 #include <memory>
 #include <utility>
@@ -22,8 +21,9 @@ MakeRendererOn(const Where& where, EmulatedInference inference, const glm::i64ve
   using Cache = inr::cuda::DeviceCache<Machine, EmulatedInference>;
   const inr::ModelPointer model = inference.source();
   auto store = std::make_shared<inr::cuda::DeviceStore<Machine, Cache>>(
-      where, std::move(inference), inr::Hierarchy(dims, options.brickSize, ResolutionOf(*model)),
-      options.precision, options.bytes, model->macroCells);
+      where, std::move(inference),
+      inr::Hierarchy(dims, options.brickSize, inr::ResolutionOf(*model)), options.precision,
+      options.bytes, model->macroCells);
   return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options);
 }
 

@@ -57,7 +57,7 @@ TEST_P(Bricks, AreThoseOfCore)
   // Coarse voxels as means of 2 x 2 x 2 points, or as their centres.
   for (const auto& [dims, resolution] :
        {std::pair(sizes[0], 0), std::pair(sizes[1], 0), std::pair(sizes[0], 12)}) {
-    const inr::Hierarchy levels(dims, 9, resolution);
+    const inr::Hierarchy levels(dims, 9, glm::i64vec3(resolution));
     const auto model = BrickModel();
     const auto core = inr::MakeBrickSource(inr::MakeEvaluator(model), levels);
     std::vector<inr::BrickKey> keys;

@@ -286,7 +286,7 @@ public:
     if (!this->Store) {
       this->Store = std::make_shared<WatchedStore>(
           this->Orders, this->inferenceOf(model),
-          inr::Hierarchy(dims, options.brickSize, ResolutionOf(*model)), options.precision,
+          inr::Hierarchy(dims, options.brickSize, inr::ResolutionOf(*model)), options.precision,
           BytesFor(this->Capacity, 0), model->macroCells);
     }
     return std::make_shared<inr::cuda::DeviceRenderer<FailingMachine, WatchedCache>>(

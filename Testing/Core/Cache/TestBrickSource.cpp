@@ -61,11 +61,11 @@ TEST(BrickSource, FiltersWhatACoarseVoxelCannotShow)
                [](const glm::i64vec3&, float value) { EXPECT_EQ(value, 0.5f); });
 }
 
-// Where its finest grid has at most 2.5 cells a voxel; else a coarse voxel is the mean of 2 x 2
+// Where its finest grid has at most 2.5 places a voxel; else a coarse voxel is the mean of 2 x 2
 // x 2.
 TEST(BrickSource, TakesTheCentreWhereTheFieldIsSmoothInIt)
 {
-  const inr::Hierarchy levels({64, 64, 64}, 8, 80);
+  const inr::Hierarchy levels({64, 64, 64}, 8, glm::i64vec3(80));
   const auto bowl = [](const glm::vec3& u) { return u.x * u.x; };
   for (int level = 0; level < levels.levels(); ++level) {
     const double size = 64 >> level;

@@ -187,19 +187,21 @@ std::vector<int> PointsOf(const inr::Hierarchy& levels)
 TEST(Hierarchy, AsksForOnePointWhereAVoxelSpansFewCellsOfTheField)
 {
   using Points = std::vector<int>;
-  EXPECT_EQ(PointsOf({i64vec3(256), 40, 308}), Points({1, 1, 2, 2})); // 1.2, 2.4, 4.8, 9.6 cells
-  EXPECT_EQ(PointsOf({i64vec3(256), 40, 320}), Points({1, 1, 2, 2})); // 2.5 just yet
-  EXPECT_EQ(PointsOf({i64vec3(256), 40, 321}), Points({1, 2, 2, 2}));
-  EXPECT_EQ(PointsOf({i64vec3(1024), 40, 308}), Points({1, 1, 1, 1, 2, 2}));
-  EXPECT_EQ(PointsOf({i64vec3(256), 40, 9999}),
+  EXPECT_EQ(PointsOf({i64vec3(256), 40, i64vec3(308)}),
+            Points({1, 1, 2, 2})); // 1.2, 2.4, 4.8, 9.6 cells
+  EXPECT_EQ(PointsOf({i64vec3(256), 40, i64vec3(320)}), Points({1, 1, 2, 2})); // 2.5 just yet
+  EXPECT_EQ(PointsOf({i64vec3(256), 40, i64vec3(321)}), Points({1, 2, 2, 2}));
+  EXPECT_EQ(PointsOf({i64vec3(1024), 40, i64vec3(308)}), Points({1, 1, 1, 1, 2, 2}));
+  EXPECT_EQ(PointsOf({i64vec3(256), 40, i64vec3(9999)}),
             Points({1, 2, 2, 2}));                               // voxels of level 0 are points
   EXPECT_EQ(PointsOf({i64vec3(256), 40}), Points({1, 2, 2, 2})); // nothing is known
-  EXPECT_EQ(PointsOf({{256, 256, 100}, 40, 308}), Points({1, 2, 2, 2})); // 6.2 along z
+  EXPECT_EQ(PointsOf({{256, 256, 100}, 40, i64vec3(308)}), Points({1, 2, 2, 2})); // 6.2 along z
+  EXPECT_EQ(PointsOf({{256, 256, 100}, 40, {256, 256, 100}}), Points({1, 1, 2, 2}));
 }
 
 TEST(Hierarchy, LeavesOutLevelsThatCostAsMuchAsTheNext)
 {
-  const inr::Hierarchy levels(i64vec3(1024), 40, 308);
+  const inr::Hierarchy levels(i64vec3(1024), 40, i64vec3(308));
   std::vector<bool> onTheWay;
   for (int level = 0; level < levels.levels(); ++level) {
     onTheWay.push_back(levels.view().isOnTheWay(level));

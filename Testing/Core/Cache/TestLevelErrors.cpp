@@ -19,7 +19,8 @@ using Field = FieldEvaluator::Function;
 class BrickedLevel
 {
 public:
-  BrickedLevel(const Field& field, const glm::i64vec3& dims, int level, std::int64_t resolution = 0)
+  BrickedLevel(const Field& field, const glm::i64vec3& dims, int level,
+               const glm::i64vec3& resolution = glm::i64vec3(0))
       : Levels(dims, 4, resolution), Level(level),
         Source(inr::MakeBrickSource(std::make_shared<FieldEvaluator>(field), Levels))
   {}
@@ -82,7 +83,7 @@ TEST(LevelResampling, HasWhatBricksHave)
     const inr::VoxelSpan all[3] = {{0, dims.x - 1}, {0, dims.y - 1}, {0, dims.z - 1}};
     for (const int level : {1, 2, 3}) {
       for (const int points : {1, 2}) {
-        const BrickedLevel truth(field, dims, level, points == 1 ? 1 : 0);
+        const BrickedLevel truth(field, dims, level, glm::i64vec3(points == 1 ? 1 : 0));
         const inr::ValueBox made =
             VoxelsOf(field, points == 1 ? inr::VoxelsAtLevel(dims, level) : dims);
         const inr::ValueBox resampled =
@@ -124,9 +125,9 @@ TEST(LevelErrors, SeeWhatACoarseLevelSeesBetweenVoxels)
   };
   const inr::MacroCells cells = inr::MakeMacroCells(dims, 16);
   float largest[2];
-  for (const int resolution : {0, 40}) { // 2.5 cells a voxel of level 1
+  for (const int resolution : {0, 40}) { // 2.5 places a voxel of level 1
     inr::LevelErrors errors(dims, cells.dims, cells.spacing);
-    const FieldEvaluator field(peaks, resolution);
+    const FieldEvaluator field(peaks, glm::i64vec3(resolution));
     const std::int64_t asked = errors.measure(
         0, field, inr::LineKernelFor(inr::ChooseInstructionSet("")), Everything, [] {});
     EXPECT_EQ(asked > 32 * 32 * 32, resolution > 0);

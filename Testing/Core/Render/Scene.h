@@ -14,7 +14,7 @@ class FieldEvaluator : public inr::Evaluator
 public:
   using Function = std::function<float(const glm::vec3& u)>;
 
-  explicit FieldEvaluator(Function function, std::int64_t resolution = 0)
+  explicit FieldEvaluator(Function function, const glm::i64vec3& resolution = glm::i64vec3(0))
       : Field(std::move(function)), Resolution(resolution)
   {}
 
@@ -24,12 +24,12 @@ public:
       values[k] = this->Field(positions[k]);
     }
   }
-  std::int64_t resolution() const override { return this->Resolution; }
+  glm::i64vec3 resolution() const override { return this->Resolution; }
   std::string kernel() const override { return "field"; }
 
 private:
   Function Field;
-  std::int64_t Resolution;
+  glm::i64vec3 Resolution;
 };
 
 inline inr::VolumeInfo VolumeOf(const glm::i64vec3& dims)
