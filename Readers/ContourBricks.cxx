@@ -100,8 +100,9 @@ int ContourBricks::CoarsestLevel(const glm::i64vec3& dims, const inr::MacroCells
 }
 
 ContourBricks::ContourBricks(const inr::Model& model, int level)
-    : Cells(model.macroCells), Level(level), Points(SamplesPerAxis(model, level)),
-      Levels(model.volume.dims, BrickSize(model.volume.dims, model.macroCells, level))
+    : Cells(model.macroCells), Level(level),
+      Levels(model.volume.dims, BrickSize(model.volume.dims, model.macroCells, level),
+             inr::ResolutionOf(model))
 {}
 
 ContourBricks::Box ContourBricks::BoxOf(inr::BrickKey key) const
@@ -113,11 +114,11 @@ ContourBricks::Box ContourBricks::BoxOf(inr::BrickKey key) const
 double ContourBricks::SamplesPerBrick() const
 {
   const glm::dvec3 voxels = glm::dvec3(this->Levels.brickDims()) + 2.0;
-  return voxels.x * voxels.y * voxels.z * (this->Points * this->Points * this->Points);
+  return voxels.x * voxels.y * voxels.z * std::pow(this->Levels.points(this->Level), 3);
 }
 
 /// A brick needs the ranges of as few macro-cells as hold, with what they know of their
-/// surroundings, all that its values are made of: half a voxel around on levels above 0.
+/// surroundings, all that its values are made of: up to half a voxel around on levels above 0.
 std::vector<ContourBricks::Span> ContourBricks::SpansAlong(int axis) const
 {
   const auto size = static_cast<double>(this->Size()[axis]);

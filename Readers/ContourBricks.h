@@ -71,6 +71,5 @@ private:
 
   const inr::MacroCells& Cells;
   int Level;
-  int Points; ///< that a voxel is the mean of, per axis
   inr::Hierarchy Levels;
 };

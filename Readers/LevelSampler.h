@@ -11,20 +11,15 @@
 #include <cstdint>
 #include <vector>
 
-/// How many samples per axis a voxel of a level is the mean of.
-inline int SamplesPerAxis(const inr::Model& model, int level)
-{
-  return inr::PointsPerAxis(model.volume.dims, level, inr::ResolutionOf(model));
-}
-
 /// The voxels of a level, as the renderer has them.
 struct LevelSampler
 {
   LevelSampler(const inr::Model& model, int level)
       : Dims(inr::VoxelsAtLevel(model.volume.dims, level)), PerAxis(1)
   {
+    const int points = inr::PointsPerAxis(model.volume.dims, level, inr::ResolutionOf(model));
     for (int axis = 0; axis < 3; ++axis) {
-      this->PerAxis[axis] = model.volume.dims[axis] > 1 ? SamplesPerAxis(model, level) : 1;
+      this->PerAxis[axis] = model.volume.dims[axis] > 1 ? points : 1;
     }
   }
 

@@ -5,8 +5,8 @@
  *
  * The input is vtkINRReader's output. Level 0 is the native grid of N voxels per axis; level l + 1
  * has half as many as level l, rounded up, n in all. Voxel v of a level sits at
- * origin + spacing * ((v + 0.5) * N/n - 0.5) along an axis. It is the sample there or, where that
- * spans too much of the model's finest grid, the mean of two per axis across the voxel.
+ * origin + spacing * ((v + 0.5) * N/n - 0.5) along an axis. It is the sample there or, where the
+ * model tells more apart within a voxel, the mean of two per axis across it (inr::PointsPerAxis).
  *
  * AbortExecute, SIGINT and SIGTERM stop it; then the output is empty.
  */

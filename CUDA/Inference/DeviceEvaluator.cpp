@@ -38,6 +38,7 @@ public:
     InPieces(this->Slots, count, Piece, submit, collect);
   }
 
+  glm::i64vec3 resolution() const override { return this->Core->resolution(); }
   std::int64_t pointsAtOnce() const override { return Piece / 4; } // which keep a GPU busy
 
   std::string kernel() const override { return this->Uploaded->name(); }

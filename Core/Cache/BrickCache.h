@@ -22,7 +22,9 @@ namespace inr {
 class BrickCache
 {
 public:
-  static constexpr std::int64_t FewestBricks = 8; ///< that a cache can do its work with
+  /// That a cache can do its work with: the pinned one, and what a ray looks at before it has come
+  /// further. That is most where isosurfaces are searched by halving a step of many bricks.
+  static constexpr std::int64_t FewestBricks = 8;
 
   /// Never takes more than `bytes`. Throws Error(InvalidArgument) when that does not hold
   /// FewestBricks and their tables.

@@ -5,6 +5,7 @@
 #include "Core/Model/Model.h"
 
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -107,13 +108,14 @@ private:
   std::vector<float> valuesIn(int level, const glm::i64vec3& begin, const glm::i64vec3& count) const
   {
     const std::int64_t points = this->hierarchy().points(level);
+    const auto isFlat = glm::equal(this->hierarchy().dims(), glm::i64vec3(1));
     std::vector<float> axes[3];
     for (int axis = 0; axis < 3; ++axis) {
       const auto size = static_cast<double>(this->hierarchy().size(level)[axis]);
       for (std::int64_t k = 0; k < count[axis] * points; ++k) {
         const double within = (static_cast<double>(k) + 0.5) / static_cast<double>(points);
         const double u = (static_cast<double>(begin[axis]) + within) / size;
-        axes[axis].push_back(static_cast<float>(u));
+        axes[axis].push_back(isFlat[axis] ? 0.5f : static_cast<float>(u));
       }
     }
     std::vector<float> sampled(axes[0].size() * axes[1].size() * axes[2].size());

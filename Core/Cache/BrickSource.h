@@ -75,9 +75,9 @@ private:
   BlockLattice Lattice;
 };
 
-/// Bricks of any field over the unit cube: levels hold its values at the voxels, or the mean over 2
-/// x 2 x 2 points of each, as `hierarchy` says. `cells`: of the field, whose ranges hold; may be
-/// null.
+/// Bricks of any field over the unit cube: levels hold its values at the voxels, or the mean over
+/// 2 x 2 x 2 points of each, as `hierarchy` says; along an axis of a single voxel all points are in
+/// its middle. `cells`: of the field, whose ranges hold; may be null.
 std::shared_ptr<const BrickSource>
 MakeBrickSource(std::shared_ptr<const Evaluator> field, const Hierarchy& hierarchy,
                 std::shared_ptr<const MacroCells> cells = nullptr);

@@ -217,9 +217,14 @@ void ReadVolumeSection(const JsonSection& root, const ModelOverrides& overrides,
   }
 }
 
-void ApplyOverrides(const ModelOverrides& overrides, VolumeInfo& volume)
+// What `inr` says of the volume is true; upstream's dimensions are what may have to be mended.
+void ApplyOverrides(const ModelOverrides& overrides, bool isOwn, Model& model)
 {
-  volume.dims = overrides.dims.value_or(volume.dims);
+  VolumeInfo& volume = model.volume;
+  if (overrides.dims) {
+    model.nativeDims = isOwn ? std::optional(volume.dims) : std::nullopt;
+    volume.dims = *overrides.dims;
+  }
   if (overrides.dataRange) {
     if (overrides.dataRange->x == overrides.dataRange->y) {
       throw Error(ErrorCode::InvalidArgument, "both ends of DataRange are " +
@@ -255,7 +260,7 @@ ModelHeader ParseModelHeader(const Document& document, const ModelOverrides& ove
   } else {
     ReadVolumeSection(root, overrides, header);
   }
-  ApplyOverrides(overrides, header.model.volume);
+  ApplyOverrides(overrides, root.has("inr"), header.model);
   return header;
 }
 

@@ -50,7 +50,7 @@ int CachedMarcher::findBegins(CachedRay& state)
       std::copy_n(this->Batch.value + k, count - 1, this->Batch.begin + k + 1);
       k += count;
       rest &= ~(LowestBits(count) << place);
-      state.known = {static_cast<double>(origin.interval + (place + count) * origin.steps), -1,
+      state.known = {static_cast<double>(origin.interval + (place + count) * origin.steps),
                      this->Batch.value[k - 1]};
     }
   }
@@ -126,8 +126,7 @@ int CachedMarcher::findIntegrated(CachedRay& state, glm::vec4* colors, float* op
 KnownValue CachedMarcher::knownBehind(int sample) const
 {
   const SampleOrigin& origin = this->Placed.originOf(sample);
-  return {static_cast<double>(origin.intervalOf(sample) + origin.steps), -1,
-          this->Batch.value[sample]};
+  return {static_cast<double>(origin.intervalOf(sample) + origin.steps), this->Batch.value[sample]};
 }
 
 } // namespace inr

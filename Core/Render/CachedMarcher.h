@@ -77,9 +77,6 @@ private:
   void advanceSurfaces(CachedRay& state);
   /// A sample of the batch and the surfaces in front of it; false when a brick is not there.
   bool crossSurfaces(CachedRay& state, int sample);
-  /// Those in an interval of the ray's lattice up to `length` steps behind its begin, where the
-  /// value is `last`, and what is left of it since the ray waited here.
-  bool drawSurfaces(CachedRay& state, int level, std::int64_t interval, double length, float last);
   bool drawSurface(CachedRay& state, float value, int level, double place);
   void clampToRanges();
   /// Of the first `count` samples.

@@ -118,7 +118,8 @@ RequestRanking CachedRenderer::inSteps(const RequestRanking& requests, std::int6
   const Hierarchy& hierarchy = this->Store->cache().hierarchy();
   return requests.replaced([&](BrickKey key) {
     const BrickId id = IdOf(key);
-    const bool mayStep = id.level == 0 && hierarchy.levels() > 1;
+    const bool mayStep =
+        id.level + 1 < hierarchy.levels() && !hierarchy.view().isOnTheWay(id.level + 1);
     const BrickKey coarser = mayStep ? KeyOf(hierarchy.coarser(id)) : key;
     return this->Bricks->find(coarser) == PageTable::Unmapped ? coarser : key;
   });

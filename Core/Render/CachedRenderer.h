@@ -95,8 +95,8 @@ private:
                                    bool rangesHold);
   /// `reach`: see VisibleBlocks; nothing: whole bricks.
   const SufficientBricks& bricksFor(const Majorants& majorants, std::optional<int> reach);
-  /// Where there is no room for so many bricks, level 1, which takes an eighth of it, in place of
-  /// level 0, unless it is there.
+  /// Where there is no room for so many bricks, the level that is not on the way, which takes an
+  /// eighth of it, in place of the next finer one, unless it is there.
   RequestRanking inSteps(const RequestRanking& requests, std::int64_t room) const;
   std::vector<BrickPart> partsOf(const std::vector<BrickKey>& keys) const;
   FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,

@@ -4,8 +4,6 @@
 #include "Core/Render/CachedMarcher.h"
 #include "Core/Render/SurfaceCrossings.h"
 
-#include <algorithm>
-
 namespace inr {
 
 void CachedMarcher::advanceSurfaces(CachedRay& state)
@@ -25,44 +23,28 @@ bool CachedMarcher::crossSurfaces(CachedRay& state, int sample)
 {
   const SampleOrigin& origin = this->Placed.originOf(sample);
   const std::int64_t interval = origin.intervalOf(sample);
+  const auto begin = static_cast<double>(interval);
   const int level = this->Placed.levelOf(sample);
   const float value = this->Batch.value[sample];
+  const auto look = [&](double place, float& found) {
+    return this->Probe->find(state.ray, level, place, state.color.transmittance,
+                             this->Notes.requests, found);
+  };
+  const auto draw = [&](float surface, double place) {
+    if (!this->drawSurface(state, surface, level, place)) {
+      return BehindSurface::Wait;
+    }
+    const bool isOpaque = state.color.transmittance <= OpaqueTransmittance;
+    return isOpaque ? BehindSurface::End : BehindSurface::GoOn;
+  };
   if (interval >= 0 && // else it is of the ray's first, and nothing is in front of that
-      !this->drawSurfaces(state, level, interval, origin.offset, value)) {
+      !PassSurfaces(this->Scene.settings.projector.surfaces, level, begin, begin + origin.offset,
+                    value, state.known, look, draw)) {
     return false;
   }
-  state.known = {static_cast<double>(interval + origin.steps), level, value};
+  state.known = {static_cast<double>(interval + origin.steps), value,
+                 static_cast<std::int16_t>(level)};
   return true;
-}
-
-bool CachedMarcher::drawSurfaces(CachedRay& state, int level, std::int64_t interval, double length,
-                                 float last)
-{
-  const auto begin = static_cast<double>(interval);
-  KnownValue& known = state.known;
-  const auto look = [&](double place, float& value) {
-    return this->Probe->find(state.ray, level, place, state.color.transmittance,
-                             this->Notes.requests, value);
-  };
-  if (known.at < begin || known.level != level) {
-    const double place = std::max(begin, known.at);
-    float value = 0;
-    if (!look(place, value)) {
-      return false;
-    }
-    known = {place, level, value};
-  }
-  SurfaceInterval passed{known.at, begin + length, known.value, last};
-  const bool done = DrawSurfaces(
-      this->Scene.settings.projector.surfaces, passed, look, [&](float value, double place) {
-        if (!this->drawSurface(state, value, level, place)) {
-          return BehindSurface::Wait;
-        }
-        const bool isOpaque = state.color.transmittance <= OpaqueTransmittance;
-        return isOpaque ? BehindSurface::End : BehindSurface::GoOn;
-      });
-  known = {passed.begin, level, passed.first}; // what is drawn is not to be drawn again
-  return done;
 }
 
 bool CachedMarcher::drawSurface(CachedRay& state, float value, int level, double place)

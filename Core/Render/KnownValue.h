@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+
 namespace inr {
 
 /// A value of the field as a level has it.
@@ -9,8 +11,9 @@ struct KnownValue
   /// Place on the ray: the end of an interval of its lattice or, while what is behind it waits, a
   /// surface that is drawn; -2 = none.
   double at = -2;
-  int level = -1;
   float value = 0;
+  std::int16_t level = -1;
+  bool isOnSurface = false; ///< and the next surface, which waits, is right there
 };
 
 } // namespace inr

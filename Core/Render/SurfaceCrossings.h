@@ -5,6 +5,7 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Render/Isosurfaces.h"
+#include "Core/Render/KnownValue.h"
 
 #include <cmath>
 
@@ -35,6 +36,7 @@ struct SurfaceInterval
   double end;
   float first;
   float last;
+  bool isFound; ///< the first surface, which is at the begin
 
   INR_HOST_DEVICE bool rises() const { return this->first < this->last; }
   /// Only what is behind a place where it takes `value`.
@@ -43,6 +45,7 @@ struct SurfaceInterval
     // A field that falls has passed the value when it is below.
     this->first = this->rises() ? value : std::nextafter(value, -static_cast<float>(Infinite));
     this->begin = place;
+    this->isFound = false;
   }
 };
 
@@ -53,32 +56,66 @@ enum class BehindSurface {
   Wait ///< it could not be drawn yet
 };
 
-/// Draws the surfaces in `interval` from front to back, as long as they show. `look(place, value)`:
-/// the field there, false where the ray waits for that; `draw(value, place)`: see BehindSurface.
-/// False when the ray waits: `interval` is then what is behind the latest surface drawn.
+/// Makes `interval` begin at its first surface; false where the ray waits.
+template <class Look>
+INR_HOST_DEVICE bool FindSurface(float value, SurfaceInterval& interval, const Look& look)
+{
+  SurfaceCrossing crossing{interval.begin, interval.end, value, interval.rises()};
+  for (int k = 0; k < SurfaceCrossing::Halvings; ++k) {
+    float found = 0;
+    if (!look(crossing.middle(), found)) {
+      return false;
+    }
+    crossing.halve(found);
+  }
+  interval.begin = crossing.middle();
+  interval.isFound = true;
+  return true;
+}
+
+/// Draws the surfaces in `interval` from front to back, as long as they show; see PassSurfaces.
+/// `interval` is then what is behind the latest surface drawn.
 template <class Look, class Draw>
 INR_HOST_DEVICE bool DrawSurfaces(const SurfaceLookup& surfaces, SurfaceInterval& interval,
-                                  Look&& look, Draw&& draw)
+                                  const Look& look, const Draw& draw)
 {
   const bool rises = interval.rises();
   const int last = surfaces.below(interval.last);
   for (int at = surfaces.below(interval.first); at != last; at += rises ? 1 : -1) {
-    SurfaceCrossing crossing{interval.begin, interval.end, surfaces.values[rises ? at : at - 1],
-                             rises};
-    for (int k = 0; k < SurfaceCrossing::Halvings; ++k) {
-      float found = 0;
-      if (!look(crossing.middle(), found)) {
-        return false;
-      }
-      crossing.halve(found);
+    const float value = surfaces.values[rises ? at : at - 1];
+    if (!interval.isFound && !FindSurface(value, interval, look)) {
+      return false;
     }
-    const BehindSurface behind = draw(crossing.value, crossing.middle());
+    const BehindSurface behind = draw(value, interval.begin);
     if (behind != BehindSurface::GoOn) {
       return behind == BehindSurface::End;
     }
-    interval.cutBehind(crossing.middle(), crossing.value);
+    interval.cutBehind(interval.begin, value);
   }
   return true;
+}
+
+/// Draws the surfaces of a ray from place `begin` on to `end`, where `level` has the value `last`,
+/// or of what is left of that since the ray waited: `known` says how far it had come.
+/// `look(place, value)`: the field there, false where the ray waits for that; `draw(value, place)`:
+/// see BehindSurface. False when the ray waits.
+template <class Look, class Draw>
+INR_HOST_DEVICE bool PassSurfaces(const SurfaceLookup& surfaces, int level, double begin,
+                                  double end, float last, KnownValue& known, const Look& look,
+                                  const Draw& draw)
+{
+  if (known.at < begin || known.level != level) {
+    const double place = known.at < begin ? begin : known.at;
+    float value = 0;
+    if (!look(place, value)) {
+      return false;
+    }
+    known = {place, value, static_cast<std::int16_t>(level)};
+  }
+  SurfaceInterval passed{known.at, end, known.value, last, known.isOnSurface};
+  const bool done = DrawSurfaces(surfaces, passed, look, draw);
+  known = {passed.begin, passed.first, known.level, passed.isFound}; // nothing is to be drawn again
+  return done;
 }
 
 } // namespace inr

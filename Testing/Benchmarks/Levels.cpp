@@ -152,6 +152,9 @@ void MeasurePictures(const inr::ModelPointer& source, const std::string& name, i
   for (const Look& look : Looks(model->volume)) {
     const First means(unknown, model, look, frame);
     const First centres(field, model, look, frame);
+    if (centres.points == means.points) {
+      continue; // all of it is of level 0
+    }
     const inr::Image truth = First(field, model, look, finest).picture;
     const std::string scene = look.name + ", " + name + " times " + std::to_string(times);
     Report("first picture by centres, points, " + scene,

@@ -18,6 +18,7 @@ struct BrickJob
   std::int32_t voxels[3];     ///< to be written, x fastest
   std::int32_t inside[3];     ///< at least 1; voxels from there on repeat the last one
   std::int32_t points;        ///< per voxel and axis: 1 or 2
+  bool flat[3];               ///< the volume has a single voxel, in whose middle they are
   std::int64_t firstItem;     ///< of all jobs' items, see BrickItem
   std::int64_t firstValue;    ///< where its first voxel is written
 };
@@ -26,6 +27,9 @@ struct BrickJob
 /// that are not inside take the place of those of the last one.
 INR_HOST_DEVICE inline float SampleCoordinate(const BrickJob& job, int axis, int k)
 {
+  if (job.flat[axis]) {
+    return 0.5f;
+  }
   const int voxel = k / job.points;
   const int kept = voxel < job.inside[axis] ? voxel : job.inside[axis] - 1;
   const double within = (static_cast<double>(kept * job.points + k % job.points) + 0.5) /
@@ -74,6 +78,7 @@ INR_HOST_DEVICE inline BrickJob JobOf(const HierarchyView& levels, BrickKey key,
     const std::int64_t voxels = axis == 2 ? layers : dim;
     job.firstVoxel[axis] = first[axis] + begin;
     job.levelSize[axis] = size[axis];
+    job.flat[axis] = levels.level(0).size[axis] == 1;
     job.voxels[axis] = static_cast<std::int32_t>(voxels);
     job.inside[axis] = static_cast<std::int32_t>(glm::min(inside - begin, voxels));
   }

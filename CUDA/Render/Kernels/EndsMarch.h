@@ -122,46 +122,30 @@ private:
     } else {
       this->State.light.count();
     }
-    this->Known = {static_cast<double>(interval + this->Alike.steps()), -1, taken.value};
+    this->Known = {static_cast<double>(interval + this->Alike.steps()), taken.value};
     return true;
   }
 
   INR_HOST_DEVICE bool crossSurfaces(const Taken& taken)
   {
     const std::int64_t interval = this->Samples.next();
-    if (interval >= 0 && !this->drawSurfaces(taken)) { // else nothing is in front of it
+    const int level = taken.reader.servedLevel();
+    const auto look = [&](double place, float& value) { return this->probe(level, place, value); };
+    const auto draw = [&](float value, double place) {
+      if (!this->drawSurface(level, value, place)) {
+        return BehindSurface::Wait;
+      }
+      return this->State.light.isOpaque() ? BehindSurface::End : BehindSurface::GoOn;
+    };
+    if (interval >= 0 && // else nothing is in front of it
+        !PassSurfaces(this->Scene.settings.projector.surfaces, level, static_cast<double>(interval),
+                      this->placeOf(0), taken.value, this->Known, look, draw)) {
       return false;
     }
     this->State.light.count();
-    this->Known = {static_cast<double>(interval + this->Alike.steps()), taken.reader.servedLevel(),
-                   taken.value};
+    this->Known = {static_cast<double>(interval + this->Alike.steps()), taken.value,
+                   static_cast<std::int16_t>(level)};
     return true;
-  }
-
-  /// Those in front of the next sample, and what is left of them since the ray waited here.
-  INR_HOST_DEVICE bool drawSurfaces(const Taken& taken)
-  {
-    const int level = taken.reader.servedLevel();
-    const auto begin = static_cast<double>(this->Samples.next());
-    const auto look = [&](double place, float& value) { return this->probe(level, place, value); };
-    if (this->Known.at < begin || this->Known.level != level) {
-      const double place = this->Known.at < begin ? begin : this->Known.at;
-      float value = 0;
-      if (!look(place, value)) {
-        return false;
-      }
-      this->Known = {place, level, value};
-    }
-    SurfaceInterval passed{this->Known.at, this->placeOf(0), this->Known.value, taken.value};
-    const bool done = DrawSurfaces(
-        this->Scene.settings.projector.surfaces, passed, look, [&](float value, double place) {
-          if (!this->drawSurface(level, value, place)) {
-            return BehindSurface::Wait;
-          }
-          return this->State.light.isOpaque() ? BehindSurface::End : BehindSurface::GoOn;
-        });
-    this->Known = {passed.begin, level, passed.first}; // what is drawn is not to be drawn again
-    return done;
   }
 
   INR_HOST_DEVICE bool drawSurface(int level, float value, double place)

@@ -61,8 +61,7 @@ TEST(BrickSource, FiltersWhatACoarseVoxelCannotShow)
                [](const glm::i64vec3&, float value) { EXPECT_EQ(value, 0.5f); });
 }
 
-// Where its finest grid has at most 2.5 places a voxel; else a coarse voxel is the mean of 2 x 2
-// x 2.
+// Where it tells at most 2.5 places apart in a voxel; else a coarse one is the mean of eight.
 TEST(BrickSource, TakesTheCentreWhereTheFieldIsSmoothInIt)
 {
   const inr::Hierarchy levels({64, 64, 64}, 8, glm::i64vec3(80));
@@ -75,6 +74,18 @@ TEST(BrickSource, TakesTheCentreWhereTheFieldIsSmoothInIt)
                    const double u = (static_cast<double>(v.x) + 0.5) / size;
                    EXPECT_NEAR(value, u * u + off * off, 1e-6) << level;
                  });
+  }
+}
+
+// Nobody knows what a field is beside the only plane of its voxels.
+TEST(BrickSource, AsksASlabInItsMiddleOnly)
+{
+  const inr::Hierarchy levels({40, 1, 40}, 8);
+  const auto plane = [](const glm::vec3& u) { return u.y == 0.5f ? 0.25f : 1.0f; };
+  for (int level = 0; level < levels.levels(); ++level) {
+    for (const float value : Infer(levels, plane, {level, {0, 0, 0}})) {
+      EXPECT_EQ(value, 0.25f) << level;
+    }
   }
 }
 

@@ -161,6 +161,8 @@ TEST_F(ModelFile, OverridesWin)
   const inr::ModelPointer read = inr::ReadModel(Folder.file("model.inr"), overrides);
   EXPECT_EQ(read->volume.dims, glm::i64vec3(8, 9, 10));
   EXPECT_EQ(read->volume.low, -2.0);
+  EXPECT_EQ(read->nativeDims, FullModel()->volume.dims); // which are true
+  EXPECT_FALSE(inr::ReadModel(Folder.file("model.inr"))->nativeDims);
 }
 
 TEST_F(ModelFile, IsRecognisedByContent)

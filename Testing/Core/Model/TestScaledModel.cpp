@@ -43,6 +43,30 @@ TEST(ScaledModel, KeepsSlabs)
   }
 }
 
+/// Of as many voxels, 16 * 2^(levels - 1) points of the finest lattice.
+inr::ModelPointer ModelOf(const glm::i64vec3& dims, int levels)
+{
+  inr::Description description = SmallDescription();
+  description.grid.baseResolution = 16;
+  description.grid.perLevelScale = 2;
+  description.grid.levels = levels;
+  auto model = RandomModel(description);
+  model->volume = Volume(dims);
+  return model;
+}
+
+TEST(ScaledModel, TellsApartWhatTheModelAndItsVolumeDo)
+{
+  const glm::i64vec3 dims(100, 50, 3);
+  EXPECT_EQ(inr::ResolutionOf(*ModelOf(dims, 3)), glm::i64vec3(64, 50, 3));
+  const inr::ModelPointer fine = ModelOf(dims, 6);
+  EXPECT_EQ(inr::ResolutionOf(*fine), dims);
+  for (const double factor : {0.5, 1.0, 4.0}) {
+    EXPECT_EQ(inr::ResolutionOf(*inr::ScaledModel(fine, factor)), dims) << factor;
+  }
+  EXPECT_EQ(inr::ResolutionOf(*inr::ScaledModel(inr::ScaledModel(fine, 0.5), 3)), dims);
+}
+
 TEST(ScaledModel, RefusesOtherFactorsAndTooManyVoxels)
 {
   const auto told = [](const glm::i64vec3& dims, double factor) {

@@ -82,6 +82,7 @@ TEST(UpstreamFile, WithoutDimensionsAsksForThem)
   inr::ModelOverrides overrides;
   overrides.dims = glm::i64vec3(40, 30, 20);
   EXPECT_EQ(inr::ReadModel(path, overrides)->volume.dims.x, 40);
+  EXPECT_FALSE(inr::ReadModel(path, overrides)->nativeDims); // these are the true ones
 }
 
 // What the user says goes before what the file does; the cells stay where they are in the volume.

@@ -266,21 +266,22 @@ TEST(Isosurface, DependsOnNeitherThreadsNorTheSizeOfTheCache)
 }
 
 /// Many surfaces around a corner of bricks of 9 voxels, lit, seen from either side.
-class AtACorner : public testing::TestWithParam<double>
+class AtACorner : public testing::TestWithParam<std::tuple<double, double>>
 {
 protected:
   static constexpr std::int64_t Edge = 33;
 
   static inr::Frame frame()
   {
+    const auto& [from, distance] = GetParam();
     const glm::dvec3 corner(16.0);
     inr::Frame frame;
     frame.width = frame.height = 12;
     const glm::dmat4 view =
-        glm::lookAt(corner - GetParam() * glm::dvec3(20, 22, 24), corner, glm::dvec3(0.1, 1, 0));
+        glm::lookAt(corner - from * glm::dvec3(20, 22, 24), corner, glm::dvec3(0.1, 1, 0));
     frame.clipToWorld = glm::inverse(glm::ortho(-1.5, 1.5, -1.5, 1.5, 1.0, 80.0) * view);
     frame.levelOfDetailScale = 0;
-    frame.sampleDistance = 4; // a step may cross all of them
+    frame.sampleDistance = distance; // a step may cross all of them, and bricks
     frame.blending.mode = inr::BlendMode::Isosurface;
     frame.blending.isosurfaces = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
     frame.shading.emplace();
@@ -300,9 +301,9 @@ protected:
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Isosurfaces, AtACorner, testing::Values(1.0, -1.0), [](const auto& from) {
-  return std::string(from.param > 0 ? "Rising" : "Falling");
-});
+INSTANTIATE_TEST_SUITE_P(Isosurfaces, AtACorner,
+                         testing::Combine(testing::Values(1.0, -1.0),
+                                          testing::Values(4.0, 40.0, 100.0)));
 
 // What the light of them all depends on is eight bricks, and one more is always there.
 TEST_P(AtACorner, ComesFromTheSmallestCache)

@@ -19,6 +19,8 @@ constexpr std::int64_t FortyBricks = 400000; ///< of more than a hundred
 class Field : public inr::Evaluator
 {
 public:
+  explicit Field(const glm::i64vec3& resolution) : Resolution(resolution) {}
+
   void evaluate(const glm::vec3* positions, std::int64_t count, float* values) const override
   {
     this->Points += count;
@@ -37,16 +39,22 @@ public:
       }
     }
   }
+  glm::i64vec3 resolution() const override { return this->Resolution; }
   std::string kernel() const override { return "field"; }
 
   mutable std::atomic<std::int64_t> Points{0}; ///< of paths
   mutable std::atomic<std::int64_t> Voxels{0}; ///< of bricks, and what they are made of
+
+private:
+  glm::i64vec3 Resolution;
 };
 
 struct Scene
 {
-  explicit Scene(inr::RenderMode mode, std::int64_t bytes, bool onlyWhatFits)
-      : renderer(this->field, VolumeOf(Dims), {}, RendererOptions(bytes, onlyWhatFits)),
+  Scene(inr::RenderMode mode, std::int64_t bytes, bool onlyWhatFits,
+        const glm::i64vec3& resolution = glm::i64vec3(0))
+      : field(std::make_shared<Field>(resolution)),
+        renderer(this->field, VolumeOf(Dims), {}, RendererOptions(bytes, onlyWhatFits)),
         frame(Oblique(glm::dvec3(Dims), 80))
   {
     this->renderer.setTransferFunction(Colours());
@@ -71,7 +79,7 @@ struct Scene
     return this->image.pixels;
   }
 
-  std::shared_ptr<Field> field = std::make_shared<Field>();
+  std::shared_ptr<Field> field;
   inr::Renderer renderer;
   inr::Frame frame;
   inr::Image image;
@@ -114,6 +122,22 @@ TEST_P(OnlyWhatFits, InfersNoMoreThanFits)
   fitting.render();
   fitting.frame.frameIndex = 0;
   EXPECT_LT(fitting.field->Voxels, asked + asked / 4);
+}
+
+/// Whichever level is left out on the way: it takes the place of the next finer one that does not
+/// fit.
+TEST_P(OnlyWhatFits, ShowsAsMuchOfAFieldOfKnownResolution)
+{
+  double psnr[2];
+  for (const bool isKnown : {false, true}) {
+    const glm::i64vec3 resolution = isKnown ? Dims : glm::i64vec3(0);
+    Scene whole(GetParam(), Enough, false, resolution);
+    Scene fitting(GetParam(), FortyBricks / 3, true, resolution);
+    whole.render();
+    fitting.render();
+    psnr[isKnown] = inr::ImagePsnr(fitting.image, whole.image);
+  }
+  EXPECT_GT(psnr[1], psnr[0] - 1.0);
 }
 
 TEST_P(OnlyWhatFits, FramesInALimitedTimeEnd)
