@@ -23,7 +23,7 @@ class BrickCache
 {
 public:
   /// That a cache can do its work with: the pinned one, and what a ray looks at before it has come
-  /// further. That is most where isosurfaces are searched by halving a step of many bricks.
+  /// further, which is a sample's brick, or two, and those of a gradient.
   static constexpr std::int64_t FewestBricks = 8;
 
   /// Never takes more than `bytes`. Throws Error(InvalidArgument) when that does not hold

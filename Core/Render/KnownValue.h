@@ -13,7 +13,9 @@ struct KnownValue
   double at = -2;
   float value = 0;
   std::int16_t level = -1;
-  bool isOnSurface = false; ///< and the next surface, which waits, is right there
+  /// So often what is behind it was halved, in search of the next surface, down to `until`.
+  std::int16_t halvings = 0;
+  double until = 0;
 };
 
 } // namespace inr

@@ -8,6 +8,7 @@
 #include "Core/Render/KnownValue.h"
 
 #include <cmath>
+#include <cstdint>
 
 namespace inr {
 
@@ -29,14 +30,16 @@ struct SurfaceCrossing
   }
 };
 
-/// A part of a ray, and the field's values at its ends.
+/// A part of a ray, and the field's values at its ends. The search for the first surface in it may
+/// have begun: that is then in front of `until`, after so many halvings.
 struct SurfaceInterval
 {
   double begin;
   double end;
   float first;
   float last;
-  bool isFound; ///< the first surface, which is at the begin
+  double until;
+  std::int16_t halvings;
 
   INR_HOST_DEVICE bool rises() const { return this->first < this->last; }
   /// Only what is behind a place where it takes `value`.
@@ -45,7 +48,7 @@ struct SurfaceInterval
     // A field that falls has passed the value when it is below.
     this->first = this->rises() ? value : std::nextafter(value, -static_cast<float>(Infinite));
     this->begin = place;
-    this->isFound = false;
+    this->halvings = 0;
   }
 };
 
@@ -56,20 +59,25 @@ enum class BehindSurface {
   Wait ///< it could not be drawn yet
 };
 
-/// Makes `interval` begin at its first surface; false where the ray waits.
+/// Where the first surface of `interval`, that of `value`, is; false where the ray waits. What was
+/// looked at by then is not looked at again: a step of many bricks would never come to its end in a
+/// cache of few.
 template <class Look>
-INR_HOST_DEVICE bool FindSurface(float value, SurfaceInterval& interval, const Look& look)
+INR_HOST_DEVICE bool FindSurface(float value, SurfaceInterval& interval, const Look& look,
+                                 double& place)
 {
-  SurfaceCrossing crossing{interval.begin, interval.end, value, interval.rises()};
-  for (int k = 0; k < SurfaceCrossing::Halvings; ++k) {
+  const double high = interval.halvings > 0 ? interval.until : interval.end;
+  SurfaceCrossing crossing{interval.begin, high, value, interval.rises()};
+  for (; interval.halvings < SurfaceCrossing::Halvings; ++interval.halvings) {
     float found = 0;
     if (!look(crossing.middle(), found)) {
       return false;
     }
     crossing.halve(found);
+    interval.begin = crossing.low;
+    interval.until = crossing.high;
   }
-  interval.begin = crossing.middle();
-  interval.isFound = true;
+  place = crossing.middle();
   return true;
 }
 
@@ -83,14 +91,15 @@ INR_HOST_DEVICE bool DrawSurfaces(const SurfaceLookup& surfaces, SurfaceInterval
   const int last = surfaces.below(interval.last);
   for (int at = surfaces.below(interval.first); at != last; at += rises ? 1 : -1) {
     const float value = surfaces.values[rises ? at : at - 1];
-    if (!interval.isFound && !FindSurface(value, interval, look)) {
+    double place = 0;
+    if (!FindSurface(value, interval, look, place)) {
       return false;
     }
-    const BehindSurface behind = draw(value, interval.begin);
+    const BehindSurface behind = draw(value, place);
     if (behind != BehindSurface::GoOn) {
       return behind == BehindSurface::End;
     }
-    interval.cutBehind(interval.begin, value);
+    interval.cutBehind(place, value);
   }
   return true;
 }
@@ -112,9 +121,9 @@ INR_HOST_DEVICE bool PassSurfaces(const SurfaceLookup& surfaces, int level, doub
     }
     known = {place, value, static_cast<std::int16_t>(level)};
   }
-  SurfaceInterval passed{known.at, end, known.value, last, known.isOnSurface};
+  SurfaceInterval passed{known.at, end, known.value, last, known.until, known.halvings};
   const bool done = DrawSurfaces(surfaces, passed, look, draw);
-  known = {passed.begin, passed.first, known.level, passed.isFound}; // nothing is to be drawn again
+  known = {passed.begin, passed.first, known.level, passed.halvings, passed.until};
   return done;
 }
 

@@ -269,19 +269,22 @@ TEST(Isosurface, DependsOnNeitherThreadsNorTheSizeOfTheCache)
 class AtACorner : public testing::TestWithParam<std::tuple<double, double>>
 {
 protected:
-  static constexpr std::int64_t Edge = 33;
+  static double distance() { return std::get<1>(GetParam()); }
+  /// Of the volume: several steps.
+  static std::int64_t edge() { return distance() > 100 ? 1025 : 33; }
+  static glm::i64vec3 dims() { return glm::i64vec3(edge()); }
 
   static inr::Frame frame()
   {
-    const auto& [from, distance] = GetParam();
-    const glm::dvec3 corner(16.0);
+    const glm::dvec3 corner(0.5 * static_cast<double>(edge() - 1));
+    const double far = static_cast<double>(edge());
+    const glm::dvec3 from = corner - far * std::get<0>(GetParam()) * glm::dvec3(0.6, 0.66, 0.72);
     inr::Frame frame;
     frame.width = frame.height = 12;
-    const glm::dmat4 view =
-        glm::lookAt(corner - from * glm::dvec3(20, 22, 24), corner, glm::dvec3(0.1, 1, 0));
-    frame.clipToWorld = glm::inverse(glm::ortho(-1.5, 1.5, -1.5, 1.5, 1.0, 80.0) * view);
+    frame.clipToWorld = glm::inverse(glm::ortho(-1.5, 1.5, -1.5, 1.5, 0.0, 3 * far) *
+                                     glm::lookAt(from, corner, glm::dvec3(0.1, 1, 0)));
     frame.levelOfDetailScale = 0;
-    frame.sampleDistance = distance; // a step may cross all of them, and bricks
+    frame.sampleDistance = distance(); // a step may cross all of them, and bricks
     frame.blending.mode = inr::BlendMode::Isosurface;
     frame.blending.isosurfaces = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
     frame.shading.emplace();
@@ -291,11 +294,12 @@ protected:
   static inr::CacheOptions cache() { return Options(inr::CachePrecision::Float32, 9); }
   static inr::Renderer renderer(const inr::CacheOptions& cache)
   {
-    const auto field = [](const glm::vec3& u) {
-      const float along = (u.x + u.y + u.z - 1.5f) * Edge; // point index 16 is at u = 0.5
+    const auto size = static_cast<float>(edge());
+    const auto field = [size](const glm::vec3& u) {
+      const float along = (u.x + u.y + u.z - 1.5f) * size; // the corner is at u = 0.5
       return std::clamp(0.5f + along / 6, 0.0f, 1.0f);
     };
-    inr::Renderer renderer = CachedRenderer({Edge, Edge, Edge}, field, cache, 1);
+    inr::Renderer renderer = CachedRenderer(dims(), field, cache, 1);
     renderer.setTransferFunction(UniformMedium(0.2f));
     return renderer;
   }
@@ -303,13 +307,14 @@ protected:
 
 INSTANTIATE_TEST_SUITE_P(Isosurfaces, AtACorner,
                          testing::Combine(testing::Values(1.0, -1.0),
-                                          testing::Values(4.0, 40.0, 100.0)));
+                                          testing::Values(4.0, 40.0, 400.0)));
 
-// What the light of them all depends on is eight bricks, and one more is always there.
+// What the light of them all depends on is eight bricks; the smallest cache has seven, beside the
+// one that is always there.
 TEST_P(AtACorner, ComesFromTheSmallestCache)
 {
   inr::CacheOptions smallest = cache();
-  smallest.bytes = SmallestCache({Edge, Edge, Edge}, smallest);
+  smallest.bytes = SmallestCache(dims(), smallest);
   inr::Renderer large = renderer(cache());
   inr::Renderer small = renderer(smallest);
   const inr::Image truth = Render(large, frame());
