@@ -125,10 +125,10 @@ void MeasureVoxels(const inr::Evaluator& field, const std::string& name)
 /// The first complete picture of a renderer that has decoded nothing.
 struct First
 {
-  First(std::shared_ptr<const inr::Evaluator> field, const inr::ModelPointer& model,
+  First(const std::shared_ptr<const inr::Evaluator>& field, const inr::ModelPointer& model,
         const Look& look, const inr::Frame& frame)
   {
-    inr::Renderer renderer(std::move(field), model->volume, model->macroCells, Unrounded());
+    inr::Renderer renderer(field, model->volume, model->macroCells, Unrounded());
     renderer.setTransferFunction(look.function);
     const std::clock_t start = std::clock();
     this->points = renderer.render(frame, this->picture).work.bricks.points;
