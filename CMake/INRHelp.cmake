@@ -1,5 +1,5 @@
-# The plugin's pages in ParaView's own help (F1): from README, Documentation and the XML, by Plugin/Help. Only
-# where Qt's documentation tools are, as ParaView's functions need them.
+# The plugin's pages in ParaView's own help (F1): from README, Documentation and the XML, by
+# Plugin/Help. Only where Qt's documentation tools are, as ParaView's functions need them.
 
 # inr_help_arguments(OUTPUT XML...): what paraview_add_plugin is to be told of help.
 function (inr_help_arguments output)

@@ -15,7 +15,7 @@ namespace cuda {
 /// How many rays of a picture wait at once: for each the machine has memory.
 struct WindowSizes
 {
-  std::int64_t rays = 1 << 20;  ///< 160 MiB of their progress, 232 for LayeredMarch.h
+  std::int64_t rays = 1 << 20;  ///< 160 MiB of their progress, 240 at most
   std::int64_t paths = 1 << 17; ///< 69 MB
 };
 

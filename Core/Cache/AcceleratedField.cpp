@@ -55,12 +55,14 @@ void RequireAgreement(const BrickSource& device, const BrickSource& cpu)
 
 bool IsSame(const Hierarchy& a, const Hierarchy& b)
 {
-  const auto isAlike = [&](int level) { return a.points(level) == b.points(level); };
-  bool isSame = a.dims() == b.dims() && a.brickDims() == b.brickDims();
-  for (int level = 0; isSame && level < a.levels(); ++level) {
-    isSame = isAlike(level);
+  if (a.dims() != b.dims() || a.brickDims() != b.brickDims()) {
+    return false;
   }
-  return isSame;
+  int level = 0;
+  while (level < a.levels() && a.points(level) == b.points(level)) {
+    ++level;
+  }
+  return level == a.levels();
 }
 
 /// Whether `device`, which may be null, has done what `call` asks of it.

@@ -11,9 +11,10 @@
 #include "Core/Model/ModelFile.h"
 #include "Core/Random.h"
 #include "Testing/Benchmarks/FrameScenes.h"
-#include "Testing/Benchmarks/InTurn.h"
+#include "Testing/Benchmarks/VoxelField.h"
 
 #include <cmath>
+#include <ctime>
 
 namespace {
 
@@ -42,59 +43,33 @@ private:
   std::shared_ptr<const inr::Evaluator> Field;
 };
 
-/// Voxels of a volume, each the mean of points^3.
-class Voxels
+/// A field's voxels, each the mean of points^3, and what is linear between them.
+VoxelField VoxelsOf(const inr::Evaluator& field, const glm::i64vec3& dims, int points)
 {
-public:
-  Voxels(const inr::Evaluator& field, const glm::i64vec3& dims, int points) : Dims(dims)
-  {
-    std::vector<float> axes[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t count = dims[axis] * points;
-      for (std::int64_t k = 0; k < count; ++k) {
-        const double u = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
-        axes[axis].push_back(static_cast<float>(u));
-      }
-    }
-    std::vector<float> samples(axes[0].size() * axes[1].size() * axes[2].size());
-    field.evaluateGrid(axes, samples.data());
-    this->Values.assign(static_cast<std::size_t>(dims.x * dims.y * dims.z), 0.0f);
-    const glm::i64vec3 all = dims * std::int64_t{points};
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      const auto row = static_cast<std::int64_t>(k) / all.x;
-      const glm::i64vec3 at(static_cast<std::int64_t>(k) % all.x, row % all.y, row / all.y);
-      this->Values[this->index(at / std::int64_t{points})] +=
-          samples[k] / static_cast<float>(points * points * points);
+  const glm::i64vec3 all = dims * std::int64_t{points};
+  std::vector<float> axes[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::int64_t k = 0; k < all[axis]; ++k) {
+      const double u = (static_cast<double>(k) + 0.5) / static_cast<double>(all[axis]);
+      axes[axis].push_back(static_cast<float>(u));
     }
   }
-
-  /// Linear between them.
-  double at(const glm::vec3& u) const
-  {
-    const glm::dvec3 last(this->Dims - std::int64_t{1});
-    const glm::dvec3 place = glm::clamp(glm::dvec3(u) * (last + 1.0) - 0.5, glm::dvec3(0.0), last);
-    const glm::dvec3 cell = glm::min(glm::floor(place), last - 1.0);
-    double sum = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::dvec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-      const glm::dvec3 near = 1.0 - glm::abs(place - cell - step);
-      sum += near.x * near.y * near.z * this->Values[this->index(glm::i64vec3(cell + step))];
-    }
-    return sum;
+  std::vector<float> samples(static_cast<std::size_t>(all.x * all.y * all.z));
+  field.evaluateGrid(axes, samples.data());
+  std::vector<float> means(static_cast<std::size_t>(dims.x * dims.y * dims.z));
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto row = static_cast<std::int64_t>(k) / all.x;
+    const glm::i64vec3 at =
+        glm::i64vec3(static_cast<std::int64_t>(k) % all.x, row % all.y, row / all.y) /
+        std::int64_t{points};
+    means[static_cast<std::size_t>(at.x + dims.x * (at.y + dims.y * at.z))] +=
+        samples[k] / static_cast<float>(points * points * points);
   }
-
-private:
-  std::size_t index(const glm::i64vec3& at) const
-  {
-    return static_cast<std::size_t>(at.x + this->Dims.x * (at.y + this->Dims.y * at.z));
-  }
-
-  glm::i64vec3 Dims;
-  std::vector<float> Values;
-};
+  return {dims, std::move(means)};
+}
 
 /// How near voxels are to the field between them: dB of the value range.
-double Nearness(const inr::Evaluator& field, const Voxels& voxels)
+double Nearness(const inr::Evaluator& field, const inr::Evaluator& voxels)
 {
   std::vector<glm::vec3> places;
   for (std::uint64_t k = 0; k < 3 * Places; k += 3) {
@@ -102,10 +77,12 @@ double Nearness(const inr::Evaluator& field, const Voxels& voxels)
                         inr::RandomUnit(1, k + 2));
   }
   std::vector<float> truth(places.size());
+  std::vector<float> found(places.size());
   field.evaluate(places.data(), Places, truth.data());
+  voxels.evaluate(places.data(), Places, found.data());
   double squares = 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    squares += std::pow(voxels.at(places[k]) - truth[k], 2);
+    squares += std::pow(found[k] - truth[k], 2);
   }
   return -10 * std::log10(squares / static_cast<double>(Places));
 }
@@ -117,7 +94,7 @@ void MeasureVoxels(const inr::Evaluator& field, const std::string& name)
     for (const int points : {1, 2}) {
       std::ostringstream text;
       text << (points == 1 ? "centres, " : "means, ") << places << " places a voxel, " << name;
-      Report(text.str(), Nearness(field, Voxels(field, dims, points)), "dB", "higher");
+      Report(text.str(), Nearness(field, VoxelsOf(field, dims, points)), "dB", "higher");
     }
   }
 }

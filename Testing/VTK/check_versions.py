@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Documentation/Wheel.md's table of VTK versions is true: of this build, of the wheel's, and of the last run of
-Testing/Wheel/run.sh; and only VTKCompat.h asks for VTK's version.
+"""The table of VTK versions in Documentation/Wheel.md is true: of this build, of the wheel's, and of the
+last run of Testing/Wheel/run.sh; and only VTKCompat.h asks for VTK's version.
 
     check_versions.py VERSION      that of the VTK that this build is against
 """

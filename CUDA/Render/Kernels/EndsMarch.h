@@ -51,7 +51,7 @@ private:
   };
 
   /// False where it, or what is looked at for it, waits for a brick: then nothing has changed, but
-  /// that surfaces in front of it may be drawn.
+  /// that surfaces in front of it may be drawn, and the search for the next one begun.
   INR_HOST_DEVICE bool takeNext()
   {
     const bool finds = this->Scene.settings.projector.findsSurfaces();
