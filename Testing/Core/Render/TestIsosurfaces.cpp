@@ -250,7 +250,7 @@ TEST(Isosurface, DependsOnNeitherThreadsNorTheSizeOfTheCache)
 {
   const BlendScene scene;
   inr::Frame frame = LitFrame(scene);
-  frame.levelOfDetailScale = 0.45; // levels 0 and 1
+  frame.levelOfDetailScale = 0.52; // levels 0 and 1
   BlendScene::Cache large;
   large.threads = 3;
   BlendScene::Cache small;
@@ -352,7 +352,7 @@ TEST(Isosurface, OfACoarseLevelIsNearThatOfTheFinest)
   inr::Renderer renderer = scene.renderer(true, true);
   inr::Frame frame = FrameOf(scene, {0.7});
   const inr::Image fine = Render(renderer, frame);
-  frame.levelOfDetailScale = 0.5;
+  frame.levelOfDetailScale = 0.6;
   const inr::Image coarse = Render(renderer, frame);
   EXPECT_NE(coarse.pixels, fine.pixels);
   int differ = 0;

@@ -28,12 +28,12 @@ double MeanLevel(inr::LevelOfDetail& detail, double t)
   return sum / samples;
 }
 
-/// The coarsest level whose voxels are no larger than the footprint, and in the last half before
+/// The coarsest level whose voxels are no larger than the footprint, and in the last quarter before
 /// the next one's are, more and more of that.
 double LevelFor(double footprint)
 {
   const double level = std::floor(std::log2(std::max(1.0, footprint)));
-  return level + std::max(0.0, 2 * (footprint / std::exp2(level) - 1.5));
+  return level + std::max(0.0, 4 * (footprint / std::exp2(level) - 1.75));
 }
 
 TEST(LevelOfDetail, FollowsTheFootprintWithoutSteps)
@@ -67,7 +67,7 @@ TEST(LevelOfDetail, SaysHowFarItsLevelsStay)
 TEST(LevelOfDetail, TheFractionIsLinearInT)
 {
   inr::LevelOfDetail detail(Spreading(0.3, 0.01), 1.0, 13);
-  for (const double t : {125.0, 150.0, 165.0, 290.0, 340.0}) { // where levels are mixed
+  for (const double t : {150.0, 157.0, 165.0, 325.0, 355.0}) { // where levels are mixed
     const double level = MeanLevel(detail, t);
     ASSERT_TRUE(detail.isDithered()) << t;
     EXPECT_NEAR(detail.level() + detail.fractionAtEntry() + detail.fractionGrowth() * t, level,
@@ -81,7 +81,7 @@ TEST(LevelOfDetail, MovesBothWaysAndStaysWithinTheLevels)
   inr::LevelOfDetail narrowing(Spreading(1000, -1), 1.0, 4);
   EXPECT_EQ(MeanLevel(narrowing, 0), 3);
   EXPECT_EQ(MeanLevel(narrowing, 997), 1);
-  EXPECT_NEAR(MeanLevel(narrowing, 996.25), 1.75, 0.015);
+  EXPECT_NEAR(MeanLevel(narrowing, 996.25), 1.5, 0.015);
   EXPECT_EQ(MeanLevel(narrowing, 999.5), 0);
   inr::LevelOfDetail full(Spreading(1000, 1), 0.0, 4);
   EXPECT_EQ(MeanLevel(full, 50), 0);

@@ -251,7 +251,7 @@ TEST(Projection, DependsOnNeitherThreadsNorTheSizeOfTheCache)
   for (const BlendMode mode : Modes) {
     SCOPED_TRACE(static_cast<int>(mode));
     inr::Frame frame = FrameOf(scene, mode);
-    frame.levelOfDetailScale = 0.45; // levels 0 and 1, dithered
+    frame.levelOfDetailScale = 0.52; // levels 0 and 1, dithered
     BlendScene::Cache large;
     BlendScene::Cache small;
     small.bytes = BlendScene::SmallCache;
