@@ -22,8 +22,16 @@ void RequestList::add(BrickKey key, float contribution)
 
 void RequestRanking::add(const RequestList& list)
 {
+  this->add(list, [](const Request&) { return true; });
+}
+
+void RequestRanking::add(const RequestList& list,
+                         const std::function<bool(const Request&)>& isWanted)
+{
   for (const Request& request : list.entries()) {
-    this->add(request.key, static_cast<double>(request.contribution));
+    if (isWanted(request)) {
+      this->add(request.key, static_cast<double>(request.contribution));
+    }
   }
 }
 

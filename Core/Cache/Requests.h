@@ -34,6 +34,8 @@ class RequestRanking
 {
 public:
   void add(const RequestList& list);
+  /// Those of which `isWanted` says so.
+  void add(const RequestList& list, const std::function<bool(const Request&)>& isWanted);
   bool empty() const { return this->Sums.empty(); }
   std::int64_t count() const { return static_cast<std::int64_t>(this->Sums.size()); } ///< bricks
 

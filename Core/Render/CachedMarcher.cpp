@@ -11,7 +11,7 @@ CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
       Placed(this->Placer.placed()), Batch(this->Placer.batch())
 {
   if (scene.settings.looksAtBothEnds()) {
-    this->Probe.emplace(scene, onMiss, this->Notes.absent);
+    this->Probe.emplace(scene, onMiss);
   }
   if (scene.settings.preIntegrated != nullptr) {
     this->Integrals =

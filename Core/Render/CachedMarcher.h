@@ -29,8 +29,6 @@ public:
   FrameStatistics statistics() const;
   SampleTally tally() const { return {this->Notes.statistics.samples, this->Notes.levelSum}; }
   RequestList& requests() { return this->Notes.requests; }
-  /// Bricks in whose place a coarser one was read.
-  RequestList& absent() { return this->Notes.absent; }
 
 private:
   /// The same for the part of the way that the ray is on.

@@ -14,7 +14,6 @@ struct MarchNotes
   FrameStatistics statistics;
   std::int64_t levelSum = 0; ///< of the levels that the samples came from
   RequestList requests;      ///< bricks that are wanted
-  RequestList absent;        ///< bricks in whose place a coarser one was read
 };
 
 } // namespace inr

@@ -9,19 +9,41 @@
 
 namespace inr {
 
+namespace {
+
+bool IsThere(const Request& request, const SufficientBricks& bricks)
+{
+  return bricks.find(request.key) != PageTable::Unmapped;
+}
+
+} // namespace
+
 MarchedTiles::MarchedTiles(int width, int height)
     : Tiles(width, height), Marched(static_cast<std::size_t>(this->Tiles.count()))
 {}
 
-bool MarchedTiles::isDue(const MarchedTile& tile, const SufficientBricks& bricks) const
+void MarchedTiles::MarchedTile::update(CachedMarcher& marcher)
 {
-  const auto hasCome = [&](const Request& request) {
-    return bricks.find(request.key) != PageTable::Unmapped;
-  };
-  const auto anyHasCome = [&](const RequestList& list) {
-    return std::any_of(list.entries().begin(), list.entries().end(), hasCome);
-  };
-  return !this->begun() || anyHasCome(tile.missed) || anyHasCome(tile.absent);
+  this->statistics = marcher.statistics();
+  this->missed = std::move(marcher.requests());
+  double sum = 0;
+  for (const Request& request : this->missed.entries()) {
+    sum += request.contribution;
+  }
+  this->most = std::max(this->most, sum);
+  this->enough = std::min(sum, std::max(sum / 2, this->most / 8));
+}
+
+bool MarchedTiles::MarchedTile::isDue(const SufficientBricks& bricks) const
+{
+  bool any = false;
+  double sum = 0;
+  for (const Request& request : this->missed.entries()) {
+    const bool isThere = IsThere(request, bricks);
+    any = any || isThere;
+    sum += isThere ? request.contribution : 0.0f;
+  }
+  return any && sum >= this->enough;
 }
 
 FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
@@ -31,18 +53,19 @@ FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, con
   const Timer timer;
   ForEachTile(arena, this->Tiles.count(), keepGoing, [&](std::int64_t k) {
     MarchedTile& tile = this->Marched[static_cast<std::size_t>(k)];
-    if (!this->isDue(tile, scene.bricks)) {
+    if (this->begun() && !tile.isDue(scene.bricks)) {
       tile.statistics.work = {};
       return;
     }
     CachedMarcher marcher(scene, onMiss);
     MarchTile(scene, marcher, this->Tiles.tile(k), keepGoing, output);
-    tile = {marcher.statistics(), std::move(marcher.requests()), std::move(marcher.absent())};
+    tile.update(marcher);
   });
   FrameStatistics sum;
   for (const MarchedTile& tile : this->Marched) {
     sum.add(tile.statistics);
-    requests.add(tile.missed);
+    requests.add(tile.missed,
+                 [&](const Request& request) { return !IsThere(request, scene.bricks); });
   }
   if (!this->begun()) {
     this->WholeSeconds = timer.seconds();

@@ -3,8 +3,8 @@
 
 namespace inr {
 
-RayProbe::RayProbe(const CachedScene& scene, OnMiss onMiss, RequestList& absent)
-    : Scene(scene), Stops(onMiss == OnMiss::Stop), Absent(absent),
+RayProbe::RayProbe(const CachedScene& scene, OnMiss onMiss)
+    : Scene(scene), Stops(onMiss == OnMiss::Stop),
       Gradients(scene.bricks, scene.format, scene.kernel)
 {}
 
@@ -37,7 +37,6 @@ bool RayProbe::open(const Ray& ray, int level, double place, float contribution,
   }
   BrickWay served = wanted;
   while (slot < 0) { // the coarsest level is there
-    this->Absent.add(served.brick(), 0.0f);
     served = BrickWay(cache.hierarchy().view(), served.level() + 1, ray);
     served.moveTo(place * step);
     slot = this->Scene.bricks.find(served.brick());

@@ -12,8 +12,7 @@ namespace inr {
 class RayProbe
 {
 public:
-  /// `absent`: takes the bricks in whose place a coarser one is read; must outlive the probe.
-  RayProbe(const CachedScene& scene, OnMiss onMiss, RequestList& absent);
+  RayProbe(const CachedScene& scene, OnMiss onMiss);
 
   /// Another ray is next.
   void leave() { this->Run.close(); }
@@ -32,7 +31,6 @@ private:
 
   const CachedScene& Scene;
   bool Stops;
-  RequestList& Absent;
   BrickRun Run;
   BrickKey Brick = 0;
   SampleBatch Batch{}; ///< of one sample

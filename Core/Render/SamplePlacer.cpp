@@ -383,7 +383,6 @@ std::int32_t SamplePlacer::openCoarser(BrickRun& run, const Ray& ray, const Bric
   const BrickCache& cache = this->Scene.bricks.cache();
   const Hierarchy& hierarchy = cache.hierarchy();
   BrickKey wish = wanted.brick();
-  this->Notes.absent.add(wish, 0.0f);
   for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
     BrickWay served(hierarchy.view(), level, ray);
     served.moveTo(t);
@@ -395,7 +394,6 @@ std::int32_t SamplePlacer::openCoarser(BrickRun& run, const Ray& ray, const Bric
       }
       return slot;
     }
-    this->Notes.absent.add(served.brick(), 0.0f);
     wish = hierarchy.view().isOnTheWay(level) ? served.brick() : wish;
   }
 }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pictures that are asked for again while bricks come in: of those, only the tiles that lacked
-// something are marched again.
+// Pictures that are asked for again while bricks come in: of those, only the tiles are marched
+// again for which much of what they lacked has come.
 #include "Core/Image/Metrics.h"
 #include "Testing/Core/Render/RecordingField.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
 
 namespace {
 
@@ -48,59 +52,78 @@ void ExpectTheSame(const Given& a, const Given& b)
   EXPECT_EQ(a.statistics.rays, b.statistics.rays);
   EXPECT_EQ(a.statistics.samples, b.statistics.samples);
   EXPECT_EQ(a.statistics.missed, b.statistics.missed);
-  EXPECT_EQ(a.statistics.hidden, b.statistics.hidden);
+  // Behind where a ray ends, fewer are counted where a coarser brick stood in.
+  const auto hidden = static_cast<double>(a.statistics.hidden);
+  EXPECT_NEAR(hidden, static_cast<double>(b.statistics.hidden), 0.01 * hidden);
   EXPECT_EQ(a.statistics.levels.finest, b.statistics.levels.finest);
   EXPECT_EQ(a.statistics.levels.coarsest, b.statistics.levels.coarsest);
-  EXPECT_EQ(a.statistics.complete, b.statistics.complete);
-  EXPECT_TRUE(a.statistics.work.bricks == b.statistics.work.bricks);
 }
 
-/// Until the picture is complete, beside a renderer that forgets it each time as its colours
-/// change. How much of the other's work it took.
+/// A picture until it is complete, in calls that load a few bricks each.
+struct Course
+{
+  /// `forgets`: all of it is marched at each call, as the colours change in between.
+  Course(const inr::Frame& frame, int bricks, bool forgets) : scene(FewAtATime(bricks), Waves, Dims)
+  {
+    do {
+      if (forgets) {
+        this->scene.renderer.setTransferFunction(OpacityRamp(0.1f));
+        this->scene.renderer.setTransferFunction(Colours());
+      }
+      this->last = std::make_unique<Given>(this->scene.renderer, frame);
+      this->missed.push_back(this->last->statistics.missed);
+      this->cells += this->last->statistics.work.cells;
+    } while (!this->last->statistics.complete && this->missed.size() < 2000);
+  }
+
+  RecordedScene scene;
+  std::unique_ptr<Given> last;
+  std::vector<std::int64_t> missed; ///< samples, call by call
+  std::int64_t cells = 0;           ///< that all calls went through
+};
+
+/// How much of the work a picture takes that it takes when it is forgotten from call to call. It is
+/// complete after as many calls, and not far behind in the midst of it.
 double ShareOfWork(const inr::Frame& frame, int bricks = 40)
 {
-  RecordedScene scenes[2] = {RecordedScene(FewAtATime(bricks), Waves, Dims),
-                             RecordedScene(FewAtATime(bricks), Waves, Dims)};
-  std::int64_t cells[2] = {0, 0};
-  int frames = 0;
-  for (bool complete = false; !complete && frames < 2000; ++frames) {
-    scenes[1].renderer.setTransferFunction(OpacityRamp(0.1f));
-    scenes[1].renderer.setTransferFunction(Colours());
-    const Given kept(scenes[0].renderer, frame);
-    const Given anew(scenes[1].renderer, frame);
-    ExpectTheSame(kept, anew);
-    cells[0] += kept.statistics.work.cells;
-    cells[1] += anew.statistics.work.cells;
-    complete = kept.statistics.complete;
+  const Course kept(frame, bricks, false);
+  const Course anew(frame, bricks, true);
+  EXPECT_TRUE(kept.last->statistics.complete);
+  ExpectTheSame(*kept.last, *anew.last);
+  EXPECT_GT(anew.missed.size(), 5u);
+  EXPECT_LE(kept.missed.size(), anew.missed.size() + 1);
+  for (std::size_t k = 0; k < std::min(kept.missed.size(), anew.missed.size()); ++k) {
+    EXPECT_LT(kept.missed[k] - anew.missed[k], anew.missed[0] / 2) << k;
   }
-  EXPECT_GT(frames, 5);
-  EXPECT_LT(frames, 2000);
-  return static_cast<double>(cells[0]) / static_cast<double>(cells[1]);
+  return static_cast<double>(kept.cells) / static_cast<double>(anew.cells);
 }
 
 /// Where levels are mixed, a tile may look for bricks that it turns out to take nothing from.
-TEST(KeptTiles, AreAsIfAllHadBeenMarchedAgain) { EXPECT_LT(ShareOfWork(Limited(0.9), 9), 0.7); }
-
-TEST(KeptTiles, AreSoInAllModes)
+TEST(KeptTiles, EndWithThePictureOfAllTilesMarchedAgain)
 {
-  EXPECT_LT(ShareOfWork(Limited(0, 60)), 0.95);
+  EXPECT_LT(ShareOfWork(Limited(0.9), 9), 0.1);
+}
+
+TEST(KeptTiles, DoSoInAllModes)
+{
+  EXPECT_LT(ShareOfWork(Limited(0, 60)), 0.25);
   inr::Frame lit = Limited(0, 60);
   lit.shading = inr::Material{};
   lit.lights = {Headlight()};
-  EXPECT_LT(ShareOfWork(lit), 0.95);
+  EXPECT_LT(ShareOfWork(lit), 0.25);
   inr::Frame layered = Limited(0, 60);
   AddLayerHalfWay(layered);
-  EXPECT_LT(ShareOfWork(layered), 0.95);
+  EXPECT_LT(ShareOfWork(layered), 0.25);
   inr::Frame integrated = Limited(0, 60);
   integrated.preIntegration = true;
-  EXPECT_LT(ShareOfWork(integrated), 0.95);
+  EXPECT_LT(ShareOfWork(integrated), 0.25);
   inr::Frame largest = Limited(0, 60);
   largest.blending.mode = inr::BlendMode::MaximumIntensity;
-  EXPECT_LT(ShareOfWork(largest), 0.95);
+  EXPECT_LT(ShareOfWork(largest), 0.25);
   inr::Frame surfaces = Limited(0, 60);
   surfaces.blending.mode = inr::BlendMode::Isosurface;
   surfaces.blending.isosurfaces = {0.6, 0.8};
-  EXPECT_LT(ShareOfWork(surfaces), 0.95);
+  EXPECT_LT(ShareOfWork(surfaces), 0.25);
 }
 
 /// Whether the cache has room for all of it, or for so little that rays wait.
