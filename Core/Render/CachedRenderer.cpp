@@ -285,9 +285,7 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
                            : MarchedTiles(scene.frame.width, scene.frame.height);
   while (true) {
     RequestRanking requests;
-    const Timer marching;
     FrameStatistics statistics = this->march(scene, tiles, output, keepGoing, requests);
-    const double another = marching.seconds(); // the next time may take as long
     statistics.complete = requests.empty();
     const std::int64_t room = this->room();
     const bool fits = !contested && requests.count() <= room;
@@ -297,7 +295,8 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
     const std::int64_t most = std::min<std::int64_t>(room, this->Options.maximumRequests);
     this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking), limit,
                        keepGoing);
-    if (statistics.complete || !fits || limit.endsWithin(another)) {
+    const bool ends = limit.endsWithin(0) || limit.endsWithin(tiles.secondsToMarch(scene.bricks));
+    if (statistics.complete || !fits || ends) {
       if (fits && !statistics.complete) {
         this->Kept = kept ? std::make_unique<KeptPicture>(scene.frame, std::move(tiles), output)
                           : std::make_unique<KeptPicture>(scene.frame);

@@ -5,6 +5,7 @@
 #include "Core/Render/Timer.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace inr {
@@ -30,20 +31,28 @@ void MarchedTiles::MarchedTile::update(CachedMarcher& marcher)
   for (const Request& request : this->missed.entries()) {
     sum += request.contribution;
   }
-  this->most = std::max(this->most, sum);
-  this->enough = std::min(sum, std::max(sum / 2, this->most / 8));
+  this->mostMissed = std::max(this->mostMissed, sum);
+  this->enough = std::max(sum / 2, this->mostMissed / 8);
 }
 
 bool MarchedTiles::MarchedTile::isDue(const SufficientBricks& bricks) const
 {
-  bool any = false;
+  std::size_t come = 0;
   double sum = 0;
   for (const Request& request : this->missed.entries()) {
-    const bool isThere = IsThere(request, bricks);
-    any = any || isThere;
-    sum += isThere ? request.contribution : 0.0f;
+    if (IsThere(request, bricks)) {
+      ++come;
+      sum += request.contribution;
+    }
   }
-  return any && sum >= this->enough;
+  return come > 0 && (come == this->missed.entries().size() || sum >= this->enough);
+}
+
+double MarchedTiles::secondsToMarch(const SufficientBricks& bricks) const
+{
+  const auto due = std::count_if(this->Marched.begin(), this->Marched.end(),
+                                 [&](const MarchedTile& tile) { return tile.isDue(bricks); });
+  return this->WholeSeconds * static_cast<double>(due) / static_cast<double>(this->Tiles.count());
 }
 
 FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, const Arena& arena,

@@ -20,6 +20,8 @@ public:
   MarchedTiles(int width, int height);
 
   bool begun() const { return this->WholeSeconds > 0; }
+  /// What marching those may take that are due by now, judged by the time that all of them took.
+  double secondsToMarch(const SufficientBricks& bricks) const;
   /// Marches those tiles that were not yet, and those for which enough has come of what they
   /// missed; the others' pixels are in `output` already. What all of them still miss is added to
   /// `requests`, in the order of the tiles. Of the whole picture, but for the work, which is that
@@ -32,19 +34,21 @@ public:
 private:
   struct MarchedTile
   {
-    /// It was marched once more.
+    /// Takes what `marcher` has counted and missed in it.
     void update(CachedMarcher& marcher);
-    /// Whether enough has come of what it missed: half, and no less than an eighth of the most that
-    /// it has ever missed; or all. Marched whenever a brick comes, pictures of 256^3 to 1208^3
-    /// voxels, in pieces of 0.1 s, took 1.1 to 2.4 times as long until they were complete, and were
-    /// no nearer to that meanwhile; only when all has come, they take 0.8 to 1.0 times as long, and
-    /// are up to 17 dB further from it in between.
+    /// Whether enough has come of what it missed: all, or half, if that is an eighth of the most
+    /// that it has ever missed; else it would be marched for less and less in the end.
+    ///
+    /// Were tiles marched whenever a brick comes, pictures of 256^3 to 1208^3 voxels, in pieces of
+    /// 0.1 s, would take 1.1 to 2.4 times as long until they are complete, and be no nearer to that
+    /// meanwhile. Were they marched only when all has come, it would be 0.8 to 1.0 times as long,
+    /// and pictures up to 17 dB further from it in between.
     bool isDue(const SufficientBricks& bricks) const;
 
     FrameStatistics statistics{};
     RequestList missed{};
-    double most = 0;   ///< contribution of what it missed, of all times that it was marched
-    double enough = 0; ///< of what it misses now
+    double mostMissed = 0; ///< contribution, of all times that it was marched
+    double enough = 0;     ///< contribution that is to come
   };
 
   Tiling Tiles;

@@ -222,8 +222,8 @@ public:
   ///@{
   /**
    * How coarse the levels are that far voxels are read from: 1, the default, makes a voxel at most
-   * a seventh larger than a pixel, and at least half as large where it is not of the full resolution;
-   * 0 always reads the full resolution; 2 is faster and softer.
+   * a seventh larger than a pixel, and at least half as large where it is not of the full
+   * resolution; 0 always reads the full resolution; 2 is faster and softer.
    */
   vtkSetClampMacro(LevelOfDetailScale, double, 0.0, 64.0);
   vtkGetMacro(LevelOfDetailScale, double);

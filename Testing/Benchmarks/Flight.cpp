@@ -116,6 +116,7 @@ void Watch(const inr::ModelPointer& model, const Look& look, const std::string& 
   const int counted = std::min(200, frames);
   for (int k = 0; k < frames; ++k) {
     inr::Image picture;
+    frame.frameIndex = static_cast<std::uint64_t>(k); // else only what has changed is marched
     const inr::FrameStatistics statistics = renderer.render(frame, picture);
     march.push_back(1000 * statistics.marchSeconds);
     hits.push_back(statistics.hitRate());

@@ -39,7 +39,7 @@ TEST(Cached, ThePictureDoesNotDependOnTheSizeOfTheCacheOrOnThreads)
 {
   const glm::i64vec3 dims(90, 70, 80);
   inr::Frame frame = Oblique(glm::dvec3(dims));
-  frame.levelOfDetailScale = 1.5; // several levels at once
+  frame.levelOfDetailScale = 4; // levels 0 and 1, mixed in between
   frame.height = 300;
   frame.width = 300;
   const auto picture = [&](std::int64_t bytes, int threads) {
@@ -48,6 +48,13 @@ TEST(Cached, ThePictureDoesNotDependOnTheSizeOfTheCacheOrOnThreads)
     inr::Renderer renderer = CachedRenderer(dims, Waves, options, threads);
     return Render(renderer, frame).pixels;
   };
+  {
+    inr::Renderer renderer = CachedRenderer(dims, Waves, Options(inr::CachePrecision::Bits16, 8));
+    inr::Image image;
+    const inr::LevelSpan levels = renderer.render(frame, image).levels;
+    EXPECT_TRUE(levels.finest == 0 && levels.coarsest == 1)
+        << levels.finest << " to " << levels.coarsest;
+  }
   const std::vector<float> truth = picture(64 << 20, 1);
   EXPECT_EQ(picture(64 << 20, 3), truth);
   EXPECT_EQ(picture(400000, 2), truth);
@@ -86,12 +93,15 @@ TEST(Cached, FramesInALimitedTimeCountWhatMixedLevelsLack)
 {
   const glm::i64vec3 dims(97, 83, 91);
   inr::Frame frame = Oblique(glm::dvec3(dims), 130);
-  frame.levelOfDetailScale = 0.9;
+  frame.levelOfDetailScale = 1.05;
   inr::CacheOptions options = Options(inr::CachePrecision::Bits16, 9);
   options.background = false;
   options.maximumRequests = 9;
   inr::Renderer complete = CachedRenderer(dims, Waves, options);
-  const inr::Image truth = Render(complete, frame);
+  inr::Image truth;
+  const inr::LevelSpan levels = complete.render(frame, truth).levels;
+  EXPECT_TRUE(levels.finest == 0 && levels.coarsest == 1)
+      << levels.finest << " to " << levels.coarsest;
 
   frame.timeLimit = 1e-9;
   inr::Renderer hurried = CachedRenderer(dims, Waves, options);

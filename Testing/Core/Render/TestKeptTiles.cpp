@@ -48,7 +48,11 @@ void ExpectTheSame(const Given& a, const Given& b)
 {
   EXPECT_EQ(a.rgba.pixels, b.rgba.pixels);
   EXPECT_EQ(a.depth.pixels, b.depth.pixels);
-  EXPECT_EQ(a.samples.pixels, b.samples.pixels);
+  for (std::size_t k = 0; k < a.samples.pixels.size(); k += 2) {
+    ASSERT_EQ(a.samples.pixels[k], b.samples.pixels[k]) << k / 2;
+    // Where levels are mixed, samples of either count as of the finer one if that is there.
+    ASSERT_NEAR(a.samples.pixels[k + 1], b.samples.pixels[k + 1], 1) << k / 2;
+  }
   EXPECT_EQ(a.statistics.rays, b.statistics.rays);
   EXPECT_EQ(a.statistics.samples, b.statistics.samples);
   EXPECT_EQ(a.statistics.missed, b.statistics.missed);
@@ -73,6 +77,7 @@ struct Course
       this->last = std::make_unique<Given>(this->scene.renderer, frame);
       this->missed.push_back(this->last->statistics.missed);
       this->cells += this->last->statistics.work.cells;
+      this->points += this->last->statistics.work.bricks.points;
     } while (!this->last->statistics.complete && this->missed.size() < 2000);
   }
 
@@ -80,6 +85,7 @@ struct Course
   std::unique_ptr<Given> last;
   std::vector<std::int64_t> missed; ///< samples, call by call
   std::int64_t cells = 0;           ///< that all calls went through
+  std::int64_t points = 0;          ///< that all calls loaded
 };
 
 /// How much of the work a picture takes that it takes when it is forgotten from call to call. It is
@@ -92,16 +98,16 @@ double ShareOfWork(const inr::Frame& frame, int bricks = 40)
   ExpectTheSame(*kept.last, *anew.last);
   EXPECT_GT(anew.missed.size(), 5u);
   EXPECT_LE(kept.missed.size(), anew.missed.size() + 1);
+  EXPECT_NEAR(static_cast<double>(kept.points) / static_cast<double>(anew.points), 1, 0.02);
   for (std::size_t k = 0; k < std::min(kept.missed.size(), anew.missed.size()); ++k) {
     EXPECT_LT(kept.missed[k] - anew.missed[k], anew.missed[0] / 2) << k;
   }
   return static_cast<double>(kept.cells) / static_cast<double>(anew.cells);
 }
 
-/// Where levels are mixed, a tile may look for bricks that it turns out to take nothing from.
 TEST(KeptTiles, EndWithThePictureOfAllTilesMarchedAgain)
 {
-  EXPECT_LT(ShareOfWork(Limited(0.9), 9), 0.1);
+  EXPECT_LT(ShareOfWork(Limited(1.05), 9), 0.1); // levels 0 and 1, mixed in between
 }
 
 TEST(KeptTiles, DoSoInAllModes)
