@@ -201,7 +201,7 @@ Filling Fill(const inr::ModelPointer& model, const Look& look, double degrees, b
   for (int k = 0; k < 40; ++k) {
     inr::Image picture;
     const std::int64_t bricks = renderer.cachedBricks(); // that the frame is drawn from
-    frame.frameIndex = static_cast<std::uint64_t>(k);    // all of it: no tile waits for more
+    frame.unitDistance *= 1 + 1e-12; // another picture, of which no tile waits for more
     filling.hitRates.push_back(renderer.render(frame, picture).hitRate());
     filling.bricks.push_back(bricks);
   }
