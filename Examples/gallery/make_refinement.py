@@ -15,6 +15,7 @@ from PIL import Image, ImageDraw
 from vtk_scene import captured, font, make_volume, make_window
 from vtkmodules.vtkRenderingCore import vtkRenderWindowInteractor
 
+SCALE = 2  # 256^3 voxels are there before there is much to see of it
 WINDOW = 384
 SHOWN = 232  # pixels of a picture in the strip
 COLUMNS = 5
@@ -25,7 +26,7 @@ interactors = []
 
 def watch(traced):
     """All pictures until the last: (processor's seconds, share of samples there, levels, paths, picture)."""
-    volume = make_volume(models)
+    volume = make_volume(models, SCALE)
     mapper = volume.GetMapper()
     mapper.SetRenderMode(int(traced))
     mapper.SetSamplesPerPixel(PATHS)

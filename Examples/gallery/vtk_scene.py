@@ -17,9 +17,10 @@ def font(size):
     return ImageFont.truetype("DejaVuSans.ttf", size)
 
 
-def make_volume(models):
-    """The volume, as its mapper draws it by default."""
+def make_volume(models, scale=1):
+    """The volume, `scale` times its voxels along each axis, as its mapper draws it by default."""
     reader = vtkINRReader()
+    reader.SetScaleFactor(scale)
     reader.SetFileName(model_file(models, "rm_mixing"))
     reader.Update()
     low, high = reader.GetOutput().GetScalarRange()
