@@ -7,7 +7,7 @@
 namespace inr {
 
 CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
-    : Scene(scene), Missing(onMiss), Placer(scene, onMiss, this->Notes),
+    : Placer(scene, onMiss, this->Notes), Scene(scene), Missing(onMiss),
       Placed(this->Placer.placed()), Batch(this->Placer.batch())
 {
   if (scene.settings.looksAtBothEnds()) {

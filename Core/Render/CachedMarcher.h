@@ -80,15 +80,16 @@ private:
   /// Of the first `count` samples.
   void takeLogarithms(int count);
 
+  // Those with batches of their own first: they begin at cache lines.
+  std::optional<SampleShader> Shader;
+  SamplePlacer Placer;
+  std::optional<RayProbe> Probe; ///< where both ends of samples are looked at
   const CachedScene& Scene;
   OnMiss Missing;
   IntegralLookup Integrals{}; ///< where there are any
   MarchNotes Notes;
-  SamplePlacer Placer;
-  std::optional<SampleShader> Shader;
-  std::optional<RayProbe> Probe; ///< where both ends of samples are looked at
-  const PlacedSamples& Placed;   ///< by the placer
-  SampleBatch& Batch;            ///< of these
+  const PlacedSamples& Placed; ///< by the placer
+  SampleBatch& Batch;          ///< of these
   std::uint64_t Clamped = 0; ///< those of the batch's samples that clampToRanges moved, bit by bit
 };
 
