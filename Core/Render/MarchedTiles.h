@@ -40,9 +40,9 @@ private:
     /// that it has ever missed; else it would be marched for less and less in the end.
     ///
     /// Were tiles marched whenever a brick comes, pictures of 256^3 to 1208^3 voxels, in pieces of
-    /// 0.1 s, would take 1.1 to 2.4 times as long until they are complete, and be no nearer to that
-    /// meanwhile. Were they marched only when all has come, it would be 0.8 to 1.0 times as long,
-    /// and pictures up to 17 dB further from it in between.
+    /// 0.1 s, would take 1.1 to 2.4 times as long until they are complete, and mostly be further
+    /// from it meanwhile. Were they marched only when all has come, it would be 0.8 to 1.0 times as
+    /// long, and pictures up to 17 dB further from it in between.
     bool isDue(const SufficientBricks& bricks) const;
 
     FrameStatistics statistics{};
