@@ -63,6 +63,7 @@ public:
   bool end_object() override { return this->end(); }
   bool start_array(std::size_t) override
   {
+    this->requireNoBytes(); // else the array's end would be taken for that of the bytes
     this->CollectsBytes = this->Key == "bytes" && this->Builder.inObject();
     return this->CollectsBytes || this->begin(Container::Array);
   }

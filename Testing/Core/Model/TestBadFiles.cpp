@@ -66,6 +66,17 @@ TEST_F(BadFiles, OtherFormats)
   this->expectRefused(std::string(5000, '\xff'), "noise");
 }
 
+TEST_F(BadFiles, BytesThatAreNone)
+{
+  for (const char* bytes : {"[[]]", "[[1, 2]]", "[1, [2]]", "[[1], 2]", "[{}]", "[\"1\"]", "[1.5]",
+                            "[null]", "[-1]", "[256]"}) {
+    const std::string blob = std::string("{\"bytes\": ") + bytes + "}";
+    this->expectRefused("{\"n_params\": 1, \"params_binary\": " + blob + "}", bytes);
+    this->expectRefused("{\"model\": {}, \"parameters\": {\"params_binary\": " + blob + "}}",
+                        bytes);
+  }
+}
+
 // The first bytes of a text are no length worth telling anybody about.
 TEST_F(BadFiles, SaysOfATextThatItIsNoModel)
 {
