@@ -12,6 +12,7 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <exception>
+#include <string>
 #include <utility>
 
 namespace inr {
@@ -93,6 +94,11 @@ Image ReadExr(const std::string& path, Image* depth, Image* samples)
   try {
     Imf::InputFile file(path.c_str(), 1);
     const Imath::Box2i window = file.header().dataWindow();
+    if (window.min != Imath::V2i(0)) {
+      throw Error(ErrorCode::Unsupported, "the data of '" + path + "' begin at pixel (" +
+                                              std::to_string(window.min.x) + ", " +
+                                              std::to_string(window.min.y) + "), not at (0, 0)");
+    }
     const Imf::ChannelList& channels = file.header().channels();
     Image rgba(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, 4);
     Image distances;

@@ -15,8 +15,8 @@ void WriteExr(const std::string& path, const Image& rgba, const Image& depth = {
               const Image& samples = {});
 
 /// Reads what WriteExr wrote: R, G, B, A into a four-channel image; `depth`, when given, receives Z
-/// (empty if there is none), and `samples` what was written of it. Throws Error(CannotRead) or
-/// Error(Malformed).
+/// (empty if there is none), and `samples` what was written of it. Throws Error(CannotRead),
+/// Error(Malformed), or Error(Unsupported) where the pixels do not begin at (0, 0).
 Image ReadExr(const std::string& path, Image* depth = nullptr, Image* samples = nullptr);
 
 } // namespace inr

@@ -3,8 +3,13 @@
 #include "Core/Image/Exr.h"
 #include "Testing/Core/Image/RandomImage.h"
 
+#include <Imath/ImathBox.h>
 #include <gtest/gtest.h>
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +17,7 @@
 #include <string>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -107,6 +113,30 @@ TEST_F(Exr, AFullDiskLeavesThePictureThatWasThere)
   }
   EXPECT_EQ(inr::ReadExr(Folder / "e.exr").pixels, before.pixels);
   EXPECT_EQ(std::distance(fs::directory_iterator(Folder), fs::directory_iterator()), 1);
+}
+
+TEST_F(Exr, RefusesOneThatBeginsElsewhere)
+{
+  const std::string path = (Folder / "moved.exr").string();
+  Imf::Header header(Imath::Box2i({0, 0}, {79, 79}), Imath::Box2i({5, -3}, {68, 60}));
+  std::vector<float> values(64 * 64);
+  Imf::FrameBuffer buffer;
+  for (const char* channel : {"R", "G", "B", "A"}) {
+    header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    buffer.insert(channel,
+                  Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(), sizeof(float)));
+  }
+  {
+    Imf::OutputFile file(path.c_str(), header, 1);
+    file.setFrameBuffer(buffer);
+    file.writePixels(64);
+  }
+  try {
+    inr::ReadExr(path);
+    FAIL();
+  } catch (const inr::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("(5, -3)"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(Exr, RefusesWhatIsNotOne)
