@@ -41,9 +41,13 @@ bool Exists(const std::string& path)
   return std::filesystem::exists(path, unknown) || unknown;
 }
 
-/// Renames a file to one that is not there yet.
+/// Renames a file to one that is not there yet; a folder or a device is not ours to move.
 void SetAside(const std::string& path)
 {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) {
+    return;
+  }
   std::string name = path + ".other";
   for (int number = 2; Exists(name); ++number) {
     name = path + ".other" + std::to_string(number);
@@ -72,25 +76,26 @@ std::optional<TrainingState> CheckpointKeeper::resume(const StateArrays& arrays)
   if (path.empty() || !this->Options.resume || !Exists(path)) {
     return std::nullopt;
   }
+  this->IsOthers = true; // whatever it is, until it has proved to be of use
   try {
     const CheckpointFile file(path);
     const std::string difference = Difference(file.identity(), this->Identity);
-    this->IsOthers = !difference.empty();
-    if (this->IsOthers) {
+    if (!difference.empty()) {
       throw Error(ErrorCode::InvalidArgument,
                   "'" + path + "' is of another training: " + difference);
     }
     file.load(arrays);
+    this->IsOthers = false;
     this->HasWritten = true;
     this->tell(CheckpointEvent::Resumed, "the training goes on after " +
                                              std::to_string(file.state().steps) + " steps from '" +
                                              path + "'");
     return file.state();
   } catch (const Error& error) {
-    this->tell(CheckpointEvent::Ignored,
-               std::string(error.what()) + "; the training begins anew, and its first checkpoint " +
-                   (this->IsOthers ? "will leave the file under another name, '.other' at its end"
-                                   : "will replace the file"));
+    this->tell(CheckpointEvent::Ignored, std::string(error.what()) +
+                                             "; the training begins anew, and its first checkpoint "
+                                             "will leave the file under another name, '.other' at "
+                                             "its end");
     return std::nullopt;
   }
 }

@@ -234,6 +234,24 @@ TEST_F(Resume, IgnoresABrokenFile)
   EXPECT_EQ(model->parameters, this->withoutCheckpoint(this->options(6))->parameters);
 }
 
+TEST_F(Resume, KeepsWhatItCannotReadUnderAnotherName)
+{
+  this->stopAfter(3, this->options(6));
+  std::string later = ReadBytes(this->Path);
+  later[8] = 77; // the format's version
+  std::string damaged = ReadBytes(this->Path);
+  damaged.resize(damaged.size() / 2);
+  int number = 0;
+  for (const std::string& bytes : {later, damaged, std::string("notes of a year")}) {
+    WriteBytes(this->Path, bytes);
+    this->stopAfter(2, this->options(6));
+    ++number;
+    EXPECT_EQ(this->count(CheckpointEvent::Ignored), number);
+    const std::string name = this->Path + ".other" + (number > 1 ? std::to_string(number) : "");
+    EXPECT_EQ(ReadBytes(name), bytes) << this->Texts[0];
+  }
+}
+
 TEST_F(Resume, KeepsTheCheckpointOfAnotherTrainingUnderAnotherName)
 {
   inr::TrainingOptions other = this->options(6);
