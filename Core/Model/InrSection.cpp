@@ -248,6 +248,10 @@ InrSection ParseInrSection(const JsonSection& section)
   InrSection result;
   result.compact = version == CompactVersion;
   result.volume = ParseVolume(section);
+  if (const JsonSection native = section.section("native_dims"); native.present()) {
+    result.nativeDims = ParseDims(native);
+    RequireValidDims(*result.nativeDims, ErrorCode::InvalidModel);
+  }
   result.rule = section.choice("hash_rule", RuleNames);
   result.provenance = section.choice("macrocell_provenance", ProvenanceNames);
   result.apron = ParseApron(section, result.provenance);
@@ -280,6 +284,9 @@ BsonObject OwnSection(const Model& model, std::uint32_t checksum)
       .integer("macrocell_apron",
                std::llround(model.macroCells.apron.x * static_cast<double>(volume.dims.x)))
       .text("checksum", ChecksumToText(checksum));
+  if (model.nativeDims.value_or(volume.dims) != volume.dims) {
+    section.object("native_dims", DimsSection(*model.nativeDims));
+  }
   if (volume.time) {
     section.real("time", *volume.time);
   }
@@ -292,19 +299,25 @@ BsonObject OwnSection(const Model& model, std::uint32_t checksum)
   return section;
 }
 
-void RequireValidVolume(const VolumeInfo& volume, ErrorCode code)
+void RequireValidDims(const glm::i64vec3& dims, ErrorCode code)
 {
   constexpr std::int64_t MaximumDimension = std::numeric_limits<std::int32_t>::max();
   constexpr std::int64_t MaximumVoxels = std::int64_t{1} << 53;
   std::int64_t voxels = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t size = volume.dims[axis];
+    const std::int64_t size = dims[axis];
     if (size < 1 || size > MaximumDimension || size > MaximumVoxels / voxels) {
-      throw Error(code, "a volume cannot have " + std::to_string(volume.dims.x) + " x " +
-                            std::to_string(volume.dims.y) + " x " + std::to_string(volume.dims.z) +
-                            " voxels");
+      throw Error(code, "a volume cannot have " + std::to_string(dims.x) + " x " +
+                            std::to_string(dims.y) + " x " + std::to_string(dims.z) + " voxels");
     }
     voxels *= size;
+  }
+}
+
+void RequireValidVolume(const VolumeInfo& volume, ErrorCode code)
+{
+  RequireValidDims(volume.dims, code);
+  for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(volume.spacing[axis]) || volume.spacing[axis] == 0) {
       throw Error(code, "the spacing must be finite and not zero");
     }

@@ -16,6 +16,7 @@ struct InrSection
 {
   bool compact = false; ///< format version 2: quantised parameters, packed blobs
   VolumeInfo volume;
+  std::optional<glm::i64vec3> nativeDims; ///< see Model
   HashRule rule = HashRule::Wrapping;
   MacroCellProvenance provenance = MacroCellProvenance::File;
   std::int64_t apron = 0;     ///< of macro-cells, in voxels
@@ -37,9 +38,12 @@ BsonObject OwnSection(const Model& model, std::uint32_t checksum);
 glm::i64vec3 ParseDims(const JsonSection& section);
 BsonObject DimsSection(const glm::i64vec3& dims);
 
-/// Throws Error(`code`) unless dims are 1 to 2^31 - 1 with a product of at most 2^53, spacing is
-/// finite and not zero, origin and direction are finite, the direction can be inverted, and low <=
-/// high are finite with a finite difference, as is a time. A name may have up to 1024 bytes.
+/// Throws Error(`code`) unless dims are 1 to 2^31 - 1 with a product of at most 2^53.
+void RequireValidDims(const glm::i64vec3& dims, ErrorCode code);
+
+/// The same of a volume's, and unless spacing is finite and not zero, origin and direction are
+/// finite, the direction can be inverted, and low <= high are finite with a finite difference, as
+/// is a time. A name may have up to 1024 bytes.
 void RequireValidVolume(const VolumeInfo& volume, ErrorCode code);
 
 } // namespace inr

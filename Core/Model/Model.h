@@ -114,8 +114,8 @@ struct Model
   ParameterType storedAs = ParameterType::Half; ///< precision of `parameters` in the file
   std::vector<float> steps; ///< of quantised parameters, one for each of their ParameterGroups
   VolumeInfo volume;
-  /// Not in the file. Voxels of the volume that it was trained from, where `volume` is said to be
-  /// another grid of the same (see ScaledModel, ModelOverrides).
+  /// Voxels of the volume that it was trained from, where `volume` is said to be another grid of
+  /// the same (see ScaledModel, ModelOverrides).
   std::optional<glm::i64vec3> nativeDims;
   MacroCells macroCells;
   std::optional<Quality> quality;

@@ -176,6 +176,7 @@ void ReadOwnSection(const JsonSection& root, ModelHeader& header)
     throw Error(ErrorCode::InvalidModel, "'volume.dims' and 'inr.dims' contradict each other");
   }
   header.model.volume = std::move(own.volume);
+  header.model.nativeDims = own.nativeDims;
   header.model.description.grid.rule = own.rule;
   header.model.macroCells.provenance = own.provenance;
   header.model.macroCells.apron =
@@ -222,7 +223,9 @@ void ApplyOverrides(const ModelOverrides& overrides, bool isOwn, Model& model)
 {
   VolumeInfo& volume = model.volume;
   if (overrides.dims) {
-    model.nativeDims = isOwn ? std::optional(volume.dims) : std::nullopt;
+    if (isOwn && !model.nativeDims) {
+      model.nativeDims = volume.dims;
+    }
     volume.dims = *overrides.dims;
   }
   if (overrides.dataRange) {

@@ -39,6 +39,7 @@ void RequireSame(const inr::Model& a, const inr::Model& b)
   INR_REQUIRE(a.parameters == b.parameters);
   INR_REQUIRE(a.steps == b.steps);
   INR_REQUIRE(a.volume.dims == b.volume.dims);
+  INR_REQUIRE(inr::ResolutionOf(a) == inr::ResolutionOf(b));
   INR_REQUIRE(a.volume.low == b.volume.low && a.volume.high == b.volume.high);
   INR_REQUIRE(a.volume.arrayName == b.volume.arrayName);
   INR_REQUIRE(a.volume.time == b.volume.time);

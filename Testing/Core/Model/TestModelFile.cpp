@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
 #include "Core/Model/ModelBytes.h"
+#include "Core/Model/ScaledModel.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 
 #include <nlohmann/json.hpp>
@@ -71,6 +72,26 @@ TEST_F(ModelFile, TellsNoTimeAndNoEarlierStepsUnlessThereAreSome)
   EXPECT_EQ(bytes.find("earlier_steps"), std::string::npos);
   model->volume.time = HUGE_VAL;
   EXPECT_THROW(inr::WriteModel(*model, Folder.file("model.inr")), inr::Error);
+}
+
+TEST_F(ModelFile, TellsOfWhichVolumeAScaledOneIs)
+{
+  inr::Description description = SmallDescription();
+  description.grid.baseResolution = 128;
+  auto model = RandomModel(description);
+  model->volume.dims = {40, 30, 20};
+  const glm::i64vec3 native = model->volume.dims;
+  const inr::ModelPointer scaled = inr::ScaledModel(model, 4);
+  const inr::ModelPointer read = inr::ModelFromBytes(inr::ModelToBytes(*scaled));
+  EXPECT_EQ(read->volume.dims, scaled->volume.dims);
+  EXPECT_EQ(inr::ResolutionOf(*read), native);
+  EXPECT_EQ(inr::ResolutionOf(*inr::ScaledModel(read, 0.5)), native);
+  this->roundTrip(*scaled);
+  inr::ModelOverrides others;
+  others.dims = glm::i64vec3(50);
+  EXPECT_EQ(inr::ResolutionOf(*inr::ReadModel(Folder.file("model.inr"), others)), native);
+  const std::string unscaled = inr::ModelToBytes(*inr::ScaledModel(scaled, 0.25));
+  EXPECT_EQ(unscaled.find("native_dims"), std::string::npos);
 }
 
 TEST_F(ModelFile, IsTheSameInMemory)
