@@ -79,13 +79,14 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 /// Mini-batches of BatchSize StratifiedPositions, trilinear targets, L2 loss; updates as
 /// Optimiser.h says. In a cell with a NaN or infinite voxel the target is the nearest voxel's
 /// value, and where that one is not finite the position carries no gradient; such voxels are
-/// counted and left out of range and quality. A constant volume takes no step and is exact. A start
-/// shows in the record's earlierSteps, where it is of use. The result's quality and macro-cells are
-/// those of the parameters as they are stored. For a given seed, number of steps, plan and kernel
-/// family the result is the same whatever the number of threads. Throws Error(InvalidArgument) for
-/// a volume without finite voxels or when no limit is set; before it trains what RequireStorable
-/// finds; when the time limit ends the first step; Error(InvalidModel) when the network's output
-/// stops being finite.
+/// counted and left out of range and quality. A constant volume takes no step and is exact, or, of
+/// an integer that no double is, one of the two doubles next to it. A start shows in the record's
+/// earlierSteps, where it is of use. The result's quality and macro-cells are those of the
+/// parameters as they are stored. For a given seed, number of steps, plan and kernel family the
+/// result is the same whatever the number of threads. Throws Error(InvalidArgument) for a volume
+/// without finite voxels or when no limit is set; before it trains what RequireStorable finds; when
+/// the time limit ends the first step; Error(InvalidModel) when the network's output stops being
+/// finite.
 ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 

@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/EvaluateKernel.h"
+#include "Core/Inference/Evaluator.h"
 #include "Core/Model/CompactBlobs.h"
 #include "Core/Model/Compression.h"
 #include "Core/Model/ModelFile.h"
@@ -21,6 +22,16 @@
 namespace inr {
 
 namespace {
+
+/// Of a model that has the same value everywhere.
+ValueRange OnlyRangeOf(const ModelPointer& model)
+{
+  const glm::vec3 anywhere(0.5f);
+  float value = 0;
+  MakeEvaluator(model)->evaluate(&anywhere, 1, &value);
+  value = NormalisedOutput(value);
+  return {value, value};
+}
 
 /// Goes on from the start's parameters where these fit, which is then on record.
 void StartFrom(const ModelPointer& start, Model& model, GradientDescent& descent)
@@ -106,7 +117,7 @@ TrainingRun::TrainingRun(const VolumeInfo& info, const VolumeStatistics& statist
   model.storedAs = options.storedAs;
   model.volume = info;
   model.volume.low = statistics.low;
-  model.volume.high = statistics.high;
+  model.volume.high = statistics.isConstant() ? statistics.low : statistics.high;
   model.training = TrainingRecord{0,
                                   0,
                                   options.seed,
@@ -133,14 +144,15 @@ ModelPointer TrainingRun::constantModel()
     model.storedAs = packs ? ParameterType::Quantised : ParameterType::Half;
     model.steps.assign(packs ? ParameterGroups(model.description).size() : 0, 1.0f);
   }
-  model.macroCells.provenance = MacroCellProvenance::Decoded;
-  std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(), ValueRange{0, 0});
   const glm::i64vec3 dims = model.volume.dims;
   // Whether there is a window without a gap is not worth a search.
   const bool windowFits = std::min({dims.x, dims.y, dims.z}) >= 7 && model.training->nonFinite == 0;
   model.quality = Quality{std::numeric_limits<double>::infinity(),
                           windowFits ? 1.0 : std::numeric_limits<double>::quiet_NaN(), 0.0};
-  return std::make_shared<const Model>(std::move(model));
+  const auto made = std::make_shared<Model>(std::move(model));
+  made->macroCells.provenance = MacroCellProvenance::Decoded;
+  std::fill(made->macroCells.ranges.begin(), made->macroCells.ranges.end(), OnlyRangeOf(made));
+  return made;
 }
 
 TrainingIdentity TrainingRun::identity(const PsnrEstimate& estimate,

@@ -30,7 +30,7 @@ public:
   int macroCellSize() const { return this->MacroCellSize; }
   const VolumeInfo& volume() const { return this->Result.volume; }
 
-  /// Whether all finite voxels are equal: no step is needed to be exact.
+  /// Whether all finite voxels are equal, for all that doubles tell: no step is needed to be exact.
   bool isConstant() const;
   ModelPointer constantModel();
 

@@ -20,8 +20,12 @@ void MeasureRow(const T* values, std::int64_t stride, std::int64_t count, Volume
       ++result.nonFinite;
       continue;
     }
-    result.low = std::min(result.low, DoubleBelow(value));
-    result.high = std::max(result.high, DoubleAbove(value));
+    const double below = DoubleBelow(value);
+    const double above = DoubleAbove(value);
+    result.low = std::min(result.low, below);
+    result.innerLow = std::max(result.innerLow, below);
+    result.high = std::max(result.high, above);
+    result.innerHigh = std::min(result.innerHigh, above);
   }
 }
 
@@ -31,6 +35,8 @@ void VolumeStatistics::add(const VolumeStatistics& other)
 {
   this->low = std::min(this->low, other.low);
   this->high = std::max(this->high, other.high);
+  this->innerLow = std::max(this->innerLow, other.innerLow);
+  this->innerHigh = std::min(this->innerHigh, other.innerHigh);
   this->nonFinite += other.nonFinite;
 }
 

@@ -46,9 +46,14 @@ struct VolumeStatistics
   /// is, the next double beyond.
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
+  /// The largest of the doubles below values, and the smallest of those above.
+  double innerLow = -std::numeric_limits<double>::infinity();
+  double innerHigh = std::numeric_limits<double>::infinity();
   std::int64_t nonFinite = 0;
 
   bool hasValues() const { return this->low <= this->high; }
+  /// Whether doubles tell no value from another.
+  bool isConstant() const { return this->low == this->innerLow && this->high == this->innerHigh; }
   void add(const VolumeStatistics& other);
 };
 VolumeStatistics MeasureVolume(const VolumeData& volume, const Arena& arena);

@@ -244,6 +244,43 @@ TEST(ConstantVolumes, AreExactWhateverTheNumberAndTheShape)
   }
 }
 
+/// Two values may be all but equal and still be told apart.
+TEST(ConstantVolumes, OfIntegersThatNoDoubleIs)
+{
+  const auto check = [](inr::ScalarType type, auto value, auto last) {
+    Field<decltype(value)> field = Make<decltype(value)>(
+        {"constant", type, {8, 8, 8}, [](std::int64_t, double) { return 0.0; }});
+    std::fill(field.values.begin(), field.values.end(), value);
+    field.values.back() = last;
+    return inr::TrainModel(field.data(), {}, Steps(5));
+  };
+  constexpr std::int64_t odd = (std::int64_t{1} << 53) + 1;
+  constexpr std::uint64_t ones = ~std::uint64_t{0};
+  const inr::ModelPointer model = check(inr::ScalarType::Int64, odd, odd);
+  EXPECT_EQ(model->training->steps, 0u);
+  EXPECT_EQ(inr::ValueOf(model->volume, 0.0f), static_cast<double>(odd - 1));
+  EXPECT_EQ(model->quality->psnr, Infinity);
+  EXPECT_EQ(check(inr::ScalarType::UInt64, ones, ones)->training->steps, 0u);
+  EXPECT_EQ(check(inr::ScalarType::UInt64, ones, ones - 1)->training->steps, 0u);
+  EXPECT_EQ(check(inr::ScalarType::Int64, odd - 1, odd + 1)->training->steps, 5u);
+  EXPECT_EQ(check(inr::ScalarType::Int64, odd, odd + 1)->training->steps, 5u);
+}
+
+TEST(ConstantVolumes, HaveTheRangeOfWhatTheNetworkSays)
+{
+  inr::TrainingOptions options = Steps(5);
+  options.description = inr::ChooseDescription({24, 20, 17}, Float, 0);
+  options.description->network.outputActivation = inr::Activation::Sigmoid;
+  Field<float> field = Waves();
+  std::fill(field.values.begin(), field.values.end(), 3.0f);
+  const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
+  EXPECT_EQ(Decode(model).front(), 0.5f);
+  for (const inr::ValueRange& range : model->macroCells.ranges) {
+    EXPECT_EQ(range.low, 0.5f);
+    EXPECT_EQ(range.high, 0.5f);
+  }
+}
+
 /// Whether a network of exponentials of exponentials says that it diverged, when it is stopped
 /// after so many steps; otherwise its numbers must be numbers.
 bool Diverges(int hiddenLayers, std::uint64_t steps)
