@@ -85,7 +85,8 @@ struct Frame
   bool preIntegration = false;
 
   /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel at most a
-  /// seventh larger than a pixel, 0 reads the full resolution everywhere; not negative.
+  /// seventh larger than a pixel, as its ray sees it (see ProjectedVoxel), 0 reads the full
+  /// resolution everywhere; not negative.
   double levelOfDetailScale = 1;
 
   /// Takes the place of levelOfDetailScale, adaptiveSampling and preIntegration where it is given:

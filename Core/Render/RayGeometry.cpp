@@ -59,6 +59,21 @@ glm::dmat4 Inverse(const glm::dmat4& matrix, const char* message)
   return inverse;
 }
 
+/// As levels of detail see it: along an axis of a single voxel, coarser ones have no fewer.
+ProjectedVoxel VoxelOf(const RayView& view, const glm::i64vec3& dims)
+{
+  glm::dmat3 edges(view.indexToWorld);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (dims[axis] == 1) {
+      edges[axis] = glm::dvec3(0.0);
+    } else {
+      shortest = std::min(shortest, glm::length(edges[axis]));
+    }
+  }
+  return {edges, std::isfinite(shortest) ? shortest : view.worldPerUnit};
+}
+
 } // namespace
 
 RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims)
@@ -110,6 +125,7 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims)
         std::min(this->View.worldPerUnit, glm::length(glm::dvec3(this->View.indexToWorld[axis])));
   }
   Require(this->View.worldPerUnit > 0, "the volume is flat in world space");
+  this->View.voxel = VoxelOf(this->View, dims);
   if (frame.cropping) {
     Require(!glm::any(glm::isnan(frame.cropping->low + frame.cropping->high)),
             "cropping planes must be at numbers");

@@ -3,6 +3,7 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Render/LayersView.h"
+#include "Core/Render/ProjectedVoxel.h"
 #include "Core/Render/Ray.h"
 
 #include <glm/common.hpp>
@@ -68,6 +69,7 @@ struct RayView
   glm::dvec3 low{0.0}; ///< of what is shown
   glm::dvec3 high{0.0};
   double worldPerUnit = 0;            ///< see RayGeometry
+  ProjectedVoxel voxel;               ///< in world lengths
   const float* opaqueDepth = nullptr; ///< see Frame; may be null
   const glm::dvec4* planes = nullptr; ///< Frame::clippingPlanes
   int planeCount = 0;
@@ -187,8 +189,10 @@ private:
     const double atNear = glm::length(PixelLine::point(next - line.towardsFar) - line.near);
     const double atFar =
         glm::length(PixelLine::point(next + line.towardsFar) - line.near - line.toFar);
-    ray.footprintGrowth = (atFar - atNear) / line.range;
-    ray.footprint = (atNear + ray.footprintGrowth * begin) / this->worldPerUnit;
+    const double growth = (atFar - atNear) / line.range;
+    const double voxel = this->voxel.across(line.forward);
+    ray.footprint = (atNear + growth * begin) / voxel;
+    ray.footprintGrowth = growth * this->worldPerUnit / voxel;
   }
 };
 

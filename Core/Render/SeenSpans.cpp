@@ -27,7 +27,7 @@ glm::dvec4 DepthOf(const glm::dmat4& indexToClip, const glm::dvec3& dims)
   return isParallel ? glm::row(indexToClip, 2) : w;
 }
 
-/// Footprint, in t, that a ray has at most inside the volume. A step to the next pixel is one of
+/// Footprint that a ray has at most inside the volume. A step to the next pixel is one of
 /// the same clip-space x, times w, everywhere; of projections of which that is not so, infinite.
 double LargestFootprint(const RayView& rays, const glm::dmat4& indexToClip)
 {
@@ -45,7 +45,7 @@ double LargestFootprint(const RayView& rays, const glm::dmat4& indexToClip)
     largest = std::max(largest, std::abs(glm::dot(glm::row(indexToClip, 3), index)));
   }
   const double pixel = glm::length(glm::dvec3(toWorld[0])) * 2.0 / rays.width;
-  return (1.0 + 10 * rounding) * largest * pixel / rays.worldPerUnit;
+  return (1.0 + 10 * rounding) * largest * pixel / rays.voxel.least();
 }
 
 /// Footprint up to which LevelOfDetail chooses levels that a grid bounds.
