@@ -40,10 +40,11 @@ bool IsSamePicture(const Frame& a, const Frame& b)
          a.piece == b.piece && a.cropping == b.cropping && a.lights == b.lights &&
          a.shading == b.shading && a.mode == b.mode && a.paths == b.paths &&
          a.blending == b.blending && a.unitDistance == b.unitDistance &&
-         a.sampleDistance == b.sampleDistance && a.adaptiveSampling == b.adaptiveSampling &&
-         a.preIntegration == b.preIntegration && a.levelOfDetailScale == b.levelOfDetailScale &&
-         a.errorTolerance == b.errorTolerance && a.seed == b.seed && a.frameIndex == b.frameIndex &&
-         HaveSameDepth(a, b) && IsSame(a.layers, b.layers);
+         a.worldToMedium == b.worldToMedium && a.sampleDistance == b.sampleDistance &&
+         a.adaptiveSampling == b.adaptiveSampling && a.preIntegration == b.preIntegration &&
+         a.levelOfDetailScale == b.levelOfDetailScale && a.errorTolerance == b.errorTolerance &&
+         a.seed == b.seed && a.frameIndex == b.frameIndex && HaveSameDepth(a, b) &&
+         IsSame(a.layers, b.layers);
 }
 
 } // namespace inr

@@ -9,6 +9,7 @@
 #include "Core/Render/TranslucentLayers.h"
 #include "Core/Render/WorkDone.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
@@ -37,6 +38,10 @@ struct Frame
   /// World space to continuous point indices of the volume's native grid: point i of the grid is at
   /// i. Composes the actor's transform, direction, origin and spacing.
   glm::dmat4 worldToIndex{1.0};
+
+  /// Directions in world space to where lengths of the medium are measured: unitDistance, and what
+  /// samples are apart. A host that scales a volume does not make it thinner or denser by that.
+  glm::dmat3 worldToMedium{1.0};
 
   /// Window-space depth in [0, 1] of what is already drawn, width * height values, 1 = nothing.
   /// Null when nothing opaque was drawn. Must outlive the call.
@@ -67,7 +72,7 @@ struct Frame
   /// time limit, of those that were traced in time.
   int samplesPerPixel = 64;
 
-  /// World length to which the transfer function's opacity refers; above 0.
+  /// Length of the medium to which the transfer function's opacity refers; above 0.
   double unitDistance = 1;
   /// Distance between samples in voxels, along the axis in which the voxels are densest; 1/1000 to
   /// 1,000,000.

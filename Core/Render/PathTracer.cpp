@@ -245,7 +245,7 @@ PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const gl
                                                            frame.paths,
                                                            frame.levelOfDetailScale,
                                                            glm::dvec3(dims),
-                                                           geometry.worldPerUnit() /
+                                                           geometry.lengthPerUnit() /
                                                                frame.unitDistance,
                                                            levels,
                                                            PieceNumber(frame.piece)},

@@ -17,6 +17,7 @@ struct RayDirection
 {
   glm::dvec3 perT;    ///< point indices per unit of t
   glm::dvec3 inverse; ///< 1 / perT
+  double worldPerT;   ///< world length of a unit of t
 };
 
 /// Rays that start inside the volume. Plain data. Directions and lengths are the world's, whatever
@@ -53,8 +54,9 @@ public:
   /// `direction`: a world unit vector.
   INR_HOST_DEVICE RayDirection along(const glm::dvec3& direction) const
   {
-    const glm::dvec3 perT = this->ToIndex * direction * this->WorldPerUnit;
-    return {perT, 1.0 / perT};
+    const double worldPerT = this->LengthPerUnit / glm::length(this->ToMedium * direction);
+    const glm::dvec3 perT = this->ToIndex * direction * worldPerT;
+    return {perT, 1.0 / perT, worldPerT};
   }
 
   /// Makes of `ray` the one above, where it stands: copies of what was written a moment ago wait
@@ -65,7 +67,7 @@ public:
     ray.entry = from;
     ray.direction = direction.perT;
     ray.inverse = direction.inverse;
-    ray.length = limit / this->WorldPerUnit;
+    ray.length = limit / direction.worldPerT;
     for (int axis = 0; axis < 3; ++axis) {
       // A start that rounding has put outside counts as being on the border.
       const double face = ray.direction[axis] < 0 ? this->Low[axis] : this->High[axis];
@@ -101,11 +103,12 @@ private:
 
   glm::dmat4 ToWorld;
   glm::dmat3 ToIndex;
+  glm::dmat3 ToMedium;
   glm::dvec3 Low;
   glm::dvec3 High;
   const glm::dvec4* Planes; ///< over point indices
   int PlaneCount;
-  double WorldPerUnit;
+  double LengthPerUnit;
 };
 
 } // namespace inr

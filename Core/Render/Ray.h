@@ -9,7 +9,8 @@
 namespace inr {
 
 /// A pixel's way through the volume. Parameter t counts from the ray's own entry, in voxels of the
-/// densest axis, so that its digits are spent inside the volume wherever that lies in the world.
+/// densest axis (see RayGeometry::lengthPerUnit), so that its digits are spent inside the volume
+/// wherever that lies in the world.
 struct Ray
 {
   glm::dvec3 entry{0.0};     ///< point indices at t = 0

@@ -71,7 +71,7 @@ ProjectedVoxel VoxelOf(const RayView& view, const glm::i64vec3& dims)
       shortest = std::min(shortest, glm::length(edges[axis]));
     }
   }
-  return {edges, std::isfinite(shortest) ? shortest : view.worldPerUnit};
+  return {edges, std::isfinite(shortest) ? shortest : 1.0};
 }
 
 } // namespace
@@ -115,16 +115,18 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims)
   this->View.worldToClip = Inverse(frame.clipToWorld, "the camera's matrix has no inverse");
   this->View.indexToWorld =
       Inverse(frame.worldToIndex, "the volume's matrix has no inverse (a zero scale or spacing?)");
-  this->View.worldPerUnit = std::numeric_limits<double>::infinity();
+  this->View.worldToMedium = frame.worldToMedium;
+  this->View.lengthPerUnit = std::numeric_limits<double>::infinity();
+  const glm::dmat3 indexToMedium = frame.worldToMedium * glm::dmat3(this->View.indexToWorld);
   for (int axis = 0; axis < 3; ++axis) {
     // A single layer of voxels is a slab one spacing thick; else the domain ends at the outer
     // points.
     this->View.low[axis] = dims[axis] == 1 ? -0.5 : 0.0;
     this->View.high[axis] = dims[axis] == 1 ? 0.5 : static_cast<double>(dims[axis] - 1);
-    this->View.worldPerUnit =
-        std::min(this->View.worldPerUnit, glm::length(glm::dvec3(this->View.indexToWorld[axis])));
+    this->View.lengthPerUnit = std::min(this->View.lengthPerUnit, glm::length(indexToMedium[axis]));
   }
-  Require(this->View.worldPerUnit > 0, "the volume is flat in world space");
+  Require(this->View.lengthPerUnit > 0 && std::isfinite(glm::determinant(indexToMedium)),
+          "the volume is flat, or not finite, where the lengths of the medium are measured");
   this->View.voxel = VoxelOf(this->View, dims);
   if (frame.cropping) {
     Require(!glm::any(glm::isnan(frame.cropping->low + frame.cropping->high)),
@@ -155,9 +157,10 @@ double RayGeometry::longest() const
   for (int corner = 0; corner < 4; ++corner) { // and the four opposite ones
     const glm::dvec3 diagonal(size.x, (corner & 1) != 0 ? -size.y : size.y,
                               (corner & 2) != 0 ? -size.z : size.z);
-    longest = std::max(longest, glm::length(glm::dmat3(this->View.indexToWorld) * diagonal));
+    longest = std::max(longest, glm::length(this->View.worldToMedium *
+                                            (glm::dmat3(this->View.indexToWorld) * diagonal)));
   }
-  return longest / this->View.worldPerUnit;
+  return longest / this->View.lengthPerUnit;
 }
 
 Ray RayGeometry::ray(int x, int y) const { return this->View.ray(x, y); }

@@ -38,8 +38,8 @@ public:
   /// t that the longest ray spends in the volume, at most.
   double longest() const;
 
-  /// World length of one unit of t: the shortest voxel edge.
-  double worldPerUnit() const { return this->View.worldPerUnit; }
+  /// Length in the medium (see Frame::worldToMedium) of one unit of t: the shortest voxel edge.
+  double lengthPerUnit() const { return this->View.lengthPerUnit; }
 
   /// What makes rays anywhere, as long as this and the frame's arrays live.
   const RayView& view() const { return this->View; }

@@ -8,6 +8,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
@@ -68,7 +69,8 @@ struct RayView
   glm::dmat4 indexToWorld{1.0};
   glm::dvec3 low{0.0}; ///< of what is shown
   glm::dvec3 high{0.0};
-  double worldPerUnit = 0;            ///< see RayGeometry
+  double lengthPerUnit = 0;           ///< see RayGeometry
+  glm::dmat3 worldToMedium{1.0};      ///< see Frame
   ProjectedVoxel voxel;               ///< in world lengths
   const float* opaqueDepth = nullptr; ///< see Frame; may be null
   const glm::dvec4* planes = nullptr; ///< Frame::clippingPlanes
@@ -87,6 +89,12 @@ struct RayView
     const glm::dvec3 toFar = PixelLine::point(center + toWorld[2]) - near;
     const double range = glm::length(toFar);
     return {center, near, toFar, range, toFar / range, toWorld[2]};
+  }
+
+  /// World length of one unit of t along a world unit vector.
+  INR_HOST_DEVICE double worldPerUnit(const glm::dvec3& direction) const
+  {
+    return this->lengthPerUnit / glm::length(this->worldToMedium * direction);
   }
 
   INR_HOST_DEVICE std::int64_t pixel(int x, int y) const
@@ -152,15 +160,17 @@ struct RayView
     keepAbove(this->piece, this->pieceCount, line, kept);
     Ray ray;
     if (kept.begin < kept.end) { // false, too, where something was not a number
+      const double worldPerT = this->worldPerUnit(line.forward);
       ray.entry = origin + world.begin * direction;
-      ray.direction = direction * this->worldPerUnit;
-      ray.inverse = inverse / this->worldPerUnit;
-      ray.length = (world.end - world.begin) / this->worldPerUnit;
-      ray.pieceBegin = (kept.begin - world.begin) / this->worldPerUnit;
+      ray.direction = direction * worldPerT;
+      ray.inverse = inverse / worldPerT;
+      ray.length = (world.end - world.begin) / worldPerT;
+      ray.pieceBegin = (kept.begin - world.begin) / worldPerT;
       if (kept.end < world.end) {
-        ray.pieceEnd = (kept.end - world.begin) / this->worldPerUnit;
+        ray.pieceEnd = (kept.end - world.begin) / worldPerT;
       }
       this->findFootprint(line, world.begin, ray);
+      ray.footprintGrowth *= worldPerT;
     }
     return ray;
   }
@@ -182,7 +192,8 @@ private:
     }
   }
 
-  /// A pixel's edge grows linearly from the near to the far plane.
+  /// A pixel's edge grows linearly from the near to the far plane. Leaves its growth that of a
+  /// world length.
   INR_HOST_DEVICE void findFootprint(const PixelLine& line, double begin, Ray& ray) const
   {
     const glm::dvec4 next = line.center + this->clipToWorld[0] * (2.0 / this->width);
@@ -192,7 +203,7 @@ private:
     const double growth = (atFar - atNear) / line.range;
     const double voxel = this->voxel.across(line.forward);
     ray.footprint = (atNear + growth * begin) / voxel;
-    ray.footprintGrowth = growth * this->worldPerUnit / voxel;
+    ray.footprintGrowth = growth / voxel;
   }
 };
 

@@ -29,7 +29,7 @@ MarchWay Renderer::Implementation::wayOf(const Frame& frame)
   settings.dims = glm::dvec3(this->Volume.dims);
   settings.step = frame.sampleDistance;
   settings.adaptive = frame.adaptiveSampling && frame.blending.mode == BlendMode::Composite;
-  settings.unitsPerT = way.geometry.worldPerUnit() / frame.unitDistance;
+  settings.unitsPerT = way.geometry.lengthPerUnit() / frame.unitDistance;
   settings.projector = this->projector();
   if (frame.preIntegration) {
     if (!this->PreIntegrated) {

@@ -16,15 +16,16 @@ namespace {
 constexpr double Rounding = 0x1p-16;
 constexpr double Share = 1.0 / 8; ///< of the tolerance
 
-/// Of the volume in the world: of the four diagonals one is the longest.
+/// Of the volume, where lengths of the medium are measured: of the four diagonals one is the
+/// longest.
 double LongestWay(const Frame& frame, const glm::i64vec3& dims)
 {
-  const glm::dmat3 toWorld = glm::inverse(glm::dmat3(frame.worldToIndex));
+  const glm::dmat3 toMedium = frame.worldToMedium * glm::inverse(glm::dmat3(frame.worldToIndex));
   const glm::dvec3 extent(dims);
   double longest = 0;
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 1.0}) {
-      longest = std::max(longest, glm::length(toWorld * (extent * glm::dvec3(x, y, 1.0))));
+      longest = std::max(longest, glm::length(toMedium * (extent * glm::dvec3(x, y, 1.0))));
     }
   }
   return longest;

@@ -90,6 +90,11 @@ glm::dmat4 WorldToIndex(const PresentedGrid& grid, vtkMatrix4x4* volumeToWorld)
   return PresentedToNative(grid) * glm::inverse(indexToWorld);
 }
 
+glm::dmat3 WorldToVolume(vtkMatrix4x4* volumeToWorld)
+{
+  return glm::inverse(glm::dmat3(ToGlm(volumeToWorld)));
+}
+
 std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes)
 {
   std::vector<glm::dvec4> result;

@@ -47,6 +47,9 @@ glm::dmat4 ClipToWorld(vtkRenderer* renderer);
 /// native index i*(N-1)/(n-1). `volumeToWorld` is the actor's matrix.
 glm::dmat4 WorldToIndex(const PresentedGrid& grid, vtkMatrix4x4* volumeToWorld);
 
+/// Directions in world space to the volume's own, in which VTK measures ScalarOpacityUnitDistance.
+glm::dmat3 WorldToVolume(vtkMatrix4x4* volumeToWorld);
+
 /// Half spaces (see Frame::clippingPlanes) of a mapper's planes; null means none.
 std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes);
 

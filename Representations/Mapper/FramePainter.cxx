@@ -48,6 +48,7 @@ Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer*
   Frame frame;
   frame.clipToWorld = ClipToWorld(renderer);
   frame.worldToIndex = WorldToIndex(grid, volume->GetMatrix());
+  frame.worldToMedium = WorldToVolume(volume->GetMatrix());
   frame.clippingPlanes = ClippingPlanes(mapper->GetClippingPlanes());
   if (settings.group.isAlone()) {
     frame.piece = PiecePlanes(grid, frame.worldToIndex);

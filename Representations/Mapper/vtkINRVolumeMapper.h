@@ -12,7 +12,8 @@
  * read only when a visible prop has opaque geometry), the mapper's clipping planes and cropping
  * regions, and from
  * vtkVolumeProperty the colour and scalar opacity functions of component 0, the
- * ScalarOpacityUnitDistance, a length in world space, and shading: ambient, diffuse, specular and
+ * ScalarOpacityUnitDistance, a length in the volume's own space, whatever the volume's matrix makes
+ * of it, and shading: ambient, diffuse, specular and
  * specular power by the renderer's lights. Interpolation type has no meaning here: an INR is
  * continuous.
  *

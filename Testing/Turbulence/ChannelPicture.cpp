@@ -119,7 +119,7 @@ private:
   void place(const Ray& ray, double first, double last, double end, double jitter)
   {
     const double step = this->Scene.frame.sampleDistance;
-    const double units = this->Geometry.worldPerUnit() / this->Scene.frame.unitDistance;
+    const double units = this->Geometry.lengthPerUnit() / this->Scene.frame.unitDistance;
     this->Points.clear();
     this->Lengths.clear();
     for (double k = first; k < last; ++k) {

@@ -19,8 +19,8 @@ template <typename... Field> std::size_t Count(const Field&...) { return sizeof.
 
 std::size_t FieldsOf(const inr::Frame& frame)
 {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x] = frame;
-  return Count(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = frame;
+  return Count(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
 }
 
 std::size_t FieldsOf(const inr::Material& material)
@@ -135,6 +135,7 @@ TEST(Frame, MakesAnotherPictureWithAnotherValueOfAnyFieldThatCounts)
       {"height", [](Frame& frame) { frame.height = 1; }},
       {"clipToWorld", [](Frame& frame) { frame.clipToWorld[3].x = 1; }},
       {"worldToIndex", [](Frame& frame) { frame.worldToIndex[3].x = 1; }},
+      {"worldToMedium", [](Frame& frame) { frame.worldToMedium[2].x = 1; }},
       {"opaqueDepth", [](Frame& frame) { frame.opaqueDepth = OtherDepth.data(); }},
       {"opaqueDepth", [](Frame& frame) { frame.opaqueDepth = nullptr; }},
       {"layers", [](Frame& frame) { frame.layers = Layers(0.25f); }},

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -58,7 +59,82 @@ TEST_P(Medium, RampConvergesToQuadrature)
   }
 }
 
-TEST_P(Medium, UnitDistanceIsAWorldLength)
+/// A field to be seen from anywhere.
+inr::Renderer Mist(bool cached)
+{
+  inr::Renderer renderer = FieldRenderer(
+      {17, 21, 9}, [](const glm::vec3& u) { return 0.3f + 0.7f * u.x * u.y * (1 - u.z); }, {}, 2,
+      cached);
+  renderer.setTransferFunction(OpacityRamp(0.6f));
+  return renderer;
+}
+
+inr::Frame Oblique()
+{
+  inr::Frame frame;
+  frame.width = frame.height = 24;
+  frame.clipToWorld =
+      glm::inverse(glm::perspective(glm::radians(40.0), 1.0, 5.0, 100.0) *
+                   glm::lookAt(glm::dvec3(30, 25, 28), glm::dvec3(8, 10, 4), glm::dvec3(0, 1, 0)));
+  frame.unitDistance = 5;
+  frame.levelOfDetailScale = 0; // of lengths in the world
+  frame.samplesPerPixel = 4;
+  return frame;
+}
+
+/// The same volume and view after a host has put another matrix in front of the volume.
+inr::Frame Moved(inr::Frame frame, const glm::dmat4& matrix)
+{
+  frame.clipToWorld = matrix * frame.clipToWorld;
+  frame.worldToIndex = frame.worldToIndex * glm::inverse(matrix);
+  frame.worldToMedium = glm::inverse(glm::dmat3(matrix));
+  return frame;
+}
+
+TEST_P(Medium, IsNoDenserWhenItIsStretched)
+{
+  inr::Renderer renderer = Mist(this->GetParam());
+  const glm::dmat4 one(1.0);
+  const glm::dmat4 turn = glm::rotate(one, 0.7, glm::dvec3(1, 2, 3));
+  for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
+    inr::Frame frame = Oblique();
+    frame.mode = mode;
+    frame.paths.emissionOnly = true;
+    const inr::Image truth = Render(renderer, frame);
+    ASSERT_GT(*std::max_element(truth.pixels.begin(), truth.pixels.end()), 0.4f);
+    for (const glm::dmat4& matrix :
+         {glm::scale(one, glm::dvec3(0.01)), glm::scale(one, glm::dvec3(100.0)), turn,
+          turn * glm::scale(one, glm::dvec3(1, 1, 10)) * glm::inverse(turn),
+          glm::scale(one, glm::dvec3(3, -0.2, 1)) * turn}) {
+      const inr::Image image = Render(renderer, Moved(frame, matrix));
+      for (std::size_t k = 0; k < truth.pixels.size(); ++k) {
+        ASSERT_NEAR(image.pixels[k], truth.pixels[k], 1e-5) << k;
+      }
+    }
+  }
+}
+
+TEST_P(Medium, ScattersTheSameWhenItIsScaled)
+{
+  inr::Renderer renderer = Mist(this->GetParam());
+  inr::Frame frame = Oblique();
+  frame.mode = inr::RenderMode::PathTracing;
+  frame.paths.ambientLight = glm::vec3(0.5f);
+  inr::Light light;
+  light.kind = inr::LightKind::Point;
+  light.position = {20, 30, 10};
+  light.color = glm::vec3(3.0f);
+  frame.lights = {light};
+  const inr::Image truth = Render(renderer, frame);
+  frame.lights[0].position *= 50.0;
+  const inr::Image image =
+      Render(renderer, Moved(frame, glm::scale(glm::dmat4(1.0), glm::dvec3(50.0))));
+  for (std::size_t k = 0; k < truth.pixels.size(); ++k) {
+    ASSERT_NEAR(image.pixels[k], truth.pixels[k], 1e-5) << k;
+  }
+}
+
+TEST_P(Medium, UnitDistanceIsAWorldLengthUnlessSaid)
 {
   inr::Renderer renderer = this->renderer({17, 17, 17}, [](const glm::vec3&) { return 0.5f; });
   renderer.setTransferFunction(UniformMedium(0.1f));

@@ -106,6 +106,26 @@ TEST(PathTracing, InnerRaysAreMeasuredAndClippedInTheWorld)
   frame.clippingPlanes = {{0, -1, 0, 12}}; // y <= 12
   EXPECT_LT(glm::distance(end({0, 1, 0}, 1e9), {17.5, 12, 5}), 1e-12);
   EXPECT_LT(glm::distance(end({0, -1, 0}, 1e9), {17.5, 0, 5}), 1e-12);
+  frame.worldToMedium = glm::dmat3(2, 0.5, 0, 0, 1, 0, 0, 0, 0.25); // lights stay where they are
+  EXPECT_LT(glm::distance(end(diagonal, 3), start + 3.0 * diagonal), 1e-12);
+}
+
+TEST(PathTracing, InnerRaysCountLengthsOfTheMedium)
+{
+  inr::Frame frame = ParallelFrame(1, {0, 0}, {1, 1}, -10, 50);
+  frame.worldToIndex = glm::inverse(glm::scale(glm::dmat4(1.0), glm::dvec3(5, 2, 0.5)));
+  frame.worldToMedium = glm::dmat3(2, 0.5, 0, 0, 1, 0.3, 0.7, 0, 0.25);
+  const glm::i64vec3 dims(9, 17, 33);
+  std::vector<glm::dvec4> planes;
+  const inr::RayGeometry geometry(frame, dims);
+  const inr::InnerRays inner(frame, geometry, dims, planes);
+  for (const glm::dvec3& along : {glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 1), glm::dvec3(-2, 1, 3)}) {
+    const inr::Ray ray = inner.ray({3, 4, 10}, glm::normalize(along));
+    const glm::dvec3 way = inner.world(ray.at(ray.length)) - inner.world(ray.at(0));
+    const double length = glm::length(frame.worldToMedium * way);
+    ASSERT_GT(length, 1);
+    EXPECT_NEAR(ray.length * geometry.lengthPerUnit() / length, 1, 1e-12);
+  }
 }
 
 /// Extinction 0.2 per world length, and a light that shines against the view: what a path scatters
