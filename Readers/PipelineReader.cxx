@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "RawFiles.h"
+#include "StopSignals.h"
 #include "Upstream.h"
 
 #include <vtkAbstractArray.h>
@@ -189,6 +190,9 @@ vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) 
   const Extent extent = ExtentOf(box, this->Whole.extent);
   const auto ask = [&](vtkInformation* input) { Request(input, extent); };
   vtkImageData* image = UpdateInput(this->Consumer, ask, this->Afresh);
+  if (StopSignals::Received()) { // what was asked for may have stopped, too
+    throw inr::Error(inr::ErrorCode::Cancelled, "stopped while the source was read");
+  }
   if (image && !Contains(image->GetExtent(), extent.data())) {
     ForgetKept(this->Consumer);
     image = UpdateInput(this->Consumer, ask, this->Afresh);

@@ -9,6 +9,7 @@ namespace {
 
 // Lock-free, so that a signal handler may write it.
 std::atomic<int> ReceivedSignal{0};
+std::atomic<int> Depth{0}; ///< how many there are, one within the other
 
 /// The second one ends the process: whatever is to look for the first does not come to it.
 void Remember(int signal)
@@ -27,12 +28,11 @@ struct StopSignals::Handlers
   struct sigaction Terminate;
 };
 
-StopSignals::StopSignals() : Previous(new (std::nothrow) Handlers)
+StopSignals::StopSignals() : Previous(Depth++ == 0 ? new (std::nothrow) Handlers : nullptr)
 {
-  ReceivedSignal = 0;
   if (this->Previous == nullptr) {
-    return; // a signal ends the process, as it does without this; no memory will be said soon
-            // enough
+    return; // within another, or a signal ends the process, as it does without this; no memory
+            // will be said soon enough
   }
   struct sigaction action = {};
   action.sa_handler = Remember;
@@ -48,9 +48,10 @@ StopSignals::~StopSignals()
     sigaction(SIGTERM, &this->Previous->Terminate, nullptr);
     delete this->Previous;
   }
-  if (const int signal = ReceivedSignal.exchange(0)) {
+  const int signal = --Depth == 0 ? ReceivedSignal.exchange(0) : 0;
+  if (signal != 0) {
     std::raise(signal);
   }
 }
 
-bool StopSignals::Received() const { return ReceivedSignal != 0; }
+bool StopSignals::Received() { return ReceivedSignal != 0; }

@@ -77,6 +77,23 @@ interrupt(contour, contour.Update)
 assert contour.GetOutput().GetNumberOfPoints() == 0
 """
 
+# A writer that reads through a filter: both are asked to stop, and the inner one must not keep the signal.
+TRAINING_OF_DECODED = """
+train(sys.argv[1] + ".source.inr", 100).Write()
+reader = vtkINRReader()
+reader.SetFileName(sys.argv[1] + ".source.inr")
+reader.SetDimensions(500, 500, 500)
+decode = vtkINRDecode()
+decode.SetInputConnection(reader.GetOutputPort())
+writer = vtkINRWriter()
+writer.SetInputConnection(decode.GetOutputPort())
+writer.SetFileName(sys.argv[1])
+writer.SetMaximumSteps(100)
+writer.SetMemoryLimit(200)
+writer.SetCheckpointInterval(0)
+interrupt(writer, writer.Write)
+"""
+
 
 def interrupted(what, folder):
     program = [sys.executable, "-c", COMMON + what, os.path.join(folder, "model.inr")]
@@ -103,3 +120,7 @@ with tempfile.TemporaryDirectory() as folder:
         assert os.listdir(folder) == ["model.inr.checkpoint"], os.listdir(folder)
     for what in (DECODING, CONTOURING):
         interrupted(what, folder)
+    os.remove(os.path.join(folder, "model.inr"))
+    said = interrupted(TRAINING_OF_DECODED, folder)
+    assert "stopped" in said, said
+    assert not os.path.exists(os.path.join(folder, "model.inr"))
