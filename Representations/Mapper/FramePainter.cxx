@@ -11,6 +11,7 @@
 #include "SceneLights.h"
 #include "vtkINRDataArray.h"
 
+#include <vtkHardwareSelector.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
@@ -104,6 +105,19 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   this->Last.seconds = SecondsSince(start);
   this->refineLater(window, settings.mode);
   return problem;
+}
+
+void FramePainter::mark(vtkRenderer* renderer)
+{
+  const Viewport viewport = GetViewport(renderer);
+  vtkHardwareSelector* selector = renderer->GetSelector();
+  if (this->Last.rgba.pixels.empty() || viewport.width <= 0 || viewport.height <= 0 ||
+      selector->GetCurrentPass() != vtkHardwareSelector::ACTOR_PASS) {
+    return;
+  }
+  float color[3];
+  selector->GetPropColorValue(color);
+  this->Blender.mark(renderer, viewport, this->Last.rgba, color);
 }
 
 std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,

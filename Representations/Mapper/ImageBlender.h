@@ -26,11 +26,16 @@ public:
   /// the texture or shader cannot be made.
   bool blend(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba);
 
-  /// Frees texture and shader; required before `window` goes away.
+  /// Puts `color` wherever `rgba` is not transparent, as a selection buffer wants it.
+  bool mark(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba,
+            const float color[3]);
+
+  /// Frees texture and shaders; required before `window` goes away.
   void release(vtkWindow* window);
 
 private:
-  bool prepare(vtkOpenGLRenderWindow* window, const Viewport& viewport, const Image& rgba);
+  bool draw(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba, const float* color);
+  bool upload(vtkOpenGLRenderWindow* window, const Viewport& viewport, const Image& rgba);
 
   struct Resources;
   std::unique_ptr<Resources> Self;

@@ -350,8 +350,11 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
 
 void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
-  if (renderer->GetSelector()) {
-    return; // a selection buffer holds identities, not colours
+  if (vtkHardwareSelector* selector = renderer->GetSelector()) {
+    selector->BeginRenderProp();
+    this->Self->Painter.mark(renderer);
+    selector->EndRenderProp();
+    return;
   }
   if (inr::DeferredDrawing::isDue(volume)) {
     this->Self->AfterPeeling.request(renderer, volume);
