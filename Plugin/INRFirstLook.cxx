@@ -105,6 +105,10 @@ struct PanelProperty
 };
 constexpr PanelProperty PanelProperties[] = {{"INRUnitDistance", "ScalarOpacityUnitDistance"},
                                              {"INRShade", "Shade"},
+                                             {"INRAmbient", "Ambient"},
+                                             {"INRDiffuse", "Diffuse"},
+                                             {"INRSpecular", "Specular"},
+                                             {"INRSpecularPower", "SpecularPower"},
                                              {"INRBlendMode", "BlendMode"},
                                              {"INRIsosurfaceValues", "IsosurfaceValues"},
                                              {"INRUseCropping", "UseCropping"},

@@ -55,6 +55,10 @@ display.INRShade = 1
 check(display.Shade == 1, "shading is not passed on")
 display.Shade = 0
 check(display.INRShade == 0, "shading does not come back")
+display.INRAmbient, display.INRSpecularPower = 0.25, 20
+check((display.Ambient, display.SpecularPower) == (0.25, 20), "light is not passed on")
+display.Diffuse, display.Specular = 0.5, 0.125
+check((display.INRDiffuse, display.INRSpecular) == (0.5, 0.125), "light does not come back")
 
 # So it does not matter in which order a state file sets them.
 display.INRUnitDistance = 3

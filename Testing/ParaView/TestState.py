@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """State files: a saved scene comes back as it was, with what the user changed."""
-from paraview import simple
+from paraview import simple, smstate
 from pvtest import ARRAY, MODEL, Messages, check, load_plugin, look_at, output_file, picture, psnr
 from pvtest import show_view
 
@@ -34,3 +34,18 @@ check(display.ScalarOpacityUnitDistance == 3, "unit distance", display.ScalarOpa
 points = simple.GetColorTransferFunction(ARRAY).RGBPoints
 check((points[0], points[-4]) == (20, 120), "colours span", points)
 check(psnr(before, after) > 50, "the picture changed:", psnr(before, after))
+
+# A state in Python leaves out what is as the XML says it is by default, and the display's first look
+# is not that.
+for unit in 1, 4:
+    simple.ResetSession()
+    view = show_view()
+    display = simple.Show(simple.OpenDataFile(MODEL), view)
+    display.ScalarOpacityUnitDistance = unit
+    text = smstate.get_state()
+    simple.ResetSession()
+    exec(text, {})
+    (reader,) = simple.GetSources().values()
+    display = simple.GetDisplayProperties(reader, simple.GetActiveView())
+    found = display.ScalarOpacityUnitDistance
+    check(found == unit, "a unit distance of", unit, "came back from Python as", found)
