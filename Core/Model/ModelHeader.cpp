@@ -226,13 +226,20 @@ void ApplyOverrides(const ModelOverrides& overrides, bool isOwn, Model& model)
     if (isOwn && !model.nativeDims) {
       model.nativeDims = volume.dims;
     }
-    volume.dims = *overrides.dims;
+    const glm::i64vec3 dims = *overrides.dims;
+    if (std::min({dims.x, dims.y, dims.z}) < 1) {
+      throw Error(ErrorCode::InvalidArgument,
+                  "Dimensions are " + std::to_string(dims.x) + " x " + std::to_string(dims.y) +
+                      " x " + std::to_string(dims.z) + "; give the voxels along all three axes");
+    }
+    volume.dims = dims;
   }
   if (overrides.dataRange) {
-    if (overrides.dataRange->x == overrides.dataRange->y) {
-      throw Error(ErrorCode::InvalidArgument, "both ends of DataRange are " +
-                                                  std::to_string(overrides.dataRange->x) +
-                                                  "; give the smallest and largest value");
+    if (!(overrides.dataRange->x < overrides.dataRange->y)) {
+      throw Error(ErrorCode::InvalidArgument, "DataRange is " +
+                                                  std::to_string(overrides.dataRange->x) + " to " +
+                                                  std::to_string(overrides.dataRange->y) +
+                                                  "; give the smallest value and a larger one");
     }
     volume.low = overrides.dataRange->x;
     volume.high = overrides.dataRange->y;
