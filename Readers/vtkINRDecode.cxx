@@ -10,6 +10,7 @@
 #include "StopSignals.h"
 #include "VTKCompat.h"
 
+#include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
@@ -88,6 +89,9 @@ int vtkINRDecode::RequestInformation(vtkInformation*, vtkInformationVector**,
   // virtual, so updating it here costs next to nothing.
   this->GetInputAlgorithm(0, 0)->Update();
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  if (vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0))) {
+    return 1; // the pipeline asks of each block afterwards
+  }
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   try {
     if (this->DescribeOutput(outInfo)) {

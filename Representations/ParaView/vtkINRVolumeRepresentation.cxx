@@ -9,6 +9,7 @@
 #include "WhyBlank.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkBoundingBox.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
 #include "vtkINRStatusActor.h"
@@ -290,7 +291,12 @@ void vtkINRVolumeRepresentation::UpdateMapper()
 
 void vtkINRVolumeRepresentation::ReportColouring()
 {
-  const std::string problem = inr::WhyBlank(this->Actor, this->VolumeMapper);
+  const bool isGroup = this->GetNumberOfInputConnections(0) > 0 &&
+                       vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0)) != nullptr;
+  const std::string problem =
+      isGroup ? "A group of data sets cannot be drawn as an INR volume; show the reader itself, or "
+                "the group as \"Volume\""
+              : inr::WhyBlank(this->Actor, this->VolumeMapper);
   if (!problem.empty() && problem != this->LastProblem) {
     vtkErrorMacro(<< problem);
   }

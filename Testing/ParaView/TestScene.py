@@ -21,6 +21,17 @@ ball.AmbientColor = ball.DiffuseColor = [0, 0.6, 0]
 inside = picture(view, "scene-opaque-inside")
 check_baseline(inside, "scene-opaque-inside")
 
+# A click selects what is seen first.
+width, height = view.ViewSize
+check(view.SMProxy.Pick(width // 2, height // 2) is not None, "the middle cannot be picked")
+simple.Hide(sphere, view)
+simple.Render(view)
+picked = view.SMProxy.Pick(width // 2, height // 2)
+check(picked is not None and picked == display.SMProxy, "the volume cannot be picked:", picked)
+check(view.SMProxy.Pick(2, 2) is None, "the volume is picked beside itself")
+simple.Show(sphere, view)
+check_baseline(picture(view, "scene-after-picking"), "scene-opaque-inside")
+
 # In front of the volume it hides it, behind the volume it shows through no more than the white did.
 eye, focus = np.array(view.CameraPosition), np.array(view.CameraFocalPoint)
 towards = (eye - focus) / np.linalg.norm(eye - focus)
@@ -96,3 +107,34 @@ for shade in (0, 1):
     other = picture(view, f"scene-shade-{shade}-stock")
     check(psnr(pictures[shade], other) > 35, "shade", shade, psnr(pictures[shade], other), "dB")
 check(psnr(pictures[0], pictures[1]) < 30, "shading changes nothing", psnr(*pictures.values()))
+
+# However it is scaled: the opacity's unit distance is one of the data.
+display.Shade = stock.Shade = 0
+for scale in [0.01, 0.01, 0.01], [100, 100, 100], [1, 1, 4]:
+    for item, shown, hidden in (display, reader, voxels), (stock, voxels, reader):
+        item.Scale = scale
+        simple.Hide(hidden, view)
+        simple.Show(shown, view)
+        if shown is reader:  # of stock volumes the view finds the bounds later
+            look_at(view)
+        pictures[shown] = picture(view, f"scene-scaled-{shown is voxels}")
+    same = psnr(pictures[reader], pictures[voxels])
+    check(same > 35, "scaled by", scale, "the volume is", same, "dB from its voxels")
+for item in display, stock:
+    item.Scale = [1, 1, 1]
+
+# Groups: a message of what to do, and voxels.
+simple.Hide(voxels, view)
+group = simple.GroupDatasets(Input=[reader])
+grouped = simple.Show(group, view)
+with Messages() as messages:
+    grouped.SetRepresentationType("INR Volume")
+    simple.Render(view)
+    simple.Render(view)
+check(messages.errors() == 1 and "show the reader" in messages.text, "of a group:", messages.text)
+with Messages() as messages:
+    decoded = simple.INRDecode(Input=group)
+    decoded.UpdatePipeline()
+points = [source.GetDataInformation().GetNumberOfPoints() for source in (decoded, voxels)]
+check(points[0] == points[1], "a group is decoded to", points, "points")
+check("not an implicit" not in messages.text, "decoding a group reported", messages.text)
