@@ -47,7 +47,8 @@ private:
   const std::shared_ptr<const Accelerator> Owner;
   const ModelPointer Source;
 
-  mutable std::mutex Mutex; ///< guards what follows; not held while the accelerator computes
+  mutable std::mutex
+      Mutex; ///< guards what follows; held while things are made, not while they compute
   std::optional<Failure> Failed;
   std::shared_ptr<const Evaluator> Points;
   std::vector<std::shared_ptr<const BrickSource>> Bricks; ///< the latest two

@@ -284,6 +284,16 @@ void BrickStore::giveOldest()
   }
 }
 
+namespace {
+
+thread_local int AwaitedDepth = 0;
+
+} // namespace
+
+BrickStore::Awaited::Awaited() { ++AwaitedDepth; }
+BrickStore::Awaited::~Awaited() { --AwaitedDepth; }
+bool BrickStore::Awaited::here() { return AwaitedDepth > 0; }
+
 BrickStore::Call::Turn::Turn(BrickStore& store) : Store(store)
 {
   const auto self = std::this_thread::get_id();
@@ -291,7 +301,8 @@ BrickStore::Call::Turn::Turn(BrickStore& store) : Store(store)
   std::unique_lock<std::mutex> lock(budget.Mutex);
   const auto isInUse = [](const BrickStore* other) { return other->isInUse(); };
   const auto isInUseHere = [self](const BrickStore* other) { return other->User == self; };
-  const bool isWithinACall = std::any_of(budget.Stores.begin(), budget.Stores.end(), isInUseHere);
+  const bool isWithinACall =
+      Awaited::here() || std::any_of(budget.Stores.begin(), budget.Stores.end(), isInUseHere);
   if (store.isInUse() && isWithinACall) {
     throw Error(ErrorCode::Cancelled, "rendering from a cache that is in use by a picture in the "
                                       "making, which waits for this one");

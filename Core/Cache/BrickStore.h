@@ -71,7 +71,8 @@ public:
   {
   public:
     /// Throws Error(Cancelled) where waiting would be for ever: to render from a store that is in
-    /// use, in the middle of rendering on the same thread. And what inferring throws.
+    /// use, in the middle of rendering on the same thread or for one that is Awaited. And what
+    /// inferring throws.
     Call(BrickStore& store, const Arena& arena);
     ~Call();
     Call(const Call&) = delete;
@@ -89,6 +90,19 @@ public:
       BrickWork Before;
     };
     Turn Mine;
+  };
+
+  /// While one exists, its thread does something that a call waits for, whichever thread that is
+  /// on: a host is asked whether to go on. What needs a store that is in use is refused there.
+  class Awaited
+  {
+  public:
+    Awaited();
+    ~Awaited();
+    Awaited(const Awaited&) = delete;
+    Awaited& operator=(const Awaited&) = delete;
+
+    static bool here();
   };
 
 private:

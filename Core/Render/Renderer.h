@@ -56,8 +56,8 @@ struct RendererOptions
 /// bricks the cache cannot hold, or keep until the next call: part of what they meet is then free
 /// of interpolation error, and pictures that are to make do with what the cache can hold. A
 /// renderer is not for use from two threads at once; several are, and those that share bricks take
-/// turns. In the middle of rendering (in keepGoing), another that shares its bricks throws
-/// Error(Cancelled).
+/// turns. In the middle of rendering (in keepGoing, on whichever thread that is asked), another
+/// that shares its bricks throws Error(Cancelled).
 ///
 /// Where an accelerator fails, the CPU takes over within the call and goes on: no call fails
 /// because of it, no brick is lost, and the picture is the same but for the rounding of float32.
@@ -85,8 +85,7 @@ public:
 
   /// Bytes in use by the caches of all renderers of the process, their tables and queues: at most
   /// the largest of their CacheOptions::bytes. (One that comes while the others draw with all of
-  /// it brings its empty tables, some hundred bytes, until they end.) 0 without a cache or before
-  /// the first frame.
+  /// it brings its empty tables, some hundred bytes, until they end.) 0 without a cache.
   std::int64_t cacheBytes() const;
   /// Bricks in the cache of this renderer and those that it shares them with, 0 as above.
   std::int64_t cachedBricks() const;

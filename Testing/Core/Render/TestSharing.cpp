@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -283,6 +284,36 @@ TEST(Sharing, AnotherMayRenderOrGoInTheMiddleOfAPicture)
   EXPECT_GE(step, 3);
   EXPECT_EQ(image.pixels, Alone(fields[0], View(false)));
   EXPECT_EQ(Render(same, View(true)).pixels, Alone(fields[0], View(true)));
+}
+
+/// A host is asked on the renderer's threads, too: what renders there would wait for ever.
+TEST(Sharing, AnotherIsRefusedInTheMiddleOnAnyThread)
+{
+  const Field field(1);
+  inr::Renderer renderer = field.renderer(Cache(HalfOfAView), 4);
+  inr::Renderer same = field.renderer(Cache(HalfOfAView), 4);
+  std::mutex mutex;
+  int refused = 0;
+  const auto self = std::this_thread::get_id();
+  std::atomic<bool> elsewhere{false};
+  const auto keepGoing = [&] {
+    while (std::this_thread::get_id() == self && !elsewhere) {
+      std::this_thread::yield(); // until another thread has been here
+    }
+    elsewhere = true;
+    const std::lock_guard<std::mutex> lock(mutex);
+    inr::Image within;
+    try {
+      same.render(View(true), within);
+    } catch (const inr::Error& error) {
+      refused += error.code() == inr::ErrorCode::Cancelled ? 1 : 0;
+    }
+    return true;
+  };
+  inr::Image image;
+  renderer.render(View(false), image, nullptr, keepGoing);
+  EXPECT_GT(refused, 1);
+  EXPECT_EQ(image.pixels, Alone(field, View(false)));
 }
 
 /// One that comes in the midst of a picture may leave it less room than it already uses.
