@@ -38,7 +38,7 @@ void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
     const auto count = static_cast<double>(ray.tally.samples);
     float* tally = output.samples->pixel(x, y);
     tally[0] = static_cast<float>(count);
-    tally[1] = static_cast<float>(count > 0 ? static_cast<double>(ray.tally.levels) / count : -1.0);
+    tally[1] = static_cast<float>(count > 0 ? ray.tally.levels / count : -1.0);
   }
 }
 

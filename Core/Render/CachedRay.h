@@ -9,11 +9,12 @@
 
 namespace inr {
 
-/// Samples and, of each, the level that it came from, summed up.
+/// Samples and, of each, the level that it came from, summed up; where levels are mixed, the one to
+/// be expected.
 struct SampleTally
 {
   std::int64_t samples = 0;
-  std::int64_t levels = 0;
+  double levels = 0;
 };
 
 /// Where a ray stands.

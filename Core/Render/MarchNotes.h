@@ -12,8 +12,8 @@ namespace inr {
 struct MarchNotes
 {
   FrameStatistics statistics;
-  std::int64_t levelSum = 0; ///< of the levels that the samples came from
-  RequestList requests;      ///< bricks that are wanted
+  double levelSum = 0;  ///< of the levels that the samples came from
+  RequestList requests; ///< bricks that are wanted
 };
 
 } // namespace inr

@@ -21,7 +21,7 @@ struct SampleOrigin
   std::uint64_t seen;    ///< of these bits, of samples that may add to the picture
   std::int64_t hidden;   ///< samples left out before
   SampleStretch stretch; ///< where the ray may go back
-  int level;             ///< that they came from
+  float level;           ///< that they came from, on average
 
   /// The interval of the ray's lattice at which a sample of the batch, one of these, begins.
   std::int64_t intervalOf(int number) const

@@ -33,6 +33,15 @@ void ShowKnown(const BlockSet& known, ShownBlocks& shown)
   std::copy(known.words.begin(), known.words.end(), shown.words);
 }
 
+/// Part of a run's samples, of which there are `count` with those left out, that are on its coarser
+/// path.
+float MeanFraction(const SampleRun& run, int count)
+{
+  const float middle =
+      run.start[0] + 0.5f * static_cast<float>(count - 1) * run.spacing + run.offset;
+  return std::min(std::max(run.fraction + run.growth * middle, 0.0f), 1.0f);
+}
+
 } // namespace
 
 SamplePlacer::SamplePlacer(const CachedScene& scene, OnMiss onMiss, MarchNotes& notes)
@@ -197,8 +206,23 @@ inline void SamplePlacer::addRun(const CachedRay& ray, const AlikeSamples& alike
   if (this->MayGoBack) {
     origin.stretch = stretch;
   }
-  origin.level = fine.servedLevel();
+  origin.level = static_cast<float>(fine.servedLevel());
+  if (runs.fine != runs.coarse) {
+    this->noteCoarser(runs, alike.count);
+  }
   this->Placed.count += count;
+}
+
+// Not inline: it is rare, and place() is long enough.
+__attribute__((noinline)) void SamplePlacer::noteCoarser(const RunPair& runs, int count)
+{
+  const SampleRun& run = this->Placed.batch.runs[this->Placed.runs - 1];
+  const float coarser = MeanFraction(run, count);
+  this->Placed.origins[this->Placed.runs - 1].level += coarser;
+  if (runs.fine->exact() && runs.coarse->exact()) { // which countUse takes for the finer one's
+    this->Notes.levelSum += static_cast<double>(coarser) * run.count;
+    this->Notes.statistics.levels.add({runs.fine->servedLevel(), runs.coarse->servedLevel()});
+  }
 }
 
 inline void SamplePlacer::countUse(const CachedRay& ray, const AlikeSamples& alike,
@@ -206,7 +230,7 @@ inline void SamplePlacer::countUse(const CachedRay& ray, const AlikeSamples& ali
 {
   const int count = CountBits(taken);
   if (runs.fine == runs.coarse || (runs.fine->exact() && runs.coarse->exact())) {
-    runs.fine->count(count); // of two, nobody asks which it was
+    runs.fine->count(count); // of two, no wish depends on which it was
     return;
   }
   // As if all were visible in the one and nothing in the other: only the kernel knows to the last
@@ -403,7 +427,7 @@ void SamplePlacer::close(BrickRun& run, float transmittance)
   this->Notes.statistics.samples += run.count();
   if (run.count() > 0) {
     this->Notes.statistics.levels.add({run.servedLevel(), run.servedLevel()});
-    this->Notes.levelSum += std::int64_t{run.count()} * run.servedLevel();
+    this->Notes.levelSum += static_cast<double>(std::int64_t{run.count()} * run.servedLevel());
   }
   if (run.count() > 0 && !run.exact()) {
     this->Notes.statistics.missed += run.count();

@@ -87,6 +87,31 @@ TEST(LevelOfDetail, MovesBothWaysAndStaysWithinTheLevels)
   EXPECT_EQ(MeanLevel(full, 50), 0);
 }
 
+TEST(LevelOfDetail, StatisticsTellOfBothLevelsThatAreMixed)
+{
+  const glm::i64vec3 dims(65, 65, 65);
+  inr::Renderer renderer = FieldRenderer(
+      dims, [](const glm::vec3& u) { return 0.5f * u.z; }, {}, 2, true);
+  renderer.setTransferFunction(OpacityRamp(0.001f)); // no ray becomes opaque
+  for (const auto& [footprint, level] : {std::pair(1.7, 0.0), std::pair(1.8125, 0.25),
+                                         std::pair(1.9375, 0.75), std::pair(2.0, 1.0)}) {
+    inr::Frame frame = ParallelFrame(32, {0, 0}, glm::dvec2(32 * footprint), -10, 100);
+    inr::Image rgba;
+    inr::Image samples;
+    const inr::FrameStatistics statistics = renderer.render(frame, rgba, nullptr, {}, &samples);
+    double sum = 0;
+    double count = 0;
+    for (std::size_t k = 0; k < samples.pixels.size(); k += 2) {
+      count += samples.pixels[k];
+      sum += samples.pixels[k] * samples.pixels[k + 1];
+    }
+    EXPECT_EQ(count, static_cast<double>(statistics.samples));
+    EXPECT_NEAR(sum / count, level, 0.01) << footprint;
+    EXPECT_EQ(statistics.levels.finest, level < 1 ? 0 : 1) << footprint;
+    EXPECT_EQ(statistics.levels.coarsest, level > 0 ? 1 : 0) << footprint;
+  }
+}
+
 TEST(LevelOfDetail, AFootprintIsAsLargeAsAPixel)
 {
   const inr::Frame frame = ParallelFrame(8, {0, 0}, {24, 24}, -10, 50); // 3 voxels a pixel
