@@ -11,55 +11,10 @@ namespace inr {
 
 namespace {
 
-void Require(bool condition, const char* message)
-{
-  if (!condition) {
-    throw Error(ErrorCode::InvalidArgument, message);
-  }
-}
-
-bool IsFinite(const glm::dvec3& v)
-{
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-bool IsNonNegative(const glm::dvec3& v) { return IsFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
-
-void Check(const PathOptions& options)
-{
-  Require(options.maximumBounces >= 0, "the number of bounces must not be negative");
-  Require(options.rouletteAfter >= 0, "Russian roulette cannot begin before the first bounce");
-  Require(options.scatteringAlbedo >= 0 && options.scatteringAlbedo <= 1,
-          "the scattering albedo must be in [0, 1]");
-  Require(std::abs(options.anisotropy) < 1, "the anisotropy must be inside (-1, 1)");
-  Require(IsNonNegative(options.ambientLight), "the ambient light must be finite, not negative");
-}
-
-void Check(const Light& light)
-{
-  Require(IsNonNegative(light.color), "a light's colour must be finite, not negative");
-  if (light.kind != LightKind::Point) {
-    Require(IsFinite(light.direction) && glm::length(light.direction) > 0,
-            "a light must shine into some direction");
-  }
-  if (light.kind != LightKind::Directional) {
-    Require(IsFinite(light.position), "a light's position must be finite");
-    Require(IsNonNegative(light.attenuation) && glm::length(light.attenuation) > 0,
-            "a light's attenuation must be finite and not negative, and not 0 altogether");
-  }
-  if (light.kind == LightKind::Spot) {
-    Require(light.coneAngle > 0 && light.coneAngle <= 90,
-            "a spot light's cone angle must be above 0 and at most 90 degrees");
-    Require(std::isfinite(light.exponent) && light.exponent >= 0,
-            "a spot light's exponent must be finite, not negative");
-  }
-}
-
 std::vector<PathLight> PathLights(const InnerRays& inner, const std::vector<Light>& lights)
 {
   std::vector<PathLight> made;
   for (const Light& light : lights) {
-    Check(light);
     made.push_back(MakePathLight(inner, light));
   }
   return made;
@@ -213,9 +168,11 @@ void Accumulator::reset(int width, int height, int channels)
 
 void Accumulator::add(const Image& sample)
 {
-  Require(sample.width == this->Width && sample.height == this->Height &&
-              sample.channels == this->Channels,
-          "an accumulator takes pictures of the shape it was reset to");
+  if (sample.width != this->Width || sample.height != this->Height ||
+      sample.channels != this->Channels) {
+    throw Error(ErrorCode::InvalidArgument,
+                "an accumulator takes pictures of the shape it was reset to");
+  }
   for (std::size_t k = 0; k < this->Sums.size(); ++k) {
     this->Sums[k] += sample.pixels[k];
   }
@@ -250,10 +207,7 @@ PathTracer::PathTracer(const Frame& frame, const RayGeometry& geometry, const gl
                                                            levels,
                                                            PieceNumber(frame.piece)},
       Seen(geometry.view(), majorants.view(), glm::dvec3(dims), frame.levelOfDetailScale, levels)
-{
-  Check(frame.paths);
-  Require(levels >= 1, "a field has at least one level");
-}
+{}
 
 FrameStatistics PathTracer::trace(const Tile& tile, FieldSampler& sampler, Image& rgba,
                                   Image* depth) const

@@ -9,7 +9,7 @@ namespace inr {
 InnerRays::InnerRays(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
                      std::vector<glm::dvec4>& planes)
     : ToWorld(glm::inverse(frame.worldToIndex)), ToIndex(frame.worldToIndex),
-      ToMedium(frame.worldToMedium), LengthPerUnit(geometry.lengthPerUnit())
+      Unit(geometry.view().unit)
 {
   for (int axis = 0; axis < 3; ++axis) {
     this->Low[axis] = dims[axis] == 1 ? -0.5 : 0.0;

@@ -54,7 +54,7 @@ public:
   /// `direction`: a world unit vector.
   INR_HOST_DEVICE RayDirection along(const glm::dvec3& direction) const
   {
-    const double worldPerT = this->LengthPerUnit / glm::length(this->ToMedium * direction);
+    const double worldPerT = this->Unit.along(direction);
     const glm::dvec3 perT = this->ToIndex * direction * worldPerT;
     return {perT, 1.0 / perT, worldPerT};
   }
@@ -103,12 +103,11 @@ private:
 
   glm::dmat4 ToWorld;
   glm::dmat3 ToIndex;
-  glm::dmat3 ToMedium;
   glm::dvec3 Low;
   glm::dvec3 High;
   const glm::dvec4* Planes; ///< over point indices
   int PlaneCount;
-  double LengthPerUnit;
+  UnitOfT Unit;
 };
 
 } // namespace inr

@@ -33,12 +33,28 @@ public:
         glm::dmat3(glm::cross(squares[1], squares[2]), glm::cross(squares[2], squares[0]),
                    glm::cross(squares[0], squares[1]));
     this->Trace = squares[0][0] + squares[1][1] + squares[2][2];
+    this->IsCube = IsNearOne(squares);
+  }
+
+  /// Whether a matrix is the unit matrix, but for rounding.
+  INR_HOST_DEVICE static bool IsNearOne(const glm::dmat3& matrix)
+  {
+    constexpr double rounding = 1e-9;
+    bool isNear = true;
+    for (int k = 0; k < 9; ++k) {
+      const double one = k / 3 == k % 3 ? 1.0 : 0.0;
+      isNear = isNear && std::abs(matrix[k / 3][k % 3] - one) <= rounding;
+    }
+    return isNear;
   }
 
   /// Its size seen along a unit vector. The root of the larger eigenvalue of edges * edges^T,
   /// restricted to the plane across the vector: of that, trace and determinant are simple.
   INR_HOST_DEVICE double across(const glm::dvec3& direction) const
   {
+    if (this->IsCube) { // of which most volumes are made
+      return this->Shortest;
+    }
     const double trace = this->Trace - glm::dot(direction, this->Squares * direction);
     const double determinant = glm::dot(direction, this->Adjugate * direction);
     const double root = std::sqrt(glm::max(trace * trace - 4.0 * determinant, 0.0));
@@ -53,6 +69,7 @@ private:
   glm::dmat3 Adjugate{1.0};
   double Trace = 3;
   double Shortest = 1;
+  bool IsCube = true;
 };
 
 } // namespace inr

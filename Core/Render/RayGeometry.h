@@ -14,8 +14,8 @@ namespace inr {
 class RayGeometry
 {
 public:
-  /// Throws Error(InvalidArgument) for singular or non-finite matrices and values out of range.
-  /// The frame's arrays must outlive it.
+  /// Throws Error(InvalidArgument) for singular or non-finite matrices; else the frame is valid.
+  /// Its arrays must outlive this.
   RayGeometry(const Frame& frame, const glm::i64vec3& dims);
   RayGeometry(const RayGeometry&) = delete;
   RayGeometry& operator=(const RayGeometry&) = delete;
@@ -39,7 +39,7 @@ public:
   double longest() const;
 
   /// Length in the medium (see Frame::worldToMedium) of one unit of t: the shortest voxel edge.
-  double lengthPerUnit() const { return this->View.lengthPerUnit; }
+  double lengthPerUnit() const { return this->View.unit.length; }
 
   /// What makes rays anywhere, as long as this and the frame's arrays live.
   const RayView& view() const { return this->View; }

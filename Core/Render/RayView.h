@@ -58,6 +58,21 @@ struct PixelLine
   }
 };
 
+/// How long a unit of t is. Plain data.
+struct UnitOfT
+{
+  double length = 0;             ///< in the medium, see RayGeometry
+  glm::dmat3 worldToMedium{1.0}; ///< see Frame
+  bool isWorldMedium = true;     ///< whether lengths are the same in both
+
+  /// World length along a world unit vector.
+  INR_HOST_DEVICE double along(const glm::dvec3& direction) const
+  {
+    return this->isWorldMedium ? this->length
+                               : this->length / glm::length(this->worldToMedium * direction);
+  }
+};
+
 /// A RayGeometry as plain data, whose arrays lie in the memory of whoever reads it.
 struct RayView
 {
@@ -69,8 +84,7 @@ struct RayView
   glm::dmat4 indexToWorld{1.0};
   glm::dvec3 low{0.0}; ///< of what is shown
   glm::dvec3 high{0.0};
-  double lengthPerUnit = 0;           ///< see RayGeometry
-  glm::dmat3 worldToMedium{1.0};      ///< see Frame
+  UnitOfT unit;
   ProjectedVoxel voxel;               ///< in world lengths
   const float* opaqueDepth = nullptr; ///< see Frame; may be null
   const glm::dvec4* planes = nullptr; ///< Frame::clippingPlanes
@@ -89,12 +103,6 @@ struct RayView
     const glm::dvec3 toFar = PixelLine::point(center + toWorld[2]) - near;
     const double range = glm::length(toFar);
     return {center, near, toFar, range, toFar / range, toWorld[2]};
-  }
-
-  /// World length of one unit of t along a world unit vector.
-  INR_HOST_DEVICE double worldPerUnit(const glm::dvec3& direction) const
-  {
-    return this->lengthPerUnit / glm::length(this->worldToMedium * direction);
   }
 
   INR_HOST_DEVICE std::int64_t pixel(int x, int y) const
@@ -160,7 +168,7 @@ struct RayView
     keepAbove(this->piece, this->pieceCount, line, kept);
     Ray ray;
     if (kept.begin < kept.end) { // false, too, where something was not a number
-      const double worldPerT = this->worldPerUnit(line.forward);
+      const double worldPerT = this->unit.along(line.forward);
       ray.entry = origin + world.begin * direction;
       ray.direction = direction * worldPerT;
       ray.inverse = inverse / worldPerT;

@@ -2,6 +2,7 @@
 #include "Core/Render/Renderer.h"
 
 #include "Core/Error.h"
+#include "Core/Render/FrameCheck.h"
 #include "Core/Render/RendererImplementation.h"
 #include "Core/Render/Timer.h"
 
@@ -241,7 +242,8 @@ FrameStatistics Renderer::render(const Frame& wanted, Image& rgba, Image* depth,
   if (!self.Colors) {
     throw Error(ErrorCode::InvalidArgument, "set a transfer function before rendering");
   }
-  RayGeometry(frame, self.Volume.dims); // throws for what is out of range
+  RequireValid(frame);
+  RayGeometry(frame, self.Volume.dims); // throws for matrices that are of no use
   self.buildFor(frame.blending);
   rgba = Image(frame.width, frame.height, 4);
   if (depth != nullptr) {
@@ -253,9 +255,13 @@ FrameStatistics Renderer::render(const Frame& wanted, Image& rgba, Image* depth,
     samples = counts ? samples : nullptr;
   }
   const PassOutput output{rgba, depth, samples};
+  const std::function<bool()> asks = keepGoing ? [&] {
+    const BrickStore::Awaited fromHere;
+    return keepGoing();
+  } : std::function<bool()>();
   FrameStatistics statistics = frame.mode == RenderMode::PathTracing
-                                   ? self.tracePaths(frame, output, keepGoing)
-                                   : self.march(frame, output, keepGoing);
+                                   ? self.tracePaths(frame, output, asks)
+                                   : self.march(frame, output, asks);
   statistics.seconds = timer.seconds();
   return statistics;
 }

@@ -2,6 +2,7 @@
 //
 // Paths through media whose light is known in closed form, and what a picture may depend on.
 #include "Core/Error.h"
+#include "Core/Render/FrameCheck.h"
 #include "Testing/Core/Render/PathScene.h"
 
 #include <glm/vector_relational.hpp>
@@ -328,8 +329,15 @@ TEST(PathTracing, RefusesWhatIsOutOfRange)
   const auto refuses = [](const std::function<void(PathTest&)>& spoil) {
     PathTest test({3, 3, 3}, Constant, UniformMedium(0.1f));
     test.lights = {inr::Light{}};
+    test.frame.mode = inr::RenderMode::PathTracing;
+    const auto check = [&] {
+      test.frame.paths = test.options;
+      test.frame.lights = test.lights;
+      inr::RequireValid(test.frame);
+    };
+    EXPECT_NO_THROW(check());
     spoil(test);
-    EXPECT_THROW(test.picture(0), inr::Error);
+    EXPECT_THROW(check(), inr::Error);
   };
   refuses([](PathTest& test) { test.options.anisotropy = 1.0; });
   refuses([](PathTest& test) { test.options.anisotropy = NAN; });

@@ -178,4 +178,26 @@ TEST(Shading, RefusesMaterialsThatAreNone)
   EXPECT_THROW(Render(renderer, frame), inr::Error);
 }
 
+/// As paths do; what nothing is lit by may be anything.
+TEST(Shading, RefusesLightsThatAreNone)
+{
+  const glm::i64vec3 dims(8, 8, 8);
+  inr::Renderer renderer = FieldRenderer(dims, Waves);
+  renderer.setTransferFunction(Colours());
+  inr::Light aimless;
+  aimless.direction = glm::dvec3(0.0);
+  inr::Light endless;
+  endless.kind = inr::LightKind::Point;
+  endless.attenuation = glm::dvec3(0.0);
+  inr::Light colorless;
+  colorless.color.y = std::nanf("");
+  for (const inr::Light& light : {aimless, endless, colorless}) {
+    inr::Frame frame = Lit(glm::dvec3(dims));
+    frame.lights = {light};
+    EXPECT_THROW(Render(renderer, frame), inr::Error);
+    frame.shading.reset();
+    EXPECT_NO_THROW(Render(renderer, frame));
+  }
+}
+
 } // namespace
