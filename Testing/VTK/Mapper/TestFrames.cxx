@@ -140,7 +140,7 @@ TEST(Frames, SayWhatLevelsTheyShow)
     EXPECT_EQ(one.mapper->GetFinestLevel(), 0);
     EXPECT_EQ(one.mapper->GetCoarsestLevel(), 0);
     EXPECT_EQ(one.mapper->GetNumberOfPaths(), mode == vtkINRVolumeMapper::PATH_TRACING ? 2 : 0);
-    one.mapper->SetLevelOfDetailScale(6);
+    one.mapper->SetLevelOfDetailScale(12);
     one.scene.capture();
     EXPECT_GT(one.mapper->GetFinestLevel(), 0);
     EXPECT_GE(one.mapper->GetCoarsestLevel(), one.mapper->GetFinestLevel());
