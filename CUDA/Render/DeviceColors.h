@@ -2,7 +2,7 @@
 #pragma once
 
 #include "CUDA/Device/Belongings.h"
-#include "Core/Render/Majorants.h"
+#include "Core/Render/MacroCells/Majorants.h"
 
 namespace inr {
 namespace cuda {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Frame.h"
-#include "Core/Render/LayersView.h"
-#include "Core/Render/TranslucentLayers.h"
+#include "Core/Render/Rays/LayersView.h"
+#include "Core/Render/Scene/Frame.h"
+#include "Core/Render/Scene/TranslucentLayers.h"
 
 #include <cstdint>
 #include <memory>

@@ -4,7 +4,7 @@
 #include "CUDA/Render/MarchedPicture.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/KeptFrame.h"
-#include "Core/Render/StepTable.h"
+#include "Core/Render/Marching/StepTable.h"
 
 #include <cstdint>
 #include <functional>

@@ -10,7 +10,7 @@
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/KeptFrame.h"
-#include "Core/Render/WorkLimit.h"
+#include "Core/Render/Tiles/WorkLimit.h"
 
 #include <cstdint>
 #include <functional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "CUDA/Render/Kernels/FrameCounts.h"
-#include "Core/Render/Frame.h"
+#include "Core/Render/Scene/Frame.h"
 
 #include <algorithm>
 #include <cstdint>

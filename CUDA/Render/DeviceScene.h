@@ -6,7 +6,7 @@
 #include "CUDA/Render/DeviceColors.h"
 #include "CUDA/Render/Kernels/RenderScene.h"
 #include "Core/Render/AcceleratedRenderer.h"
-#include "Core/Render/PreIntegratedColors.h"
+#include "Core/Render/Marching/PreIntegratedColors.h"
 
 #include <cstdint>
 

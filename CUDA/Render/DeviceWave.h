@@ -5,7 +5,7 @@
 #include "CUDA/Render/Kernels/Wave.h"
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Inference/Evaluator.h"
-#include "Core/Render/TileLoop.h"
+#include "Core/Render/Tiles/TileLoop.h"
 
 #include <algorithm>
 #include <array>

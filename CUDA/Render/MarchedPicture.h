@@ -8,8 +8,8 @@
 #include "CUDA/Render/Kernels/MarchKernels.h"
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Render/CachedRenderer.h"
-#include "Core/Render/Timer.h"
-#include "Core/Render/WorkLimit.h"
+#include "Core/Render/Tiles/Timer.h"
+#include "Core/Render/Tiles/WorkLimit.h"
 
 #include <cstdint>
 #include <functional>

@@ -9,7 +9,7 @@
 #include "CUDA/Render/Kernels/PathWave.h"
 #include "CUDA/Render/PathTiles.h"
 #include "Core/Render/AcceleratedRenderer.h"
-#include "Core/Render/Timer.h"
+#include "Core/Render/Tiles/Timer.h"
 
 #include <cstdint>
 #include <utility>

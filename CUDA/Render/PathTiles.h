@@ -4,7 +4,7 @@
 #pragma once
 
 #include "CUDA/Render/DevicePicture.h"
-#include "Core/Render/PathPicture.h"
+#include "Core/Render/Paths/PathPicture.h"
 
 #include <algorithm>
 #include <cstdint>

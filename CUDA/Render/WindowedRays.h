@@ -3,8 +3,8 @@
 
 #include "CUDA/Render/RayTurns.h"
 #include "Core/Error.h"
-#include "Core/Render/TileLoop.h"
-#include "Core/Render/WorkLimit.h"
+#include "Core/Render/Tiles/TileLoop.h"
+#include "Core/Render/Tiles/WorkLimit.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/PathPicture.h"
-#include "Core/Render/Shading.h"
+#include "Core/Render/Marching/Shading.h"
+#include "Core/Render/Paths/PathPicture.h"
 
 #include <cstdint>
 #include <functional>

@@ -3,8 +3,8 @@
 
 #include "Core/Cache/AcceleratedField.h"
 #include "Core/Error.h"
-#include "Core/Render/CachedPaths.h"
-#include "Core/Render/WorkLimit.h"
+#include "Core/Render/Paths/CachedPaths.h"
+#include "Core/Render/Tiles/WorkLimit.h"
 #include "Core/UsableMemory.h"
 
 #include <algorithm>

@@ -4,11 +4,11 @@
 #include "Core/Cache/Accelerator.h"
 #include "Core/Cache/BrickStore.h"
 #include "Core/Parallel.h"
+#include "Core/Render/Bricks/SufficientBricks.h"
 #include "Core/Render/KeptPicture.h"
-#include "Core/Render/PathPicture.h"
+#include "Core/Render/Marching/StepTable.h"
+#include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Refinement.h"
-#include "Core/Render/StepTable.h"
-#include "Core/Render/SufficientBricks.h"
 
 #include <functional>
 #include <memory>

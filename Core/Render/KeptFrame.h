@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Frame.h"
+#include "Core/Render/Scene/Frame.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/MarchedTiles.h"
 
-#include "Core/Render/TileLoop.h"
-#include "Core/Render/Timer.h"
+#include "Core/Render/Tiles/TileLoop.h"
+#include "Core/Render/Tiles/Timer.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Cache/Requests.h"
-#include "Core/Render/CachedPasses.h"
+#include "Core/Render/Bricks/CachedPasses.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Frame.h"
+#include "Core/Render/Scene/Frame.h"
 
 #include <glm/gtc/type_precision.hpp>
 #include <glm/vec2.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/CachedPasses.h"
+#include "Core/Render/Bricks/CachedPasses.h"
 #include "Core/Render/PictureCopy.h"
 
 #include <optional>

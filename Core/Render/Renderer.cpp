@@ -2,9 +2,9 @@
 #include "Core/Render/Renderer.h"
 
 #include "Core/Error.h"
-#include "Core/Render/FrameCheck.h"
 #include "Core/Render/RendererImplementation.h"
-#include "Core/Render/Timer.h"
+#include "Core/Render/Scene/FrameCheck.h"
+#include "Core/Render/Tiles/Timer.h"
 
 #include <optional>
 #include <utility>

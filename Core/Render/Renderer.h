@@ -7,8 +7,8 @@
 #include "Core/Inference/Evaluator.h"
 #include "Core/Model/Model.h"
 #include "Core/Render/CachedRenderer.h"
-#include "Core/Render/Frame.h"
-#include "Core/Render/TransferFunction.h"
+#include "Core/Render/Scene/Frame.h"
+#include "Core/Render/Scene/TransferFunction.h"
 
 #include <functional>
 #include <memory>

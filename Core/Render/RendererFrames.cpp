@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Who draws a renderer's frames: an accelerator or the CPU, through a cache or not.
-#include "Core/Render/CachedPaths.h"
+#include "Core/Render/Marching/TileMarcher.h"
+#include "Core/Render/Paths/CachedPaths.h"
 #include "Core/Render/RendererImplementation.h"
-#include "Core/Render/TileMarcher.h"
 
 #include <optional>
 #include <utility>

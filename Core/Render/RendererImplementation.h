@@ -4,11 +4,11 @@
 #include "Core/Parallel.h"
 #include "Core/Render/AcceleratedFrames.h"
 #include "Core/Render/CachedRenderer.h"
-#include "Core/Render/LevelChooser.h"
-#include "Core/Render/PathPicture.h"
-#include "Core/Render/PreIntegratedColors.h"
+#include "Core/Render/Marching/PreIntegratedColors.h"
+#include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Renderer.h"
-#include "Core/Render/WorkLimit.h"
+#include "Core/Render/Tiles/WorkLimit.h"
+#include "Core/Render/Tolerance/LevelChooser.h"
 
 #include <functional>
 #include <memory>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Blending.h"
-#include "Core/Render/Cropping.h"
+#include "Core/Render/Scene/Blending.h"
+#include "Core/Render/Scene/Cropping.h"
 
 #include <glm/gtc/type_precision.hpp>
 #include <glm/mat4x4.hpp>

@@ -4,7 +4,7 @@
 #include "ComposedLight.h"
 #include "Core/Error.h"
 #include "Core/Render/PictureParts.h"
-#include "Core/Render/StoragePrecision.h"
+#include "Core/Render/Tolerance/StoragePrecision.h"
 #include "LayerExchange.h"
 #include "MapperInput.h"
 #include "SceneCheck.h"

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "Core/Image/Image.h"
-#include "Core/Render/Frame.h"
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/Frame.h"
 #include "FrameBuilder.h"
 #include "ImageBlender.h"
 #include "ImageReduction.h"

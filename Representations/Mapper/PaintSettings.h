@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Frame.h"
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/Frame.h"
 #include "PictureGroup.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/TransferFunction.h"
+#include "Core/Render/Scene/TransferFunction.h"
 
 #include <vtkType.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/TranslucentLayers.h"
+#include "Core/Render/Scene/TranslucentLayers.h"
 #include "FrameBuilder.h"
 
 #include <algorithm>

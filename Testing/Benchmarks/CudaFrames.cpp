@@ -9,8 +9,8 @@
 #include "CUDA/CudaAccelerator.h"
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
-#include "Core/Render/RayGeometry.h"
-#include "Core/Render/TranslucentLayers.h"
+#include "Core/Render/Rays/RayGeometry.h"
+#include "Core/Render/Scene/TranslucentLayers.h"
 #include "Testing/Benchmarks/FrameScenes.h"
 #include "Testing/Benchmarks/Models.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Macro-cells per second of a change of transfer function, and of rays through empty space.
-#include "Core/Render/Majorants.h"
+#include "Core/Render/MacroCells/Majorants.h"
 
 #include "Core/Parallel.h"
 #include "Core/Random.h"
-#include "Core/Render/CellWalker.h"
+#include "Core/Render/MacroCells/CellWalker.h"
 
 #include <benchmark/benchmark.h>
 

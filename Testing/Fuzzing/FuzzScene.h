@@ -5,7 +5,7 @@
 #pragma once
 
 #include "Core/Error.h"
-#include "Core/Render/RayGeometry.h"
+#include "Core/Render/Rays/RayGeometry.h"
 #include "Core/Render/Renderer.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -2,7 +2,7 @@
 #include "Testing/Turbulence/ChannelPicture.h"
 
 #include "Core/Error.h"
-#include "Core/Render/RayMarching.h"
+#include "Core/Render/Marching/RayMarching.h"
 #include "Testing/Turbulence/ChannelSampler.h"
 
 #include <glm/common.hpp>

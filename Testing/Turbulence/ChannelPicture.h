@@ -3,7 +3,7 @@
 
 #include "Core/Image/Image.h"
 #include "Core/Parallel.h"
-#include "Core/Render/Frame.h"
+#include "Core/Render/Scene/Frame.h"
 #include "Testing/Turbulence/TurbulentChannel.h"
 
 #include <glm/vec4.hpp>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "CUDA/Render/Kernels/BrickSampling.h"
-#include "Core/Render/BrickWay.h"
-#include "Core/Render/OnMiss.h"
-#include "Core/Render/SampleWalker.h"
+#include "Core/Render/Bricks/BrickWay.h"
+#include "Core/Render/Bricks/OnMiss.h"
+#include "Core/Render/Marching/SampleWalker.h"
 
 #include <cmath>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Values between the voxels of a cached brick, one sample by one thread; as Core's kernels find
-// them by the vector (Core/Render/BrickKernel.cpp).
+// them by the vector (Core/Render/Bricks/BrickKernel.cpp).
 #pragma once
 
 #include "CUDA/Cache/Kernels/CacheView.h"
 #include "CUDA/Device/Kernels/Mix.h"
 #include "CUDA/Render/Kernels/ReadOnly.h"
-#include "Core/Render/BrickPath.h"
+#include "Core/Render/Bricks/BrickPath.h"
 
 #include <cmath>
 

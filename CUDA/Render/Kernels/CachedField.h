@@ -3,8 +3,8 @@
 
 #include "CUDA/Render/Kernels/BrickSampling.h"
 #include "CUDA/Render/Kernels/RayMarch.h"
-#include "Core/Render/FieldPoint.h"
-#include "Core/Render/OnMiss.h"
+#include "Core/Render/Bricks/OnMiss.h"
+#include "Core/Render/Paths/FieldPoint.h"
 
 namespace inr {
 namespace cuda {

@@ -8,7 +8,7 @@
 #include "CUDA/Render/Kernels/BrickSampling.h"
 #include "CUDA/Render/Kernels/GatheredLight.h"
 #include "CUDA/Render/Kernels/RenderScene.h"
-#include "Core/Render/RayMarching.h"
+#include "Core/Render/Marching/RayMarching.h"
 
 namespace inr {
 namespace cuda {

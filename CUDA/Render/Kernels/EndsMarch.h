@@ -5,9 +5,9 @@
 #pragma once
 
 #include "CUDA/Render/Kernels/RayMarch.h"
-#include "Core/Render/KnownValue.h"
-#include "Core/Render/PreIntegratedColors.h"
-#include "Core/Render/SurfaceCrossings.h"
+#include "Core/Render/Marching/KnownValue.h"
+#include "Core/Render/Marching/PreIntegratedColors.h"
+#include "Core/Render/Marching/SurfaceCrossings.h"
 
 namespace inr {
 namespace cuda {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/HostDevice.h"
-#include "Core/Render/RayMarching.h"
+#include "Core/Render/Marching/RayMarching.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

@@ -10,7 +10,7 @@
 #include "CUDA/Render/Kernels/FrameCounts.h"
 #include "CUDA/Render/Kernels/RayMarch.h"
 #include "CUDA/Render/Kernels/RayOrder.h"
-#include "Core/Render/LayeredWay.h"
+#include "Core/Render/Rays/LayeredWay.h"
 
 namespace inr {
 namespace cuda {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rays that are marched straight through the network, by the stages of Core/Render/RayMarching.h;
-// Core's TileMarcher does the same tile by tile.
+// Rays that are marched straight through the network, by the stages of
+// Core/Render/Marching/RayMarching.h; Core's TileMarcher does the same tile by tile.
 #pragma once
 
 #include "CUDA/Render/Kernels/RenderScene.h"
 #include "CUDA/Render/Kernels/Wave.h"
-#include "Core/Render/RayMarching.h"
+#include "Core/Render/Marching/RayMarching.h"
 
 #include <new>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The paths of a picture, a thread each, launch by launch, by the stages of
-// Core/Render/PathTracing.h.
+// Core/Render/Paths/PathTracing.h.
 #pragma once
 
 #include "CUDA/Device/Kernels/Block.h"
@@ -9,7 +9,7 @@
 #include "CUDA/Render/Kernels/FrameCounts.h"
 #include "CUDA/Render/Kernels/PathPixel.h"
 #include "CUDA/Render/Kernels/RayOrder.h"
-#include "Core/Render/PathTracing.h"
+#include "Core/Render/Paths/PathTracing.h"
 
 namespace inr {
 namespace cuda {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "CUDA/Render/Kernels/RenderScene.h"
-#include "Core/Render/PathTracing.h"
+#include "Core/Render/Paths/PathTracing.h"
 
 #include <cstdint>
 

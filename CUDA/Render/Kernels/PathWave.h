@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Paths that ask the network itself for the field, by the stages of Core/Render/PathTracing.h.
+// Paths that ask the network itself for the field, by the stages of
+// Core/Render/Paths/PathTracing.h.
 #pragma once
 
 #include "CUDA/Render/Kernels/PathPixel.h"
 #include "CUDA/Render/Kernels/Wave.h"
-#include "Core/Render/PathTracing.h"
+#include "Core/Render/Paths/PathTracing.h"
 
 #include <new>
 

@@ -7,7 +7,7 @@
 
 #include "CUDA/Render/Kernels/BrickGradient.h"
 #include "CUDA/Render/Kernels/CompositeSamples.h"
-#include "Core/Render/StepTable.h"
+#include "Core/Render/Marching/StepTable.h"
 
 #include <cstdint>
 #include <limits>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "CUDA/Render/Kernels/ReadOnly.h"
-#include "Core/Render/BrickKernel.h"
-#include "Core/Render/RayMarching.h"
-#include "Core/Render/ShadingView.h"
+#include "Core/Render/Bricks/BrickKernel.h"
+#include "Core/Render/Marching/RayMarching.h"
+#include "Core/Render/Marching/ShadingView.h"
 
 namespace inr {
 namespace cuda {

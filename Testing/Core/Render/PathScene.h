@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/PathTracer.h"
-#include "Core/Render/TileLoop.h"
+#include "Core/Render/Paths/PathTracer.h"
+#include "Core/Render/Tiles/TileLoop.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>

@@ -3,10 +3,11 @@
 // Runs of samples, laid out and interpolated by every kernel, against double precision one sample
 // at a time.
 #include "Core/Random.h"
-#include "Core/Render/ColorTable.h"
-#include "Core/Render/PreIntegratedColors.h"
-#include "Core/Render/SampleBits.h"
-#include "Core/Render/StepTable.h"
+#include "Core/Render/Bricks/BrickKernel.h"
+#include "Core/Render/Bricks/SampleBits.h"
+#include "Core/Render/Marching/PreIntegratedColors.h"
+#include "Core/Render/Marching/StepTable.h"
+#include "Core/Render/Scene/ColorTable.h"
 #include "Testing/Core/Kernels.h"
 
 #include <gtest/gtest.h>

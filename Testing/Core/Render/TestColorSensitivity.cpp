@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/ColorSensitivity.h"
+#include "Core/Render/Tolerance/ColorSensitivity.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <gtest/gtest.h>

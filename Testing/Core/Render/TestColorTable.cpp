@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
 #include "Core/Random.h"
-#include "Core/Render/ColorTable.h"
+#include "Core/Render/Scene/ColorTable.h"
 
 #include <gtest/gtest.h>
 

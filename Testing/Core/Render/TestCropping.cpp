@@ -5,7 +5,7 @@
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
 #include "Core/Random.h"
-#include "Core/Render/RayGeometry.h"
+#include "Core/Render/Rays/RayGeometry.h"
 #include "Testing/Core/Render/BlendScene.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // Pictures with Frame::errorTolerance against those with every sample from the full resolution.
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
-#include "Core/Render/LevelChooser.h"
+#include "Core/Render/Tolerance/LevelChooser.h"
 #include "Testing/Core/Image/PixelDifferences.h"
 #include "Testing/Core/Render/ToleranceScene.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
-#include "Core/Render/RayGeometry.h"
+#include "Core/Render/Rays/RayGeometry.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>

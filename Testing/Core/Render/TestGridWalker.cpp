@@ -3,8 +3,8 @@
 // The walk through macro-cells against stepping densely along the ray.
 #include "Core/Parallel.h"
 #include "Core/Random.h"
-#include "Core/Render/GridWalker.h"
-#include "Core/Render/MajorantGrid.h"
+#include "Core/Render/MacroCells/GridWalker.h"
+#include "Core/Render/MacroCells/MajorantGrid.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 // double.
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
-#include "Core/Render/Shading.h"
+#include "Core/Render/Marching/Shading.h"
 #include "Testing/Core/Render/BlendScene.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/LevelChooser.h"
+#include "Core/Render/Tolerance/LevelChooser.h"
 #include "Testing/Core/Render/ToleranceScene.h"
 
 #include <glm/gtc/matrix_transform.hpp>

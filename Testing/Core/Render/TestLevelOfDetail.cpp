@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/LevelOfDetail.h"
+#include "Core/Render/Rays/LevelOfDetail.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // What majorants and empty blocks say of cells, against looking at every value and every cell.
 #include "Core/Parallel.h"
 #include "Core/Random.h"
-#include "Core/Render/MajorantGrid.h"
+#include "Core/Render/MacroCells/MajorantGrid.h"
 
 #include <gtest/gtest.h>
 

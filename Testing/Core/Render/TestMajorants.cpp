@@ -4,8 +4,8 @@
 #include "Core/Cache/BrickSource.h"
 #include "Core/Error.h"
 #include "Core/Model/ScaledModel.h"
-#include "Core/Render/CellWalker.h"
-#include "Core/Render/LevelOfDetail.h"
+#include "Core/Render/MacroCells/CellWalker.h"
+#include "Core/Render/Rays/LevelOfDetail.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // Colours of all values between two samples: the integrals against sums in double, pictures against
 // media whose transmittance is known, finer sampling, and one another.
 #include "Core/Image/Metrics.h"
-#include "Core/Render/PreIntegratedColors.h"
+#include "Core/Render/Marching/PreIntegratedColors.h"
 #include "Testing/Core/Render/HiddenScene.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // Blend modes that project values, through the cache and straight from the field, against fine sums
 // along the rays in double.
 #include "Core/Error.h"
-#include "Core/Render/RayGeometry.h"
+#include "Core/Render/Rays/RayGeometry.h"
 #include "Testing/Core/Render/BlendScene.h"
 
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 // What of rays is known to show nothing, against their ways through all macro-cells.
 #include "Core/Parallel.h"
 #include "Core/Random.h"
-#include "Core/Render/PathTracer.h"
-#include "Core/Render/SeenSpans.h"
+#include "Core/Render/MacroCells/SeenSpans.h"
+#include "Core/Render/Paths/PathTracer.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
-#include "Core/Render/Shading.h"
+#include "Core/Render/Marching/Shading.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/StepTable.h"
+#include "Core/Render/Marching/StepTable.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>

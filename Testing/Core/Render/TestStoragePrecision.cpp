@@ -2,7 +2,7 @@
 //
 // How a cache keeps voxels for pictures with a tolerance.
 #include "Core/Error.h"
-#include "Core/Render/StoragePrecision.h"
+#include "Core/Render/Tolerance/StoragePrecision.h"
 #include "Testing/Core/Image/PixelDifferences.h"
 #include "Testing/Core/Render/ToleranceScene.h"
 

@@ -2,8 +2,8 @@
 //
 // Which blocks rays can see something in: against points in visible macro-cells.
 #include "Core/Random.h"
-#include "Core/Render/Majorants.h"
-#include "Core/Render/SufficientBricks.h"
+#include "Core/Render/Bricks/SufficientBricks.h"
+#include "Core/Render/MacroCells/Majorants.h"
 #include "Testing/Core/Render/HiddenScene.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Bounds that hold whatever the clock says when it is asked.
-#include "Core/Render/WorkLimit.h"
+#include "Core/Render/Tiles/WorkLimit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What CachedMarcher does with the values of a batch.
+#include "Core/Render/Bricks/CachedMarcher.h"
+#include "Core/Render/Bricks/SampleBits.h"
+
+#include <cmath>
+#include <limits>
+
+namespace inr {
+
+void CachedMarcher::takeLogarithms(int count)
+{
+  for (int k = 0; k < count; ++k) {
+    const ValueRange range{this->Batch.low[k], this->Batch.high[k]};
+    this->Notes.statistics.clamped += ClampToRange(range, this->Batch.value[k]) ? 1 : 0;
+    this->Batch.value[k] = this->Scene.colors.coordinate(this->Batch.value[k]);
+    this->Batch.low[k] = -std::numeric_limits<float>::max();
+    this->Batch.high[k] = std::numeric_limits<float>::max();
+  }
+}
+
+void CachedMarcher::composite(CachedRay& state)
+{
+  const bool isLast = this->Placed.lastLength > 0;
+  const int whole = this->Placed.count - (isLast ? 1 : 0); // that one apart, for its own length
+  if (this->Scene.colors.logarithmic) {
+    this->takeLogarithms(whole);
+  }
+  const int used =
+      this->Scene.kernel.composite(this->Scene.steps, this->Batch, whole, OpaqueTransmittance,
+                                   state.color, this->Notes.statistics.clamped);
+  this->noteHalfOpaque(state, 0, used);
+  if (isLast && state.color.transmittance > OpaqueTransmittance) {
+    this->compositeLast(state);
+  }
+}
+
+void CachedMarcher::noteHalfOpaque(CachedRay& state, int first, int end) const
+{
+  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
+    int k = first; // the last sample whose light was not yet halved
+    while (k + 1 < end && this->Batch.opacity[k + 1] < 0.5f) {
+      ++k;
+    }
+    state.halfOpaqueAt = this->timeOf(state, k);
+  }
+}
+
+void CachedMarcher::compositeLast(CachedRay& state)
+{
+  const int last = this->Placed.count - 1;
+  float value = this->Batch.value[last];
+  ClampToRange({this->Batch.low[last], this->Batch.high[last]}, value);
+  this->compositeColor(state, this->Scene.colors.at(value), this->Placed.lastLength,
+                       this->timeOf(state, last));
+}
+
+void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
+{
+  this->addLight(state, color, OpacityOver(length, color.w), t);
+}
+
+void CachedMarcher::addLight(CachedRay& state, const glm::vec4& color, float opacity, double t)
+{
+  const double weight = state.color.transmittance * opacity;
+  for (int channel = 0; channel < 3; ++channel) {
+    state.color.rgb[channel] += weight * color[channel];
+  }
+  state.color.transmittance -= weight;
+  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
+    state.halfOpaqueAt = t;
+  }
+}
+
+void CachedMarcher::clampToRanges()
+{
+  this->Clamped = 0;
+  for (int k = 0; k < this->Placed.count; ++k) {
+    const float value = this->Batch.value[k];
+    ClampToRange({this->Batch.low[k], this->Batch.high[k]}, this->Batch.value[k]);
+    const bool moves = std::abs(value - this->Batch.value[k]) > RoundingOfStorage;
+    this->Clamped |= std::uint64_t{moves} << k;
+  }
+  this->Notes.statistics.clamped += CountBits(this->Clamped);
+}
+
+double CachedMarcher::timeOf(const CachedRay& state, int sample) const
+{
+  return this->Placed.timeOf(sample, this->Scene.settings.step, state.ray.length);
+}
+
+double CachedMarcher::lengthOf(int sample) const
+{
+  return this->Placed.lengthOf(sample, this->Scene.settings.step * this->Scene.settings.unitsPerT);
+}
+
+int CachedMarcher::findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const
+{
+  double transmittance = state.color.transmittance;
+  int k = 0;
+  for (; k < this->Placed.count && transmittance > OpaqueTransmittance; ++k) {
+    colors[k] = this->Scene.colors.at(this->Batch.value[k]);
+    opacities[k] =
+        colors[k].w > 0.0f ? OpacityOver(static_cast<float>(this->lengthOf(k)), colors[k].w) : 0.0f;
+    transmittance -= transmittance * opacities[k];
+  }
+  return k;
+}
+
+} // namespace inr

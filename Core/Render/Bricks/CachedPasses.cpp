@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/Bricks/CachedPasses.h"
+
+#include "Core/Render/Tiles/TileLoop.h"
+
+#include <algorithm>
+
+namespace inr {
+
+std::int64_t CamePast(const FrameStatistics& statistics)
+{
+  return statistics.samples + statistics.hidden;
+}
+
+namespace {
+
+double HalfOpaqueDepth(const CachedScene& scene, const CachedRay& ray)
+{
+  if (ray.layered.halfOpaqueDepth >= 0) {
+    return ray.layered.halfOpaqueDepth;
+  }
+  return ray.halfOpaqueAt >= 0 ? scene.geometry.windowDepth(ray.ray.at(ray.halfOpaqueAt)) : 1.0;
+}
+
+void WritePixel(const CachedScene& scene, const CachedRay& ray, int x, int y,
+                const PassOutput& output)
+{
+  float* pixel = output.rgba.pixel(x, y);
+  const double* rgb = ray.color.rgb;
+  const glm::vec3 seen =
+      scene.frame.layers ? ray.layered.light.seen() : glm::vec3(rgb[0], rgb[1], rgb[2]);
+  std::copy_n(&seen.x, 3, pixel);
+  pixel[3] = static_cast<float>(1.0 - ray.color.transmittance);
+  if (output.depth != nullptr) {
+    *output.depth->pixel(x, y) = static_cast<float>(HalfOpaqueDepth(scene, ray));
+  }
+  if (output.samples != nullptr) {
+    const auto count = static_cast<double>(ray.tally.samples);
+    float* tally = output.samples->pixel(x, y);
+    tally[0] = static_cast<float>(count);
+    tally[1] = static_cast<float>(count > 0 ? ray.tally.levels / count : -1.0);
+  }
+}
+
+bool March(CachedMarcher& marcher, CachedRay& ray)
+{
+  const SampleTally before = marcher.tally();
+  const bool done = marcher.march(ray);
+  const SampleTally after = marcher.tally();
+  ray.tally.samples += after.samples - before.samples;
+  ray.tally.levels += after.levels - before.levels;
+  return done;
+}
+
+} // namespace
+
+void MarchTile(const CachedScene& scene, CachedMarcher& marcher, const Tile& tile,
+               const std::function<bool()>& keepGoing, const PassOutput& output)
+{
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    RequireGoing(keepGoing);
+    for (int x = tile.x; x < tile.x + tile.width; ++x) {
+      CachedRay ray = marcher.begin(x, y);
+      March(marcher, ray);
+      WritePixel(scene, ray, x, y, output);
+    }
+  }
+}
+
+void CompletePass::start(ActiveTile& at, CachedMarcher& marcher, const PassOutput& output) const
+{
+  const Tile tile = this->Tiles.tile(at.tile);
+  at.started = true;
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    for (int x = tile.x; x < tile.x + tile.width; ++x) {
+      CachedRay ray = marcher.begin(x, y);
+      if (March(marcher, ray)) {
+        WritePixel(this->Scene, ray, x, y, output);
+      } else {
+        at.waiting.push_back({x, y, ray});
+      }
+    }
+  }
+}
+
+void CompletePass::resume(ActiveTile& tile, CachedMarcher& marcher, const PassOutput& output) const
+{
+  bool first = true;
+  const auto done = [&](WaitingRay& waiting) {
+    const bool mayMarch = first || !this->Alone;
+    first = false;
+    if (!mayMarch || !March(marcher, waiting.ray)) {
+      return false;
+    }
+    WritePixel(this->Scene, waiting.ray, waiting.x, waiting.y, output);
+    return true;
+  };
+  const auto rest = std::remove_if(tile.waiting.begin(), tile.waiting.end(), done);
+  tile.waiting.erase(rest, tile.waiting.end());
+}
+
+WorkDone CompletePass::advance(const Arena& arena, const std::function<bool()>& keepGoing,
+                               const PassOutput& output, RequestRanking& requests)
+{
+  while (this->Active.size() < this->Window && this->Next < this->Tiles.count()) {
+    this->Active.push_back({this->Next++, false, {}});
+  }
+  const std::size_t most = this->Alone ? 1 : this->Window;
+  const auto count = static_cast<std::int64_t>(std::min(this->Active.size(), most));
+  const std::int64_t before = CamePast(this->Statistics);
+  std::vector<FrameStatistics> statistics(static_cast<std::size_t>(count));
+  std::vector<RequestList> lists(static_cast<std::size_t>(count));
+  ForEachTile(arena, count, keepGoing, [&](std::int64_t k) {
+    const auto index = static_cast<std::size_t>(k);
+    ActiveTile& tile = this->Active[index];
+    CachedMarcher marcher(this->Scene, OnMiss::Stop);
+    if (tile.started) {
+      this->resume(tile, marcher, output);
+    } else {
+      this->start(tile, marcher, output);
+    }
+    statistics[index] = marcher.statistics();
+    lists[index] = std::move(marcher.requests());
+  });
+  WorkDone work;
+  for (std::size_t k = 0; k < lists.size(); ++k) {
+    work.add(statistics[k].work);
+    this->Statistics.add(statistics[k]);
+    requests.add(lists[k]);
+  }
+  this->Alone = this->Alone && CamePast(this->Statistics) == before && !requests.empty();
+  const auto finished = [](const ActiveTile& tile) { return tile.waiting.empty(); };
+  this->Active.erase(std::remove_if(this->Active.begin(), this->Active.end(), finished),
+                     this->Active.end());
+  return work;
+}
+
+void CompletePass::crowd(std::int64_t loaded)
+{
+  this->Alone = loaded == 0;
+  if (4 * loaded < this->Scene.bricks.cache().capacity()) {
+    this->Window = std::max<std::size_t>(this->Window / 2, 1);
+  }
+}
+
+} // namespace inr

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/Marching/StepTable.h"
+
+#include "Core/Render/MacroCells/CellBlock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace inr {
+
+namespace {
+
+constexpr int MaximumRows = 1 << 14;
+constexpr double Tolerance = 2e-4; // of a sample's opacity: errors of a ray's samples add up
+
+double OpacityOf(double perUnit, double length)
+{
+  return perUnit < 1.0 ? -std::expm1(length * std::log1p(-perUnit)) : 1.0;
+}
+
+/// Whether linear interpolation misses the corrected opacity in the middle of an interval.
+bool IsTooLong(double begin, double end, double length)
+{
+  const double chord = 0.5 * (OpacityOf(begin, length) + OpacityOf(end, length));
+  const double curve = OpacityOf(0.5 * (begin + end), length);
+  return std::abs(curve - chord) > Tolerance * curve;
+}
+
+/// Rows between two entries of the colour table.
+int Refinement(const ColorLookup& colors, double shortest, double longest)
+{
+  int pieces = 1;
+  for (int k = 0; k + 1 < colors.count; ++k) {
+    const double begin = colors.entries[k].w;
+    const double end = colors.entries[k + 1].w;
+    // The power bends most where opacity is high for short samples and where it is low for long.
+    for (const double length : {shortest, longest}) {
+      const double rise = end - begin;
+      while (pieces * 2 * (colors.count - 1) <= MaximumRows &&
+             (IsTooLong(begin, begin + rise / pieces, length) ||
+              IsTooLong(end - rise / pieces, end, length))) {
+        pieces *= 2;
+      }
+    }
+  }
+  return pieces;
+}
+
+glm::vec4 Corrected(const glm::vec4& entry, double length)
+{
+  return {entry.x, entry.y, entry.z, static_cast<float>(OpacityOf(entry.w, length))};
+}
+
+} // namespace
+
+int SampleLengths(int levels)
+{
+  return std::max(LengthOf(4, levels - 1), LengthOf(1, LargestCellPower)) + 1;
+}
+
+StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
+    : StepLength(stepLength), Lengths(lengths)
+{
+  const auto lengthOf = [&](int length) {
+    return stepLength * static_cast<double>(StepsOf(length));
+  };
+  const int pieces = Refinement(colors, stepLength, lengthOf(lengths - 1));
+  const int nodes = (colors.count - 1) * pieces + 1;
+  this->Lookup.rows = nodes + 4;
+  // A logarithm is taken before the lookup; what comes here is the coordinate itself.
+  const auto rows = static_cast<float>(pieces);
+  this->Lookup.scale = colors.logarithmic ? rows : rows * colors.scale;
+  this->Lookup.bias = (colors.logarithmic ? 0.0f : rows * colors.bias) + 2.0f;
+  this->Entries.reserve(static_cast<std::size_t>(this->Lookup.rows) * lengths);
+  for (int number = 0; number < lengths; ++number) {
+    const double length = lengthOf(number);
+    this->Entries.insert(this->Entries.end(), 2, Corrected(colors.below, length));
+    for (int k = 0; k < nodes; ++k) {
+      const int cell = std::min(k / pieces, colors.count - 2);
+      const auto weight = static_cast<float>(k - cell * pieces) / static_cast<float>(pieces);
+      const glm::vec4 entry = glm::mix(colors.entries[cell], colors.entries[cell + 1], weight);
+      this->Entries.push_back(Corrected(entry, length));
+    }
+    this->Entries.insert(this->Entries.end(), 2, Corrected(colors.above, length));
+  }
+  this->Lookup.entries = &this->Entries.data()->x;
+}
+
+} // namespace inr

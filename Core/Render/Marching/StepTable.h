@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/HostDevice.h"
+#include "Core/Render/Marching/ColorLookups.h"
+#include "Core/Render/Scene/ColorTable.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// Numbers the lengths of samples: 1, 3, 2, 6, 4, 12, 8 ... steps. This is that of `count`, 1 to 4,
+/// times 2^power steps.
+INR_HOST_DEVICE constexpr int LengthOf(int count, int power)
+{
+  return 2 * power + (count == 3 ? 1 : count == 4 ? 4 : 2 * (count - 1));
+}
+INR_HOST_DEVICE constexpr std::int64_t StepsOf(int length)
+{
+  return std::int64_t{length % 2 == 0 ? 1 : 3} << (length / 2);
+}
+
+/// How many lengths samples may have: up to the coarsest level's, four times as long where it is
+/// faint, and up to what cells ask for.
+int SampleLengths(int levels);
+
+/// A colour table with its opacities corrected for samples of 1, 3, 2, 6, ... steps:
+/// 1 - (1 - opacity)^length. Between the entries of the colour table as many are put as linear
+/// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows.
+class StepTable
+{
+public:
+  /// `stepLength` in opacity unit distances, above 0; for the first `lengths` lengths.
+  StepTable(const ColorLookup& colors, double stepLength, int lengths);
+
+  /// Over normalised values, or over ColorLookup::coordinate for a logarithmic colour table.
+  const StepLookup& lookup() const { return this->Lookup; }
+  /// Behind lookup().entries.
+  std::int64_t count() const { return static_cast<std::int64_t>(this->Entries.size()); }
+  bool fits(double stepLength, int lengths) const
+  {
+    return this->StepLength == stepLength && this->Lengths == lengths;
+  }
+
+private:
+  double StepLength;
+  int Lengths;
+  std::vector<glm::vec4> Entries;
+  StepLookup Lookup{};
+};
+
+} // namespace inr

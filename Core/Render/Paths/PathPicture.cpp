@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/Paths/PathPicture.h"
+
+#include "Core/Error.h"
+#include "Core/Random.h"
+#include "Core/Render/Tiles/WorkLimit.h"
+
+#include <numeric>
+
+namespace inr {
+
+namespace {
+
+/// The mean depth of the collisions where at least half of the paths had one, else 1. `collided` is
+/// the part that had, and `depth` a mean over all paths.
+float DepthOf(float collided, float depth) { return collided >= 0.5f ? depth / collided : 1.0f; }
+
+} // namespace
+
+bool PathPicture::continues(const Frame& frame) const
+{
+  return this->Begun && this->Colors.samples() <= frame.samplesPerPixel &&
+         IsSamePicture(this->Picture, frame);
+}
+
+void PathPicture::start(const Frame& frame)
+{
+  this->Begun = false; // memory may run out before all is of the new picture
+  this->OpaqueDepth = CopyOfDepth(frame);
+  this->Picture = frame;
+  this->Picture.opaqueDepth = this->OpaqueDepth.empty() ? nullptr : this->OpaqueDepth.data();
+  this->Colors.reset(frame.width, frame.height, 4);
+  this->Depths.reset(frame.width, frame.height, 1);
+  this->Sample = Image(frame.width, frame.height, 4);
+  this->SampleDepth = Image(frame.width, frame.height, 1);
+  const Tiling tiling(frame.width, frame.height);
+  this->Pending.resize(static_cast<std::size_t>(tiling.count()));
+  std::iota(this->Pending.begin(), this->Pending.end(), std::int64_t{0});
+  this->Traced = false;
+  this->Finished = {};
+  this->Latest = {};
+  this->Begun = true;
+}
+
+void PathPicture::finishTiles(const TracedTiles& traced)
+{
+  const Tiling tiling(this->Picture.width, this->Picture.height);
+  if (static_cast<std::int64_t>(traced.tiles.size()) == tiling.count()) {
+    this->Latest.marchSeconds = traced.seconds;
+  }
+  FrameStatistics unfinished;
+  std::size_t pending = 0;
+  for (std::size_t k = 0; k < traced.tiles.size(); ++k) {
+    const bool finished = traced.final || traced.tiles[k].missed == 0;
+    (finished ? this->Finished : unfinished).add(traced.tiles[k]);
+    this->Work.add(traced.tiles[k].work);
+    if (!finished) {
+      this->Pending[pending++] = this->Pending[k];
+    }
+  }
+  // What was not reached stays, behind what was not finished.
+  const auto unreached = this->Pending.begin() + static_cast<std::ptrdiff_t>(traced.tiles.size());
+  this->Pending.erase(this->Pending.begin() + static_cast<std::ptrdiff_t>(pending), unreached);
+  unfinished.add(this->Finished);
+  unfinished.marchSeconds = this->Latest.marchSeconds;
+  this->Latest = unfinished;
+}
+
+void PathPicture::traceRound(const PathMedium& medium, const TraceTiles& trace)
+{
+  Frame sample = this->Picture;
+  sample.seed = RandomBits(this->Picture.seed, this->Picture.frameIndex);
+  sample.frameIndex = static_cast<std::uint64_t>(this->Colors.samples());
+  const RayGeometry geometry(sample, medium.dims);
+  const PathTracer tracer(sample, geometry, medium.dims, medium.majorants, medium.colors,
+                          medium.levels);
+  const Tiling tiling(sample.width, sample.height);
+  const bool whole = static_cast<std::int64_t>(this->Pending.size()) == tiling.count();
+  const PassOutput output{this->Sample, &this->SampleDepth};
+  this->finishTiles(trace({tracer, this->Pending, output, whole, !this->Traced}));
+  this->Traced = true;
+  if (this->Pending.empty()) {
+    this->Colors.add(this->Sample);
+    this->Depths.add(this->SampleDepth);
+    this->Finished = {};
+    this->Pending.resize(static_cast<std::size_t>(tiling.count()));
+    std::iota(this->Pending.begin(), this->Pending.end(), std::int64_t{0});
+  }
+}
+
+void PathPicture::show(const PassOutput& output) const
+{
+  Image depth = this->SampleDepth;
+  output.rgba = this->Sample;
+  if (this->Colors.samples() > 0) {
+    this->Colors.mean(output.rgba);
+    this->Depths.mean(depth);
+  }
+  if (output.depth != nullptr) {
+    for (std::size_t k = 0; k < depth.pixels.size(); ++k) {
+      output.depth->pixels[k] = DepthOf(output.rgba.pixels[4 * k + 3], depth.pixels[k]);
+    }
+  }
+}
+
+FrameStatistics PathPicture::advance(const Frame& frame, const PathMedium& medium,
+                                     const TraceTiles& trace, const WorkLimit& limit,
+                                     const PassOutput& output)
+{
+  if (frame.samplesPerPixel < 1) {
+    throw Error(ErrorCode::InvalidArgument, "path tracing takes at least one sample per pixel");
+  }
+  if (!this->continues(frame)) {
+    this->start(frame);
+  }
+  this->Work = {};
+  bool inTime = true;
+  while (inTime && this->Colors.samples() < frame.samplesPerPixel) {
+    const Timer round;
+    this->traceRound(medium, trace);
+    inTime = !limit.endsWithin(round.seconds());
+  }
+  this->show(output);
+  FrameStatistics statistics = this->Latest;
+  statistics.paths = this->Colors.samples();
+  statistics.complete = this->Colors.samples() == frame.samplesPerPixel;
+  statistics.work = this->Work;
+  return statistics;
+}
+
+} // namespace inr

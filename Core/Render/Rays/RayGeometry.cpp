@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/Rays/RayGeometry.h"
+
+#include "Core/Error.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace inr {
+
+namespace {
+
+void Require(bool condition, const char* message)
+{
+  if (!condition) {
+    throw Error(ErrorCode::InvalidArgument, message);
+  }
+}
+
+bool IsFinite(const glm::dmat4& matrix)
+{
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 4; ++r) {
+      if (!std::isfinite(matrix[c][r])) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+glm::dmat4 Inverse(const glm::dmat4& matrix, const char* message)
+{
+  const glm::dmat4 inverse = glm::inverse(matrix);
+  Require(IsFinite(matrix) && IsFinite(inverse), message);
+  return inverse;
+}
+
+/// As levels of detail see it: along an axis of a single voxel, coarser ones have no fewer.
+ProjectedVoxel VoxelOf(const RayView& view, const glm::i64vec3& dims)
+{
+  glm::dmat3 edges(view.indexToWorld);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (dims[axis] == 1) {
+      edges[axis] = glm::dvec3(0.0);
+    } else {
+      shortest = std::min(shortest, glm::length(edges[axis]));
+    }
+  }
+  return {edges, std::isfinite(shortest) ? shortest : 1.0};
+}
+
+} // namespace
+
+RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims)
+{
+  this->View.width = frame.width;
+  this->View.height = frame.height;
+  this->View.clipToWorld = frame.clipToWorld;
+  this->View.worldToIndex = frame.worldToIndex;
+  this->View.opaqueDepth = frame.opaqueDepth;
+  this->View.planes = frame.clippingPlanes.data();
+  this->View.planeCount = static_cast<int>(frame.clippingPlanes.size());
+  this->View.piece = frame.piece.data();
+  this->View.pieceCount = static_cast<int>(frame.piece.size());
+  this->View.worldToClip = Inverse(frame.clipToWorld, "the camera's matrix has no inverse");
+  this->View.indexToWorld =
+      Inverse(frame.worldToIndex, "the volume's matrix has no inverse (a zero scale or spacing?)");
+  this->View.unit.worldToMedium = frame.worldToMedium;
+  this->View.unit.isWorldMedium =
+      ProjectedVoxel::IsNearOne(glm::transpose(frame.worldToMedium) * frame.worldToMedium);
+  this->View.unit.length = std::numeric_limits<double>::infinity();
+  const glm::dmat3 indexToMedium = frame.worldToMedium * glm::dmat3(this->View.indexToWorld);
+  for (int axis = 0; axis < 3; ++axis) {
+    // A single layer of voxels is a slab one spacing thick; else the domain ends at the outer
+    // points.
+    this->View.low[axis] = dims[axis] == 1 ? -0.5 : 0.0;
+    this->View.high[axis] = dims[axis] == 1 ? 0.5 : static_cast<double>(dims[axis] - 1);
+    this->View.unit.length = std::min(this->View.unit.length, glm::length(indexToMedium[axis]));
+  }
+  Require(this->View.unit.length > 0 && std::isfinite(glm::determinant(indexToMedium)),
+          "the volume is flat, or not finite, where the lengths of the medium are measured");
+  this->View.voxel = VoxelOf(this->View, dims);
+  if (frame.cropping) {
+    const CroppedBox box = BoxOf(*frame.cropping);
+    this->View.low = glm::max(this->View.low, box.low);
+    this->View.high = glm::min(this->View.high, box.high);
+  }
+  if (frame.layers) {
+    for (const TranslucentLayers::Layer& layer : frame.layers->layers) {
+      this->Layers.push_back({layer.depth.data(), layer.colors.data()});
+    }
+    this->View.layers = {this->Layers.data(), frame.layers->count()};
+  }
+}
+
+double RayGeometry::longest() const
+{
+  const glm::dvec3 size = this->View.high - this->View.low;
+  double longest = 0;
+  for (int corner = 0; corner < 4; ++corner) { // and the four opposite ones
+    const glm::dvec3 diagonal(size.x, (corner & 1) != 0 ? -size.y : size.y,
+                              (corner & 2) != 0 ? -size.z : size.z);
+    longest = std::max(longest, glm::length(this->View.unit.worldToMedium *
+                                            (glm::dmat3(this->View.indexToWorld) * diagonal)));
+  }
+  return longest / this->View.unit.length;
+}
+
+Ray RayGeometry::ray(int x, int y) const { return this->View.ray(x, y); }
+
+Ray RayGeometry::ray(int x, int y, int part) const { return this->View.ray(x, y, part); }
+
+Ray RayGeometry::rayThroughPiece(int x, int y) const { return this->View.rayThroughPiece(x, y); }
+
+} // namespace inr

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Render/Scene/ColorTable.h"
+
+#include "Core/Error.h"
+
+#include <algorithm>
+
+namespace inr {
+
+namespace {
+
+bool IsColour(const glm::vec4& entry)
+{
+  return std::isfinite(entry.x) && std::isfinite(entry.y) && std::isfinite(entry.z) &&
+         entry.w >= 0.0f && entry.w <= 1.0f;
+}
+
+void Check(const TransferFunction& function)
+{
+  const auto require = [](bool condition, const char* message) {
+    if (!condition) {
+      throw Error(ErrorCode::InvalidArgument, message);
+    }
+  };
+  require(function.table.size() >= 2 && function.table.size() <= (1u << 24),
+          "a transfer function needs 2 to 2^24 table entries");
+  require(std::isfinite(function.low) && std::isfinite(function.high) &&
+              function.low < function.high,
+          "a transfer function needs a range with low < high");
+  require(!function.logarithmic || function.low > 0,
+          "a logarithmic transfer function needs a positive range");
+  require(IsColour(function.below) && IsColour(function.above) &&
+              std::all_of(function.table.begin(), function.table.end(), IsColour),
+          "a transfer function's colours must be finite and its opacities in [0, 1]");
+}
+
+float ExtinctionOf(const glm::vec4& entry) { return -std::log1p(-entry.w); }
+
+/// Wider than a double where the platform has that: differences and ratios of denormal or of the
+/// largest numbers overflow.
+using Wide = long double;
+
+/// No infinity may come out, nor a NaN of two: what is further than that is as good as there.
+float Finite(Wide value)
+{
+  constexpr Wide largest = 1e30L; // there is room for what tables multiply by
+  return static_cast<float>(std::clamp(value, -largest, largest));
+}
+
+/// By what values are divided before their logarithm is taken: 1 but for what float cannot hold.
+Wide LogarithmicUnit(const VolumeInfo& volume)
+{
+  const double largest = std::max(std::abs(volume.low), std::abs(volume.high));
+  const bool isOrdinary = largest > 1e-30 && largest < 1e30;
+  return isOrdinary || largest <= 0 ? 1.0L : Wide{largest};
+}
+
+/// How normalised values of a volume become table coordinates; see ColorLookup::coordinate.
+void MapValues(const TransferFunction& function, const VolumeInfo& volume, ColorLookup& lookup)
+{
+  const Wide last = static_cast<Wide>(function.table.size() - 1);
+  const Wide width = Wide{volume.high} - volume.low;
+  if (!function.logarithmic) {
+    const Wide range = Wide{function.high} - function.low;
+    lookup.scale = Finite(last * (width / range));
+    lookup.bias = Finite(last * ((Wide{volume.low} - function.low) / range));
+    return;
+  }
+  const Wide unit = LogarithmicUnit(volume);
+  const Wide scale = last / std::log(Wide{function.high} / function.low);
+  lookup.scale = Finite(scale);
+  lookup.bias = Finite(-scale * std::log(function.low / unit));
+  lookup.valueLow = Finite(volume.low / unit);
+  lookup.valueScale = Finite(width / unit);
+}
+
+} // namespace
+
+ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volume)
+    : Entries(function.table), Below(ExtinctionOf(function.below)),
+      Above(ExtinctionOf(function.above))
+{
+  Check(function);
+  ColorLookup& lookup = this->Lookup;
+  lookup.entries = this->Entries.data();
+  lookup.count = static_cast<int>(this->Entries.size());
+  lookup.logarithmic = function.logarithmic;
+  lookup.below = function.below;
+  lookup.above = function.above;
+  MapValues(function, volume, lookup);
+  this->Maxima.emplace_back();
+  for (const glm::vec4& entry : this->Entries) {
+    this->Maxima[0].push_back(ExtinctionOf(entry));
+  }
+  for (std::size_t span = 2; span <= this->Entries.size(); span *= 2) {
+    const std::vector<float>& half = this->Maxima.back();
+    std::vector<float> row(this->Entries.size() - span + 1);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      row[k] = std::max(half[k], half[k + span / 2]);
+    }
+    this->Maxima.push_back(std::move(row));
+  }
+}
+
+float ColorTable::maximumOverNodes(int first, int last) const
+{
+  const auto count = static_cast<unsigned>(last - first + 1);
+  const int level = 31 - __builtin_clz(count);
+  const std::vector<float>& row = this->Maxima[static_cast<std::size_t>(level)];
+  const int lastSpan = last - (1 << level) + 1;
+  return std::max(row[static_cast<std::size_t>(first)], row[static_cast<std::size_t>(lastSpan)]);
+}
+
+bool ColorTable::hidesAny() const
+{
+  const std::vector<float>& extinctions = this->Maxima.front();
+  return this->Below <= 0.0f || this->Above <= 0.0f ||
+         *std::min_element(extinctions.begin(), extinctions.end()) <= 0.0f;
+}
+
+float ColorTable::maximumExtinction(const ValueRange& range) const
+{
+  if (range.empty()) {
+    return 0.0f;
+  }
+  // Between nodes opacity is linear: its extremes are at the nodes inside and at the two ends.
+  // Taking the nodes just outside instead of the ends also covers the rounding of the coordinate.
+  const float begin = this->Lookup.coordinate(range.low);
+  const float end = this->Lookup.coordinate(range.high);
+  const auto top = static_cast<float>(this->Lookup.count - 1);
+  float maximum = 0.0f;
+  if (begin <= 0.0f) {
+    maximum = std::max(maximum, this->Below);
+  }
+  if (end >= top) {
+    maximum = std::max(maximum, this->Above);
+  }
+  if (end < -1.0f || begin > top + 1.0f) {
+    return maximum;
+  }
+  const int first = static_cast<int>(std::clamp(begin, 0.0f, top));
+  const float inside = std::clamp(end, 0.0f, top);
+  const int before = static_cast<int>(inside);
+  const int last = static_cast<float>(before) < inside ? before + 1 : before;
+  return std::max(maximum, this->maximumOverNodes(first, last));
+}
+
+void ColorTable::maximumExtinctions(const ValueRange* ranges, std::int64_t count,
+                                    float* extinctions) const
+{
+  for (std::int64_t k = 0; k < count; ++k) {
+    extinctions[k] = this->maximumExtinction(ranges[k]);
+  }
+}
+
+} // namespace inr

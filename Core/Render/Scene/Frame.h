@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Render/Scene/Blending.h"
+#include "Core/Render/Scene/Cropping.h"
+#include "Core/Render/Scene/Lights.h"
+#include "Core/Render/Scene/Material.h"
+#include "Core/Render/Scene/PathOptions.h"
+#include "Core/Render/Scene/TranslucentLayers.h"
+#include "Core/Render/Scene/WorkDone.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace inr {
+
+enum class RenderMode : std::uint8_t {
+  RayMarching, ///< the medium emits and absorbs
+  PathTracing  ///< it scatters light
+};
+
+/// One picture to make: a plain value that holds everything a host's camera and scene say.
+/// Matrices act on column vectors. Pixel (0, 0) is the bottom left one.
+struct Frame
+{
+  int width = 0;
+  int height = 0;
+
+  /// Normalised device coordinates (x, y, z in [-1, 1], z = -1 near) to world space, homogeneous.
+  glm::dmat4 clipToWorld{1.0};
+  /// World space to continuous point indices of the volume's native grid: point i of the grid is at
+  /// i. Composes the actor's transform, direction, origin and spacing.
+  glm::dmat4 worldToIndex{1.0};
+
+  /// Directions in world space to where lengths of the medium are measured: unitDistance, and what
+  /// samples are apart. A host that scales a volume does not make it thinner or denser by that.
+  glm::dmat3 worldToMedium{1.0};
+
+  /// Window-space depth in [0, 1] of what is already drawn, width * height values, 1 = nothing.
+  /// Null when nothing opaque was drawn. Must outlive the call.
+  const float* opaqueDepth = nullptr;
+  /// Translucent surfaces that the picture is to be laid over, see there; null when there are none.
+  /// Light that paths lead inside the volume does not meet them. Not for projections.
+  std::shared_ptr<const TranslucentLayers> layers;
+  /// World-space half spaces; a point p is kept where dot(plane, (p, 1)) >= 0 for all of them.
+  std::vector<glm::dvec4> clippingPlanes;
+  /// What of the volume is shown; paths know only boxes, see CroppedBox::full.
+  std::optional<Cropping> cropping;
+  /// Such half spaces that bound the piece of the medium that this picture shows, others the rest.
+  /// Pictures of neighbouring pieces, blended in order of depth, make the one of the whole: where a
+  /// ray's samples are does not depend on the piece, and light comes from everywhere.
+  /// Not for projections.
+  std::vector<glm::dvec4> piece;
+
+  /// How the field's gradients are lit by `lights` where ray marching composites; none: colours are
+  /// as the transfer function has them.
+  std::optional<Material> shading;
+  /// The scene's, for what is lit: none of them shines on a medium that only emits and absorbs.
+  std::vector<Light> lights;
+
+  RenderMode mode = RenderMode::RayMarching;
+  Blending blending; ///< for ray marching; paths know compositing only
+  PathOptions paths; ///< for path tracing
+  /// Of path tracing: the picture is the mean of so many paths through each pixel, above 0; with a
+  /// time limit, of those that were traced in time.
+  int samplesPerPixel = 64;
+
+  /// Length of the medium to which the transfer function's opacity refers; above 0.
+  double unitDistance = 1;
+  /// Distance between samples in voxels, along the axis in which the voxels are densest; 1/1000 to
+  /// 1,000,000.
+  double sampleDistance = 0.5;
+
+  /// Samples where little can be seen stand for up to four times the sample distance.
+  bool adaptiveSampling = true;
+
+  /// Where ray marching composites, what a sample stands for has the colours of all values between
+  /// that of the sample before and its own, as if the field were linear there (see
+  /// PreIntegratedLookup): no peak in the transfer function is too thin, and rays need no random
+  /// offsets. Macro-cells narrower than the distance may be skipped if both ends are invisible.
+  /// Light falls as on the gradient at the sample. Off: a sample's own colour. Ignored where there
+  /// is an error tolerance and a cache.
+  bool preIntegration = false;
+
+  /// Multiplies the pixel's footprint that chooses the cache level: 1 makes a voxel at most a
+  /// seventh larger than a pixel, as its ray sees it (see ProjectedVoxel), 0 reads the full
+  /// resolution everywhere; not negative.
+  double levelOfDetailScale = 1;
+
+  /// Takes the place of levelOfDetailScale, adaptiveSampling and preIntegration where it is given:
+  /// by how many 255ths a channel of the picture may differ from the one with all samples, each
+  /// from the full resolution, for 99.9 % of the pixels that show something. 0: not at all; finite,
+  /// not negative. Where nothing is lit, cropped (but to a box) or projected, and samples are a
+  /// voxel apart or less, they come from coarser levels and are further apart wherever that stays
+  /// within it; see LevelChooser. Everything else, paths, and volumes whose values may leave the
+  /// ranges of their macro-cells (MacroCells::rangesHold) are drawn as with 0. What the precision
+  /// of the cache rounds comes on top (see PrecisionWithin), and up to 0.26 in opaque media, as
+  /// rays end at 0.999 of opacity; and between voxels of the full resolution the field is taken to
+  /// be linear. Of pieces, all together keep to it. Ignored without a cache.
+  std::optional<double> errorTolerance;
+
+  /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones
+  /// are not there yet; what is missing is loaded in the time that is left. 0: as long as it takes
+  /// to be complete. Ignored without a cache.
+  double timeLimit = 0;
+
+  /// Offsets of the samples along their rays, but for preIntegration, and paths are random in
+  /// (seed, frameIndex, pixel).
+  std::uint64_t seed = 0;
+  std::uint64_t frameIndex = 0;
+};
+
+/// Whether two frames make the same picture: all but the time and the samples per pixel that they
+/// may take, and opaque depth and layers by their values.
+bool IsSamePicture(const Frame& a, const Frame& b);
+
+/// The values of a frame's opaque depth; empty when it has none.
+std::vector<float> CopyOfDepth(const Frame& frame);
+
+/// Levels of resolution from the finest to the coarsest that was met; 0 is the full resolution.
+struct LevelSpan
+{
+  int finest = 64;
+  int coarsest = -1;
+
+  bool empty() const { return this->coarsest < this->finest; }
+  void add(const LevelSpan& other)
+  {
+    this->finest = std::min(this->finest, other.finest);
+    this->coarsest = std::max(this->coarsest, other.coarsest);
+  }
+};
+
+/// What making a picture took; of path tracing, one path through each pixel, the latest, but for
+/// the wall time and the work.
+struct FrameStatistics
+{
+  std::int64_t rays = 0;    ///< that met the volume; the CPU leaves out some that show nothing
+  std::int64_t samples = 0; ///< values of the field that were looked up or inferred
+  std::int64_t missed = 0;  ///< of these, read from a coarser level than wanted
+  std::int64_t hidden = 0;  ///< samples besides, left out as the voxels around them show nothing
+  std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
+  /// All samples that may show something were taken, and each came from the level it asked for or,
+  /// if the options are to make do with that, the best that a full cache has.
+  bool complete = true;
+  std::int64_t paths = 0; ///< of path tracing: through each pixel, in the picture shown
+  LevelSpan levels;       ///< of the cache, that samples came from
+  /// Whether an accelerator has drawn it, or part of it; else the CPU did, of what that inferred.
+  bool accelerated = false;
+  double seconds = 0; ///< wall time
+  /// Wall time of the rays or paths, without what was loaded into the cache in between. Where only
+  /// some tiles of a picture were marched again, the time that all of them had taken at first.
+  double marchSeconds = 0;
+  WorkDone work; ///< of the call
+
+  /// Which part of the samples is not missed, those that are left out included; 1 of none.
+  double hitRate() const
+  {
+    const std::int64_t all = this->samples + this->hidden;
+    return all > 0 ? 1.0 - static_cast<double>(this->missed) / static_cast<double>(all) : 1.0;
+  }
+
+  /// Adds what was counted in another part of the picture; times are not counts.
+  void add(const FrameStatistics& part)
+  {
+    this->rays += part.rays;
+    this->samples += part.samples;
+    this->missed += part.missed;
+    this->hidden += part.hidden;
+    this->clamped += part.clamped;
+    this->levels.add(part.levels);
+    this->accelerated = this->accelerated || part.accelerated;
+    this->work.add(part.work);
+  }
+};
+
+} // namespace inr

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Render/Scene/Frame.h"
+
+namespace inr {
+
+/// Throws Error(InvalidArgument) for values of a frame that are out of their documented ranges or
+/// do not go together, Error(TooLarge) for more pixels than one picture may have. What its matrices
+/// must be, RayGeometry says.
+void RequireValid(const Frame& frame);
+
+} // namespace inr
