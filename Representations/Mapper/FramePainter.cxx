@@ -7,10 +7,12 @@
 #include "Core/Render/Tolerance/StoragePrecision.h"
 #include "LayerExchange.h"
 #include "MapperInput.h"
+#include "PickedCells.h"
 #include "SceneCheck.h"
 #include "SceneLights.h"
 #include "vtkINRDataArray.h"
 
+#include <vtkDataObject.h>
 #include <vtkHardwareSelector.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -107,17 +109,36 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   return problem;
 }
 
-void FramePainter::mark(vtkRenderer* renderer)
+void FramePainter::mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume)
 {
-  const Viewport viewport = GetViewport(renderer);
   vtkHardwareSelector* selector = renderer->GetSelector();
-  if (this->Last.rgba.pixels.empty() || viewport.width <= 0 || viewport.height <= 0 ||
-      selector->GetCurrentPass() != vtkHardwareSelector::ACTOR_PASS) {
+  const Viewport viewport = GetViewport(renderer);
+  const Image& rgba = this->Last.rgba;
+  const MapperInput input = FindInput(mapper);
+  // Nobody sees a point of the volume.
+  if (rgba.pixels.empty() || viewport.width <= 0 || viewport.height <= 0 || !input.array ||
+      selector->GetFieldAssociation() == vtkDataObject::FIELD_ASSOCIATION_POINTS) {
     return;
   }
-  float color[3];
-  selector->GetPropColorValue(color);
-  this->Blender.mark(renderer, viewport, this->Last.rgba, color);
+  const PickedCells cells(rgba, this->Last.depth, ClipToWorld(renderer), input.grid,
+                          WorldToIndex(input.grid, volume->GetMatrix()));
+  switch (selector->GetCurrentPass()) {
+  case vtkHardwareSelector::ACTOR_PASS: {
+    glm::vec3 color;
+    selector->GetPropColorValue(&color.x);
+    selector->UpdateMaximumCellId(cells.last());
+    this->Blender.mark(renderer, viewport, PaintedWith(color, rgba));
+    break;
+  }
+  case vtkHardwareSelector::CELL_ID_LOW24:
+    this->Blender.mark(renderer, viewport, cells.numbers(0));
+    break;
+  case vtkHardwareSelector::CELL_ID_HIGH24:
+    this->Blender.mark(renderer, viewport, cells.numbers(24));
+    break;
+  default:
+    break;
+  }
 }
 
 std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,

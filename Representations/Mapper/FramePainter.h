@@ -59,9 +59,9 @@ public:
   /// each process keeps its own part and what that took.
   std::string paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                     const PaintSettings& settings);
-  /// Marks what the last picture shows of the volume in a selection buffer. A group's processes
-  /// each mark their part.
-  void mark(vtkRenderer* renderer);
+  /// Marks what the last picture shows of the volume, and which cells, in a selection buffer. A
+  /// group's processes each mark their part.
+  void mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
   const PaintedFrame& last() const { return this->Last; }
   /// See Renderer.
   std::int64_t cacheBytes() const { return this->Caster ? this->Caster->cacheBytes() : 0; }

@@ -31,14 +31,14 @@ constexpr const char* IdentityShader = R"(//VTK::System::Dec
 //VTK::Output::Dec
 in vec2 texCoord;
 uniform sampler2D image;
-uniform vec3 identity;
 void main()
 {
-  if (texture2D(image, texCoord).a <= 0.0)
+  vec4 identity = texture2D(image, texCoord);
+  if (identity.a <= 0.0)
   {
     discard;
   }
-  gl_FragData[0] = vec4(identity, 1.0);
+  gl_FragData[0] = identity;
 }
 )";
 
@@ -81,8 +81,7 @@ struct ImageBlender::Resources
 ImageBlender::ImageBlender() : Self(std::make_unique<Resources>()) {}
 ImageBlender::~ImageBlender() = default;
 
-bool ImageBlender::upload(vtkOpenGLRenderWindow* window, const Viewport& viewport,
-                          const Image& rgba)
+bool ImageBlender::upload(vtkOpenGLRenderWindow* window, const Image& rgba, bool smooth)
 {
   Resources& self = *this->Self;
   if (self.Window && self.Window != window) {
@@ -91,9 +90,9 @@ bool ImageBlender::upload(vtkOpenGLRenderWindow* window, const Viewport& viewpor
   window->MakeCurrent();
   self.Window = window;
   self.Texture->SetContext(window);
-  const bool exact = rgba.width == viewport.width && rgba.height == viewport.height;
-  self.Texture->SetLinearMagnification(!exact);
-  self.Texture->SetMinificationFilter(exact ? vtkTextureObject::Nearest : vtkTextureObject::Linear);
+  self.Texture->SetLinearMagnification(smooth);
+  self.Texture->SetMinificationFilter(smooth ? vtkTextureObject::Linear
+                                             : vtkTextureObject::Nearest);
   self.Texture->SetWrapS(vtkTextureObject::ClampToEdge);
   self.Texture->SetWrapT(vtkTextureObject::ClampToEdge);
   // VTK's signature wants a mutable pointer and does not write through it.
@@ -102,31 +101,29 @@ bool ImageBlender::upload(vtkOpenGLRenderWindow* window, const Viewport& viewpor
                                        const_cast<float*>(rgba.pixels.data()));
 }
 
-/// With `color`, identities.
 bool ImageBlender::draw(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba,
-                        const float* color)
+                        Mode mode)
 {
+  const bool blends = mode == Mode::Blend;
+  const bool exact = rgba.width == viewport.width && rgba.height == viewport.height;
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
-  if (!window || !this->upload(window, viewport, rgba)) {
+  if (!window || !this->upload(window, rgba, blends && !exact)) {
     return false;
   }
-  std::unique_ptr<vtkOpenGLQuadHelper>& quad = color ? this->Self->Identities : this->Self->Colors;
+  std::unique_ptr<vtkOpenGLQuadHelper>& quad = blends ? this->Self->Colors : this->Self->Identities;
   if (quad) {
     window->GetShaderCache()->ReadyShaderProgram(quad->Program);
   } else {
     quad = std::make_unique<vtkOpenGLQuadHelper>(window, nullptr,
-                                                 color ? IdentityShader : ColorShader, nullptr);
+                                                 blends ? ColorShader : IdentityShader, nullptr);
   }
   if (!quad->Program) {
     return false;
   }
-  const DrawingState scope(window->GetState(), viewport, !color);
+  const DrawingState scope(window->GetState(), viewport, blends);
   vtkTextureObject* texture = this->Self->Texture;
   texture->Activate();
   quad->Program->SetUniformi("image", texture->GetTextureUnit());
-  if (color) {
-    quad->Program->SetUniform3f("identity", color);
-  }
   quad->Render();
   texture->Deactivate();
   return true;
@@ -134,13 +131,12 @@ bool ImageBlender::draw(vtkRenderer* renderer, const Viewport& viewport, const I
 
 bool ImageBlender::blend(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba)
 {
-  return this->draw(renderer, viewport, rgba, nullptr);
+  return this->draw(renderer, viewport, rgba, Mode::Blend);
 }
 
-bool ImageBlender::mark(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba,
-                        const float color[3])
+bool ImageBlender::mark(vtkRenderer* renderer, const Viewport& viewport, const Image& identities)
 {
-  return this->draw(renderer, viewport, rgba, color);
+  return this->draw(renderer, viewport, identities, Mode::Mark);
 }
 
 void ImageBlender::release(vtkWindow* window)

@@ -26,16 +26,17 @@ public:
   /// the texture or shader cannot be made.
   bool blend(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba);
 
-  /// Puts `color` wherever `rgba` is not transparent, as a selection buffer wants it.
-  bool mark(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba,
-            const float color[3]);
+  /// Puts the colours of `identities` wherever it is not transparent; one smaller than the viewport
+  /// is enlarged pixel by pixel.
+  bool mark(vtkRenderer* renderer, const Viewport& viewport, const Image& identities);
 
   /// Frees texture and shaders; required before `window` goes away.
   void release(vtkWindow* window);
 
 private:
-  bool draw(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba, const float* color);
-  bool upload(vtkOpenGLRenderWindow* window, const Viewport& viewport, const Image& rgba);
+  enum class Mode { Blend, Mark };
+  bool draw(vtkRenderer* renderer, const Viewport& viewport, const Image& rgba, Mode mode);
+  bool upload(vtkOpenGLRenderWindow* window, const Image& rgba, bool smooth);
 
   struct Resources;
   std::unique_ptr<Resources> Self;

@@ -352,7 +352,7 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
   if (vtkHardwareSelector* selector = renderer->GetSelector()) {
     selector->BeginRenderProp();
-    this->Self->Painter.mark(renderer);
+    this->Self->Painter.mark(this, renderer, volume);
     selector->EndRenderProp();
     return;
   }
