@@ -99,8 +99,8 @@ std::vector<vtkVolume*> VolumesBehind(vtkRenderer* renderer, vtkVolume* volume)
     vtkVolume* other = vtkVolume::SafeDownCast(prop);
     // The volume itself may be part of a prop in the renderer, which then has the same mapper.
     const bool isOther = other && other != volume && other->GetMapper() != volume->GetMapper();
-    if (isOther && other->GetVisibility() && vtkINRVolumeMapper::SafeDownCast(other->GetMapper()) &&
-        other->GetBounds() &&
+    auto* mapper = isOther ? vtkINRVolumeMapper::SafeDownCast(other->GetMapper()) : nullptr;
+    if (mapper && mapper->GetDataObjectInput() && other->GetVisibility() && other->GetBounds() &&
         IsBehind(EyeOf(renderer->GetActiveCamera()), BoxOf(other), BoxOf(volume))) {
       behind.push_back(other);
     }

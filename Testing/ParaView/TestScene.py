@@ -123,6 +123,40 @@ for scale in [0.01, 0.01, 0.01], [100, 100, 100], [1, 1, 4]:
 for item in display, stock:
     item.Scale = [1, 1, 1]
 
+
+# What is selected on its surface are the cells that are seen there; nobody sees points of a volume.
+def selected_cells(select):
+    simple.ClearSelection(reader)
+    x, y = (size // 2 for size in view.ViewSize)
+    select(Rectangle=[x, y, x, y], View=view)
+    selection = reader.SMProxy.GetSelectionInput(0)
+    if selection is None:
+        return []
+    source = selection.GetProperty("Input").GetProxy(0).GetProperty("IDs")
+    return [source.GetElement(k) for k in range(1, source.GetNumberOfElements(), 2)]
+
+
+simple.Hide(voxels, view)
+simple.Show(reader, view)
+opacity = simple.GetOpacityTransferFunction(display.ColorArrayName[1])
+faint = list(opacity.Points)
+opacity.Points = [value if k % 4 != 1 else 1 for k, value in enumerate(faint)]
+view.CameraParallelProjection = 1
+for direction, name, first in ([1, 0, 0], "front", 0), ([-1, 0, 0], "back", 89):
+    view.CameraFocalPoint = [45.5, 45.5, 45.5]
+    view.CameraPosition = [45.5 - 200 * direction[0], 45.5, 45.5]
+    view.CameraViewUp = [0, 0, 1]
+    view.CameraParallelScale = 30
+    simple.Render(view)
+    cells = selected_cells(simple.SelectSurfaceCells)
+    places = [(cell % 90, cell // 90 % 90, cell // 8100) for cell in cells]
+    check(len(places) == 1 and places[0][0] == first, name, "selects", places)
+    check(all(44 <= place <= 46 for place in places[0][1:]), name, "selects", places)
+    check(selected_cells(simple.SelectSurfacePoints) == [], "points are selected")
+opacity.Points = faint
+view.CameraParallelProjection = 0
+simple.ClearSelection(reader)
+
 # Groups: a message of what to do, and voxels.
 simple.Hide(voxels, view)
 group = simple.GroupDatasets(Input=[reader])
