@@ -81,6 +81,9 @@ double DomainDefault(vtkSMDoubleVectorProperty* property)
   return value;
 }
 
+/// Neither the XML's default nor that of bounds of nothing, which are below 0.
+bool IsKnown(vtkSMDoubleVectorProperty* unitDistance) { return !(unitDistance->GetElement(0) < 0); }
+
 /// ParaView's default is about the diagonal of a cell, which makes a volume of 4096^3 look solid
 /// and would follow MaximumGridPoints here. The panel's does not depend on the grid. What somebody
 /// has set, under either name, stays.
@@ -88,11 +91,15 @@ void SetUnitDistance(vtkSMProxy* representation)
 {
   auto* stock = GetDoubles(representation, "ScalarOpacityUnitDistance");
   auto* panel = GetDoubles(representation, "INRUnitDistance");
-  if (stock->GetElement(0) == DomainDefault(stock) &&
-      panel->GetElement(0) == stock->GetElement(0)) {
-    panel->SetElement(0, DomainDefault(panel));
+  const bool isNew =
+      stock->GetElement(0) == DomainDefault(stock) && panel->GetElement(0) == stock->GetElement(0);
+  const double wanted = DomainDefault(panel); // below 0 where there are no bounds yet
+  if ((isNew || !IsKnown(panel)) && wanted > 0) {
+    panel->SetElement(0, wanted);
   }
-  stock->Copy(panel);
+  if (IsKnown(panel)) {
+    stock->Copy(panel);
+  }
   representation->UpdateVTKObjects();
 }
 
@@ -158,6 +165,15 @@ void OnPropertyModified(vtkObject* caller, unsigned long, void*, void* data)
   }
 }
 
+/// Looks again when the first look had no data to see.
+void OnUpdated(vtkObject* caller, unsigned long, void*, void*)
+{
+  auto* representation = static_cast<vtkSMProxy*>(caller);
+  if (IsInr(representation) && !IsKnown(GetDoubles(representation, "INRUnitDistance"))) {
+    GiveFirstLook(representation);
+  }
+}
+
 /// Hides what ParaView hides for "Volume", too: opacity, sizes and shine of surfaces, which do
 /// nothing to a volume.
 void HideSurfaceSettings(vtkSMProxy* representation)
@@ -189,6 +205,9 @@ void OnRegister(vtkObject*, unsigned long, void*, void* callData)
   vtkNew<vtkCallbackCommand> watch;
   watch->SetCallback(OnPropertyModified);
   info->Proxy->AddObserver(vtkCommand::PropertyModifiedEvent, watch);
+  vtkNew<vtkCallbackCommand> watchData;
+  watchData->SetCallback(OnUpdated);
+  info->Proxy->AddObserver(vtkCommand::UpdateDataEvent, watchData);
   GiveFirstLook(info->Proxy);
 }
 

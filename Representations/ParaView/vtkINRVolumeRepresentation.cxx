@@ -289,14 +289,19 @@ void vtkINRVolumeRepresentation::UpdateMapper()
   std::copy_n(own, 6, this->DataBounds);
 }
 
+bool vtkINRVolumeRepresentation::IsGroup()
+{
+  return this->GetNumberOfInputConnections(0) > 0 &&
+         vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0)) != nullptr;
+}
+
 void vtkINRVolumeRepresentation::ReportColouring()
 {
-  const bool isGroup = this->GetNumberOfInputConnections(0) > 0 &&
-                       vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0)) != nullptr;
   const std::string problem =
-      isGroup ? "A group of data sets cannot be drawn as an INR volume; show the reader itself, or "
-                "the group as \"Volume\""
-              : inr::WhyBlank(this->Actor, this->VolumeMapper);
+      this->IsGroup()
+          ? "A group of data sets cannot be drawn as an INR volume; show the reader itself, or "
+            "the group as \"Volume\""
+          : inr::WhyBlank(this->Actor, this->VolumeMapper);
   if (!problem.empty() && problem != this->LastProblem) {
     vtkErrorMacro(<< problem);
   }
@@ -380,6 +385,13 @@ void vtkINRVolumeRepresentation::SetAnisotropy(double meanCosine)
 void vtkINRVolumeRepresentation::SetMaximumBounces(int bounces)
 {
   this->GetMapper()->SetMaximumBounces(bounces);
+}
+
+void vtkINRVolumeRepresentation::SetScalarOpacityUnitDistance(double distance)
+{
+  if (!(distance < 0)) {
+    this->Superclass::SetScalarOpacityUnitDistance(distance);
+  }
 }
 
 void vtkINRVolumeRepresentation::SetAmbientLight(double red, double green, double blue)

@@ -55,6 +55,8 @@ public:
   void SetAnisotropy(double meanCosine);
   void SetMaximumBounces(int bounces);
   void SetAmbientLight(double red, double green, double blue);
+  /// Values below 0 stand for none that is known yet: what was there before stays.
+  void SetScalarOpacityUnitDistance(double distance);
   void SetSampleDistance(double voxels);
   void SetAdaptiveSampling(bool on);
   void SetPreIntegration(bool on);
@@ -111,6 +113,7 @@ private:
   void TakeDelivery(vtkInformation* in);
   void ReportShared(bool drawsAll);
   void UpdateMapper();
+  bool IsGroup(); ///< of data sets
   void ReportColouring();
   void ReportOpacityArray();
   void OnRefine(vtkObject* mapper, unsigned long event, void* mayRefine);

@@ -87,7 +87,7 @@ check_restored("transforms")
 
 # The display's own numbers: what is out of range is moved into it, what is no number is refused.
 for name, clamped, refused in (
-    ("ScalarOpacityUnitDistance", (1e-300, 1e300), (0, -1, NAN)),
+    ("ScalarOpacityUnitDistance", (1e-300, 1e300, -1), (0, NAN)),  # below 0: not known
     ("SampleDistance", (0, -1, 1e9), (NAN,)),
     ("LevelOfDetailScale", (-1, INF), (NAN,)),
     ("ErrorTolerance", (-7, 0, 8, INF), (NAN,)),

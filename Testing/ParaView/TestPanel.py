@@ -3,7 +3,7 @@
 panel shows under a name of its own is the stock property, and colouring reads no voxels."""
 import math
 
-from paraview import simple, smstate
+from paraview import servermanager, simple, smstate
 from pvtest import ARRAY, MODEL, Messages, check, load_plugin, look_at, output_file, picture
 from pvtest import show_view
 
@@ -79,6 +79,24 @@ view = simple.GetActiveView()
 display = simple.GetDisplayProperties(reader, view)
 same(display, 3)
 check((display.Shade, display.INRShade) == (1, 1), "shading is lost in a Python state")
+
+# Nobody knows the bounds before there is a file, or in proxies made by hand; volumes are drawn.
+reader = simple.INRReader(FileName=output_file("not-there.inr"))
+with Messages():
+    display = simple.Show(reader, view)
+    simple.Render(view)
+reader.FileName = MODEL
+display.SetRepresentationType("INR Volume")
+simple.Render(view)
+same(display, 4.5)
+simple.Delete(reader)
+reader = simple.INRReader(FileName=MODEL)
+with Messages() as messages:
+    display = servermanager.CreateRepresentation(reader, view)
+    display.Representation = "INR Volume"
+    simple.Render(view)
+check("unit distance" not in messages.text, "made by hand:", messages.text)
+simple.Delete(reader)
 
 # A length set before the type of representation stays; ordinary data keep ParaView's default.
 for name in "ScalarOpacityUnitDistance", "INRUnitDistance":
