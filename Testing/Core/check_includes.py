@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Fails when a file of Core/ or CUDA/ includes a header of VTK, ParaView or Qt, or one of the
-renderer's folders a header of a later one.
+renderer's folders a header of a later one or of what is not below it.
 
     check_includes.py SOURCE_DIR
 """
@@ -15,21 +15,25 @@ files = [path for room in ("Core", "CUDA") for path in Path(sys.argv[1], room).r
 offenders = [f"{path}:{number}: {line.strip()}" for path in files
              for number, line in enumerate(path.read_text().splitlines(), 1) if FOREIGN.match(line)]
 
-# See Core/Render/README.md; what lies in none of them may include all.
-LAYERS = ["Scene", "Rays", "Tiles", "MacroCells", "Marching", "Bricks", "Tolerance", "Paths"]
-INCLUDE = re.compile(r'^\s*#\s*include\s*"Core/Render/(?:(\w+)/)?\w+\.h"')
+# See Core/Render/README.md; what lies in none of these folders may include all.
+LAYERS = [f"Core/Render/{name}" for name in
+          ("Scene", "Rays", "Tiles", "MacroCells", "Marching", "Bricks", "Tolerance", "Paths")]
+BELOW = ["Core", "Core/Model", "Core/Inference", "Core/Cache", "Core/Image"]
+INCLUDE = re.compile(r'^\s*#\s*include\s*"((?:Core|CUDA)(?:/\w+)*)/\w+\.\w+"')
 
 
-def is_later(folder, line):
-    found = INCLUDE.match(line)
-    return found and (found[1] not in LAYERS or LAYERS.index(found[1]) > LAYERS.index(folder))
+def offences(folder, allowed):
+    for path in Path(sys.argv[1], folder).iterdir():
+        for number, line in enumerate(path.read_text().splitlines() if path.is_file() else [], 1):
+            found = INCLUDE.match(line)
+            if found and found[1] not in allowed:
+                yield f"{path}:{number}: {line.strip()}"
 
 
-layered = [path for folder in LAYERS for path in Path(sys.argv[1], "Core/Render", folder).iterdir()
-           if path.suffix in {".h", ".cpp"}]
-offenders += [f"{path}:{number}: {line.strip()}" for path in layered
-              for number, line in enumerate(path.read_text().splitlines(), 1)
-              if is_later(path.parent.name, line)]
-print("\n".join(offenders) or f"{len(files)} files, none sees VTK, ParaView or Qt, and none of the "
-      f"renderer's {len(layered)} in folders one of a later folder")
-sys.exit(bool(offenders) or not files or not layered)
+for room in BELOW[1:]:
+    offenders += offences(room, BELOW)
+for place, folder in enumerate(LAYERS):
+    offenders += offences(folder, BELOW + LAYERS[:place + 1])
+print("\n".join(offenders) or f"{len(files)} files, none sees VTK, ParaView or Qt, nor one of the "
+      "renderer's folders a later one")
+sys.exit(bool(offenders) or not files)
