@@ -41,11 +41,16 @@ bool Exists(const std::string& path)
   return std::filesystem::exists(path, unknown) || unknown;
 }
 
+bool IsFile(const std::string& path)
+{
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(path, unknown);
+}
+
 /// Renames a file to one that is not there yet; a folder or a device is not ours to move.
 void SetAside(const std::string& path)
 {
-  std::error_code unknown;
-  if (!std::filesystem::is_regular_file(path, unknown)) {
+  if (!IsFile(path)) {
     return;
   }
   std::string name = path + ".other";
@@ -92,10 +97,10 @@ std::optional<TrainingState> CheckpointKeeper::resume(const StateArrays& arrays)
                                              path + "'");
     return file.state();
   } catch (const Error& error) {
-    this->tell(CheckpointEvent::Ignored, std::string(error.what()) +
-                                             "; the training begins anew, and its first checkpoint "
-                                             "will leave the file under another name, '.other' at "
-                                             "its end");
+    const std::string after = ", and its first checkpoint will leave the file under another name, "
+                              "'.other' at its end";
+    this->tell(CheckpointEvent::Ignored, std::string(error.what()) + "; the training begins anew" +
+                                             (IsFile(path) ? after : ""));
     return std::nullopt;
   }
 }

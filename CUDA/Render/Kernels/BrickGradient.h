@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The gradient of the cached field at one sample, as Core/Render/BrickGradients has it: central
-// differences one voxel of the sampled level to either side, across the faces of bricks.
+// The gradient of the cached field at one sample, as Core/Render/Bricks/BrickGradients has it:
+// central differences one voxel of the sampled level to either side, across the faces of bricks.
 #pragma once
 
 #include "CUDA/Render/Kernels/BrickReader.h"

@@ -217,7 +217,8 @@ inline void SamplePlacer::addRun(const CachedRay& ray, const AlikeSamples& alike
 __attribute__((noinline)) void SamplePlacer::noteCoarser(const RunPair& runs, int count)
 {
   const SampleRun& run = this->Placed.batch.runs[this->Placed.runs - 1];
-  const float coarser = MeanFraction(run, count);
+  const auto apart = static_cast<float>(runs.coarse->servedLevel() - runs.fine->servedLevel());
+  const float coarser = MeanFraction(run, count) * apart;
   this->Placed.origins[this->Placed.runs - 1].level += coarser;
   if (runs.fine->exact() && runs.coarse->exact()) { // which countUse takes for the finer one's
     this->Notes.levelSum += static_cast<double>(coarser) * run.count;

@@ -107,9 +107,6 @@ FrameStatistics PathPicture::advance(const Frame& frame, const PathMedium& mediu
                                      const TraceTiles& trace, const WorkLimit& limit,
                                      const PassOutput& output)
 {
-  if (frame.samplesPerPixel < 1) {
-    throw Error(ErrorCode::InvalidArgument, "path tracing takes at least one sample per pixel");
-  }
   if (!this->continues(frame)) {
     this->start(frame);
   }

@@ -14,10 +14,12 @@ namespace inr {
 
 /// How large a volume's voxels look from some direction. Plain data.
 ///
-/// The points half a voxel from each other make an ellipsoid with the voxel's edges as half axes,
-/// and its shadow along a direction an ellipse; the longer half axis of that is the voxel's size:
-/// the edge of a cube from wherever it is seen, and of thick slices the edge within a slice where
-/// they are seen from above, their thickness from the side.
+/// The places that are one voxel from a given one, where voxels are counted as unit lengths, make
+/// an ellipsoid, whose half axes are the voxel's edges where these are at right angles. Its shadow
+/// along a direction is an ellipse, and the longer half axis of that is the voxel's size: the edge
+/// of a cube from wherever it is seen, and of thick slices the edge within a slice where they are
+/// seen from above, their thickness from the side. Of skewed ones it may be short, but is taken for
+/// the shortest edge at least.
 class ProjectedVoxel
 {
 public:

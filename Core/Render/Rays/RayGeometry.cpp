@@ -84,8 +84,9 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims)
     this->View.high[axis] = dims[axis] == 1 ? 0.5 : static_cast<double>(dims[axis] - 1);
     this->View.unit.length = std::min(this->View.unit.length, glm::length(indexToMedium[axis]));
   }
-  Require(this->View.unit.length > 0 && std::isfinite(glm::determinant(indexToMedium)),
-          "the volume is flat, or not finite, where the lengths of the medium are measured");
+  Inverse(glm::dmat4(frame.worldToMedium), "the medium's matrix has no inverse");
+  Require(this->View.unit.length > 0,
+          "the volume is flat where lengths of the medium are measured");
   this->View.voxel = VoxelOf(this->View, dims);
   if (frame.cropping) {
     const CroppedBox box = BoxOf(*frame.cropping);

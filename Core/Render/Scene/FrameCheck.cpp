@@ -139,9 +139,10 @@ void RequireValid(const Frame& frame)
     Check(*frame.shading);
   }
   if (traces) {
+    Require(frame.samplesPerPixel >= 1, "path tracing takes at least one sample per pixel");
     Check(frame.paths);
   }
-  if (traces || frame.shading) {
+  if (traces || (frame.shading && !frame.blending.projects())) {
     for (const Light& light : frame.lights) {
       Check(light);
     }

@@ -5,9 +5,9 @@
 
 namespace inr {
 
-/// Throws Error(InvalidArgument) for values of a frame that are out of their documented ranges or
-/// do not go together, Error(TooLarge) for more pixels than one picture may have. What its matrices
-/// must be, RayGeometry says.
+/// Throws Error(InvalidArgument) for values of a frame that would make no picture, as out of their
+/// documented ranges, or do not go together, Error(TooLarge) for more pixels than one picture may
+/// have. What its matrices must be, RayGeometry says; planes are taken as they are.
 void RequireValid(const Frame& frame);
 
 } // namespace inr
