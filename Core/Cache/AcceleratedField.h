@@ -47,8 +47,7 @@ private:
   const std::shared_ptr<const Accelerator> Owner;
   const ModelPointer Source;
 
-  mutable std::mutex
-      Mutex; ///< guards what follows; held while things are made, not while they compute
+  mutable std::mutex Mutex; ///< guards what follows; held while that is made, not at its work
   std::optional<Failure> Failed;
   std::shared_ptr<const Evaluator> Points;
   std::vector<std::shared_ptr<const BrickSource>> Bricks; ///< the latest two

@@ -48,18 +48,6 @@ glm::dmat4 IndexToPhysical(vtkImageData* image)
   return result;
 }
 
-/// Presented to native indices; an axis of one point has nothing to scale.
-glm::dmat4 PresentedToNative(const PresentedGrid& grid)
-{
-  glm::dmat4 result(1.0);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (grid.presented[axis] > 1) {
-      result[axis][axis] = static_cast<double>(grid.native[axis] - 1) / (grid.presented[axis] - 1);
-    }
-  }
-  return result;
-}
-
 bool DrawsOpaque(vtkProp* prop)
 {
   return prop->GetVisibility() && !vtkVolume::SafeDownCast(prop) &&
@@ -82,6 +70,17 @@ glm::dmat4 ClipToWorld(vtkRenderer* renderer)
   const glm::dmat4 projection =
       ToGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1));
   return glm::inverse(projection * ToGlm(camera->GetModelViewTransformMatrix()));
+}
+
+glm::dmat4 PresentedToNative(const PresentedGrid& grid)
+{
+  glm::dmat4 result(1.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (grid.presented[axis] > 1) {
+      result[axis][axis] = static_cast<double>(grid.native[axis] - 1) / (grid.presented[axis] - 1);
+    }
+  }
+  return result;
 }
 
 glm::dmat4 WorldToIndex(const PresentedGrid& grid, vtkMatrix4x4* volumeToWorld)

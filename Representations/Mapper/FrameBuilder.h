@@ -43,6 +43,9 @@ struct PresentedGrid
 /// Inverse of what the renderer's camera does, stereo shear and tiles included.
 glm::dmat4 ClipToWorld(vtkRenderer* renderer);
 
+/// Presented to native indices; an axis of one point has nothing to scale.
+glm::dmat4 PresentedToNative(const PresentedGrid& grid);
+
 /// World space to the native grid's continuous point indices. Presented point i of n stands at
 /// native index i*(N-1)/(n-1). `volumeToWorld` is the actor's matrix.
 glm::dmat4 WorldToIndex(const PresentedGrid& grid, vtkMatrix4x4* volumeToWorld);

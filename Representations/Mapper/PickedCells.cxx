@@ -4,11 +4,10 @@
 #include <vtkImageData.h>
 
 #include <glm/common.hpp>
-#include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <array>
-#include <utility>
+#include <cstdint>
 
 namespace inr {
 namespace {
@@ -59,16 +58,12 @@ PickedCells::PickedCells(const Image& rgba, const Image& depth, const glm::dmat4
     : Rgba(rgba), Depth(depth)
 {
   const int* extent = grid.image->GetExtent();
-  glm::dvec3 scale(1.0);
   for (int axis = 0; axis < 3; ++axis) {
-    if (grid.native[axis] > 1) {
-      scale[axis] = (grid.presented[axis] - 1) / static_cast<double>(grid.native[axis] - 1);
-    }
     this->Low[axis] = extent[2 * axis];
     this->High[axis] = extent[2 * axis + 1];
     this->Cells[axis] = std::max(1, extent[2 * axis + 1] - extent[2 * axis]);
   }
-  this->ClipToIndex = glm::scale(glm::dmat4(1.0), scale) * worldToIndex * clipToWorld;
+  this->ClipToIndex = glm::inverse(PresentedToNative(grid)) * worldToIndex * clipToWorld;
 }
 
 std::int64_t PickedCells::last() const { return this->Cells.x * this->Cells.y * this->Cells.z - 1; }

@@ -95,7 +95,8 @@ private:
   /// Where such samples are, but for the places of their bricks in the batch.
   void placeRun(const CachedRay& ray, const AlikeSamples& alike, const RunPair& runs,
                 SampleRun& run) const;
-  /// Of the latest run, which is on two paths, what its samples of the coarser level are.
+  /// Of the latest run, which is on two paths, counts the samples to be expected of the coarser
+  /// level.
   void noteCoarser(const RunPair& runs, int count);
   void countUse(const CachedRay& ray, const AlikeSamples& alike, std::uint64_t taken,
                 const RunPair& runs) const;

@@ -15,11 +15,20 @@ struct FieldPoint
   int level;          ///< of the hierarchy, 0 = native
 };
 
-/// `index` is a native point index, not negative and within 32 bits.
+/// Moves `point`, where it stands: a whole one made elsewhere would be waited for. `index` is a
+/// native point index, not negative and within 32 bits.
+INR_HOST_DEVICE inline void MoveTo(FieldPoint& point, const glm::dvec3& index, int level)
+{
+  point.voxel = glm::ivec3(index); // not negative, so truncation is floor
+  point.fraction = glm::vec3(index - glm::dvec3(point.voxel));
+  point.level = level;
+}
+
 INR_HOST_DEVICE inline FieldPoint MakeFieldPoint(const glm::dvec3& index, int level = 0)
 {
-  const glm::ivec3 voxel(index); // not negative, so truncation is floor
-  return {voxel, glm::vec3(index - glm::dvec3(voxel)), level};
+  FieldPoint point;
+  MoveTo(point, index, level);
+  return point;
 }
 
 /// Where a network is asked for it: in the unit cube. `dims`: voxels per axis.

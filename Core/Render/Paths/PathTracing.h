@@ -253,10 +253,7 @@ INR_HOST_DEVICE inline bool PlaceSample(const PathScene& scene, PathState& path,
                         ? detail.dithered(path.stream, static_cast<std::int64_t>(path.drawn++))
                         : detail.level();
   const glm::dvec3 inside = glm::clamp(path.ray.at(path.t), glm::dvec3(0.0), scene.dims - 1.0);
-  // Where it stands, number by number: a whole one made elsewhere would be waited for.
-  point.voxel = glm::ivec3(inside);
-  point.fraction = glm::vec3(inside - glm::dvec3(point.voxel));
-  point.level = level;
+  MoveTo(point, inside, level);
   return true;
 }
 
