@@ -127,6 +127,8 @@ TEST(ProjectedVoxel, FootprintsAreOfTheVoxelAsTheRaySeesIt)
     const inr::Ray ray = inr::RayGeometry(frame, {300, 33, 33}).ray(3, 3);
     EXPECT_NEAR(ray.footprint, footprint, 1e-9) << spacing.x << " " << spacing.z;
   }
+  frame.worldToIndex = glm::scale(glm::dmat4(1.0), 1.0 / glm::dvec3(60, 1, 1)); // a thick layer
+  EXPECT_NEAR(inr::RayGeometry(frame, {1, 33, 33}).ray(3, 3).footprint, 0.75, 1e-9);
 }
 
 } // namespace
