@@ -7,40 +7,13 @@
 #include "CUDA/Inference/Kernels/BrickKernels.h"
 #include "CUDA/Inference/Overflow.h"
 #include "CUDA/Inference/PackedModel.h"
+#include "Testing/CUDA/HostLaunch.h"
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <memory>
 #include <utility>
 #include <vector>
-
-/// How a launch is imitated.
-struct HostLaunch
-{
-  int blocks = 3;
-  bool backward = false;          ///< threads take turns from the last one on
-  std::int64_t shared = 96 << 10; ///< bytes that a block may have
-  bool overflows = false;         ///< else Core has nothing to repair
-
-  /// Shared memory begins as NaNs, and its end is that of the allocation: a sanitizer sees beyond.
-  template <class Kernel> void run(const Kernel& kernel, std::int64_t sharedBytes) const
-  {
-    for (int block = 0; block < this->blocks; ++block) {
-      struct alignas(16) Line
-      {
-        unsigned char bytes[16];
-      };
-      const auto lines = static_cast<std::size_t>((sharedBytes + 15) / 16);
-      const std::unique_ptr<Line[]> memory(new Line[lines]);
-      std::memset(memory.get(), 0xff, lines * sizeof(Line));
-      const int index = this->backward ? this->blocks - 1 - block : block;
-      inr::cuda::HostBlock<Kernel::Threads> place(
-          index, this->blocks, reinterpret_cast<unsigned char*>(memory.get()), this->backward);
-      kernel(place);
-    }
-  }
-};
 
 /// A model's tables and how they are run, as DeviceModel has them on a GPU.
 class EmulatedModel

@@ -2,6 +2,7 @@
 //
 // Rays that wait for bricks: by windows, in turns, and with room for few.
 #include "CUDA/Render/WindowedRays.h"
+#include "Testing/CUDA/HostLaunchDefinition.h"
 #include "Testing/CUDA/HostMachine.h"
 
 #include <gtest/gtest.h>
