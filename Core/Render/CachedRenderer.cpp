@@ -3,7 +3,6 @@
 
 #include "Core/Cache/AcceleratedField.h"
 #include "Core/Error.h"
-#include "Core/Render/Paths/CachedPaths.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 #include "Core/UsableMemory.h"
 
@@ -364,67 +363,10 @@ FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput&
   return statistics;
 }
 
-TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& majorants,
-                                       const ColorTable& colors, const WorkLimit& limit,
-                                       const std::function<bool()>& keepGoing)
-{
-  this->Kept.reset(); // its bricks are no longer those of the latest frame
-  this->LoadsWhole = false;
-  const bool hides = majorants.rangesHold() && colors.hidesAny();
-  const SufficientBricks& bricks =
-      this->bricksFor(majorants, hides ? std::optional<int>(0) : std::nullopt);
-  // Where somebody waits for all of it, what did not fit a moment ago is not tried again.
-  const bool guessed = round.first && !limit.isLimited() && this->Overfull;
-  this->Overfull = this->Overfull && (!round.first || guessed);
-  const bool contested = limit.isLimited() && this->Store->hasLostSince(this->Latest);
-  this->Overfull = this->Overfull || (contested && !round.first);
-  if (round.whole || this->Store->frame() != this->Latest) {
-    this->beginFrame();
-  }
-  const bool steps = limit.isLimited() || this->Options.onlyWhatFits;
-  const bool infers = this->Overfull && !this->Options.onlyWhatFits;
-  const OnPathMiss onMiss = infers                              ? OnPathMiss::Infer
-                            : steps && this->Options.preloading ? OnPathMiss::Approach
-                                                                : OnPathMiss::UseCoarser;
-  // Inferring takes many times as long as the round before that said how long a round is.
-  const bool hurries = infers && !round.first && limit.isTimed();
-  RequestRanking requests;
-  TracedTiles traced =
-      TraceThroughCache(round, bricks, *this->Field, onMiss, hurries ? &limit : nullptr,
-                        this->Threads, keepGoing, requests);
-  if (guessed && requests.count() <= this->room()) {
-    this->Overfull = false; // a wrong guess: bricks for them all, and once more
-  } else if (this->Overfull && this->Options.onlyWhatFits) {
-    traced.final = true;
-    return traced;
-  } else if (this->Overfull) {
-    for (FrameStatistics& tile : traced.tiles) {
-      tile.missed = 0;
-    }
-  }
-  this->loadForPaths(onMiss == OnPathMiss::Approach ? this->inSteps(requests, this->room())
-                                                    : requests,
-                     !round.first, limit, keepGoing);
-  return traced;
-}
-
 std::int64_t CachedRenderer::room() const
 {
   // Below 0 where others have begun to share the memory meanwhile.
   return std::max<std::int64_t>(this->Store->capacity() - this->Store->cache().usedInFrame(), 0);
-}
-
-void CachedRenderer::loadForPaths(const RequestRanking& requests, bool again,
-                                  const WorkLimit& limit, const std::function<bool()>& keepGoing)
-{
-  const std::int64_t room = this->room();
-  const bool some = limit.isLimited() || this->Overfull;
-  const std::int64_t most = std::min(room, some ? this->Options.maximumRequests : room);
-  // Paths see of new bricks only what they come upon in another round, which takes its time.
-  this->loadForFrame(requests.ranked(most, this->Options.ranking), limit, keepGoing,
-                     again ? 0.5 : 0.25);
-  // What does not fit is not worth loading for one path: paths come back to it from everywhere.
-  this->Overfull = this->Overfull || requests.count() > room;
 }
 
 } // namespace inr

@@ -8,6 +8,7 @@
 #include "Core/Render/KeptPicture.h"
 #include "Core/Render/Marching/StepTable.h"
 #include "Core/Render/Paths/PathPicture.h"
+#include "Core/Render/Paths/PathShortage.h"
 #include "Core/Render/Refinement.h"
 
 #include <functional>
@@ -17,6 +18,7 @@
 
 namespace inr {
 
+enum class OnPathMiss;
 class WorkLimit;
 
 /// How the cache is made and filled.
@@ -120,6 +122,8 @@ private:
                     const std::function<bool()>& keepGoing, double part = 0.25);
   /// Bricks that may come without any of the present frame having to go.
   std::int64_t room() const;
+  /// In a round of a picture that has begun.
+  OnPathMiss onPathMiss(const WorkLimit& limit) const;
   /// `again`: others for the same picture.
   void loadForPaths(const RequestRanking& requests, bool again, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing);
@@ -139,8 +143,7 @@ private:
   std::unique_ptr<KeptPicture> Kept;
   /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
   std::optional<Refinement> Unfinished;
-  /// Of the latest path-traced picture: it wants more than the cache can hold, or keep for it.
-  bool Overfull = false;
+  PathShortage Shortage; ///< of the latest path-traced picture
 };
 
 } // namespace inr
