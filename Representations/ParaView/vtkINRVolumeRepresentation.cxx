@@ -2,13 +2,12 @@
 #include "vtkINRVolumeRepresentation.h"
 
 #include "ClientWatch.h"
-#include "Core/Render/CachedRenderer.h"
+#include "MachineShare.h"
 #include "ModelDelivery.h"
 #include "SharedDrawing.h"
-#include "ThreadShare.h"
+#include "VolumePlacement.h"
 #include "WhyBlank.h"
 #include "vtkAlgorithmOutput.h"
-#include "vtkBoundingBox.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
@@ -16,7 +15,6 @@
 #include "vtkINRVolumeMapper.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutlineSource.h"
@@ -55,18 +53,11 @@ bool MaySend()
   return serves && (!processes || processes->GetLocalProcessId() == 0);
 }
 
-/// In MiB, of the default cache for one of several processes on a machine; 0 for one alone.
-int CacheShare(int processes)
-{
-  constexpr std::int64_t least = 16; // where they are hundreds
-  const std::int64_t share = inr::DefaultCacheBytes(processes) >> 20;
-  return processes > 1 ? static_cast<int>(std::max(share, least)) : 0;
-}
-
 } // namespace
 
 vtkINRVolumeRepresentation::vtkINRVolumeRepresentation()
-    : Client(std::make_unique<inr::ClientWatch>()), Model(std::make_unique<inr::ModelDelivery>())
+    : Client(std::make_unique<inr::ClientWatch>()), Model(std::make_unique<inr::ModelDelivery>()),
+      Placement(std::make_unique<inr::VolumePlacement>())
 {
   this->VolumeMapper.TakeReference(vtkINRVolumeMapper::New());
   this->Actor.TakeReference(vtkINRLODVolume::New());
@@ -93,11 +84,10 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     return 0;
   }
   if (request == vtkPVView::REQUEST_UPDATE()) {
-    if (this->SharedThreads == 0) { // in all processes alike: they share them out together
-      vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-      this->SharedThreads = inr::ThreadShare(controller);
-      this->GetMapper()->SetLocalRank(inr::LocalRank(controller));
-      this->SharedCache = CacheShare(inr::LocalProcesses(controller));
+    if (!this->Share) { // in all processes alike: they share the machine out together
+      this->Share = std::make_unique<inr::MachineShare>(
+          inr::ShareMachine(vtkMultiProcessController::GetGlobalController()));
+      this->GetMapper()->SetLocalRank(this->Share->rank);
     }
     this->FindOthers();
     this->Deliver(in, out);
@@ -109,25 +99,30 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->Client->update();
     this->TakeDelivery(in);
     static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());
-    this->GetMapper()->SetNumberOfThreads(this->NumberOfThreads > 0 ? this->NumberOfThreads
-                                                                    : this->SharedThreads);
-    this->GetMapper()->SetCacheSize(this->CacheSize > 0 ? this->CacheSize : this->SharedCache);
     this->UpdateMapper();
-    vtkRenderer* renderer = vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer();
-    this->GetMapper()->SetAlwaysTogether(
-        inr::ComposesOnePicture(renderer) || inr::ShownVolumes(renderer).size() > 1 ||
-        this->IsTurned() || inr::MayOutshineWhite(this->Property, renderer));
-    this->Status->SetProcesses(this->Others);
-    const bool sharesStatus = this->Others && this->Status->GetVisibility();
-    if (sharesStatus || this->GetMapper()->GetDrawsTogether()) {
-      inr::DrawEverywhere(renderer);
-    }
+    this->DrawTogether();
     this->ReportColouring();
     this->ReportOpacityArray();
     this->OutlineMapper->SetInputConnection(
         vtkPVRenderView::GetPieceProducer(in, this, this->OutlinePort));
   }
   return 1;
+}
+
+/** Whatever has to be known of other processes before any of them draws. */
+void vtkINRVolumeRepresentation::DrawTogether()
+{
+  vtkRenderer* renderer = vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer();
+  const bool isTurned = inr::IsTurned(
+      vtkImageData::SafeDownCast(this->VolumeMapper->GetDataSetInput()), this->Actor->GetMatrix());
+  this->GetMapper()->SetAlwaysTogether(inr::ComposesOnePicture(renderer) ||
+                                       inr::ShownVolumes(renderer).size() > 1 || isTurned ||
+                                       inr::MayOutshineWhite(this->Property, renderer));
+  this->Status->SetProcesses(this->Others);
+  const bool sharesStatus = this->Others && this->Status->GetVisibility();
+  if (sharesStatus || this->GetMapper()->GetDrawsTogether()) {
+    inr::DrawEverywhere(renderer);
+  }
 }
 
 void vtkINRVolumeRepresentation::FindOthers()
@@ -181,65 +176,19 @@ void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out
   const auto shown =
       inr::ShownVolumes(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
   const bool leads = !shown.empty() && shown.front() == this->Actor;
-  if (this->UpdatePlace()) {
+  if (this->Placement->update(*this->GetMapper(), this->DataBounds, *this->Actor->GetMatrix())) {
     std::swap(this->OutlinePort, this->BoundsPort);
   }
-  vtkPVRenderView::SetGeometryBounds(in, this, this->PlacedBounds);
+  double* const bounds = this->Placement->bounds();
+  vtkPVRenderView::SetGeometryBounds(in, this, bounds);
   for (const int port : {this->OutlinePort, this->BoundsPort}) {
     const int use =
         leads && port == this->BoundsPort ? int{vtkPVRenderView::USE_BOUNDS_FOR_REDISTRIBUTION} : 0;
     vtkPVRenderView::SetPiece(in, this, this->OutlineSource->GetOutputDataObject(0), 0, port);
-    vtkPVRenderView::SetGeometryBounds(in, this, this->PlacedBounds, nullptr, port);
+    vtkPVRenderView::SetGeometryBounds(in, this, bounds, nullptr, port);
     vtkPVRenderView::SetOrderedCompositingConfiguration(in, this, use, nullptr, port);
   }
   out->Set(vtkPVRenderView::NEED_ORDERED_COMPOSITING(), 1);
-}
-
-/** Whether boxes around the volume's pieces meet. */
-bool vtkINRVolumeRepresentation::IsTurned()
-{
-  return inr::IsTurned(vtkImageData::SafeDownCast(this->VolumeMapper->GetDataSetInput()),
-                       this->Actor->GetMatrix());
-}
-
-/** Whether the volume has another place in the world than when this was asked last, in all
-    processes alike; PlacedBounds are those there. */
-bool vtkINRVolumeRepresentation::UpdatePlace()
-{
-  const double* matrix = this->Actor->GetMatrix()->GetData();
-  const bool moved = !std::equal(matrix, matrix + 16, this->Place);
-  std::copy_n(matrix, 16, this->Place);
-  if (!this->IsTurned()) {
-    this->Placed(this->DataBounds).GetBounds(this->PlacedBounds);
-    return moved;
-  }
-  // Boxes around turned pieces would meet, and surfaces would be nobody's between them. As all
-  // processes draw such a volume together, what each has may be any part of the box around it.
-  double whole[6];
-  std::copy_n(this->DataBounds, 6, whole);
-  this->GetMapper()->GetWholeBounds(whole);
-  this->Placed(whole).GetBounds(whole);
-  double part[6];
-  this->GetMapper()->GetPartOfWhole(part);
-  for (int k = 0; k < 6; ++k) {
-    const double low = whole[k / 2 * 2];
-    const double high = whole[k / 2 * 2 + 1];
-    this->PlacedBounds[k] = (1 - part[k]) * low + part[k] * high;
-  }
-  return moved;
-}
-
-/** The box in the world around one of the volume. */
-vtkBoundingBox vtkINRVolumeRepresentation::Placed(const double bounds[6])
-{
-  vtkBoundingBox box;
-  for (int corner = 0; vtkBoundingBox(bounds).IsValid() && corner < 8; ++corner) {
-    double at[4] = {bounds[corner & 1], bounds[2 + (corner >> 1 & 1)], bounds[4 + (corner >> 2)],
-                    1};
-    this->Actor->GetMatrix()->MultiplyPoint(at, at);
-    box.AddPoint(at);
-  }
-  return box;
 }
 
 void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
@@ -280,6 +229,10 @@ bool vtkINRVolumeRepresentation::DrawsHere()
 
 void vtkINRVolumeRepresentation::UpdateMapper()
 {
+  const inr::MachineShare share = this->Share ? *this->Share : inr::MachineShare();
+  this->GetMapper()->SetNumberOfThreads(this->NumberOfThreads > 0 ? this->NumberOfThreads
+                                                                  : share.threads);
+  this->GetMapper()->SetCacheSize(this->CacheSize > 0 ? this->CacheSize : share.cacheSize);
   // Cropping refers to the bounds of the data. Those that this process has are a piece's, or none
   // where the model was sent to.
   double own[6];

@@ -20,7 +20,6 @@
 #include <memory> // for Client
 #include <string> // for LastProblem
 
-class vtkBoundingBox;
 class vtkINRStatusActor;
 class vtkINRVolumeMapper;
 class vtkMultiProcessController;
@@ -29,6 +28,8 @@ class vtkPolyData;
 namespace inr {
 class ClientWatch;
 class ModelDelivery;
+class VolumePlacement;
+struct MachineShare;
 } // namespace inr
 
 class VTKINRREPRESENTATIONS_EXPORT vtkINRVolumeRepresentation : public vtkImageVolumeRepresentation
@@ -107,12 +108,10 @@ private:
   void FindOthers();
   void ForgetOutlines();
   void Deliver(vtkInformation* in, vtkInformation* out);
-  bool UpdatePlace();
-  bool IsTurned();
-  vtkBoundingBox Placed(const double bounds[6]);
   void TakeDelivery(vtkInformation* in);
   void ReportShared(bool drawsAll);
   void UpdateMapper();
+  void DrawTogether();
   bool IsGroup(); ///< of data sets
   void ReportColouring();
   void ReportOpacityArray();
@@ -120,16 +119,14 @@ private:
 
   bool WantsOpacityArray = false;
   int NumberOfThreads = 0;
-  int SharedThreads = 0; ///< for 0 of the above; 0 = not known yet
-  int CacheSize = 0;     ///< MiB
-  int SharedCache = 0;   ///< for 0 of the above; 0 = this process is alone on its machine
+  int CacheSize = 0;                        ///< MiB
+  std::unique_ptr<inr::MachineShare> Share; ///< for 0 of these; null = not known yet
   std::unique_ptr<inr::ClientWatch> Client;
   std::unique_ptr<inr::ModelDelivery> Model;
   vtkNew<vtkPolyData> Carrier; ///< of the model to where it is drawn, if that is elsewhere
-  double Place[16] = {};       ///< of the volume in the world, a matrix
-  double PlacedBounds[6] = {}; ///< of the piece there
-  int OutlinePort = 1;         ///< of what is delivered; the model has 0
-  int BoundsPort = 2;          ///< the same, with the bounds that the view sorts by
+  std::unique_ptr<inr::VolumePlacement> Placement;
+  int OutlinePort = 1; ///< of what is delivered; the model has 0
+  int BoundsPort = 2;  ///< the same, with the bounds that the view sorts by
   std::string LastProblem;
   vtkMultiProcessController* Others = nullptr; ///< processes that draw a part each, if several do
   vtkNew<vtkINRStatusActor> Status;
