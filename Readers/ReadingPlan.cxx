@@ -39,16 +39,17 @@ ReadingPlan::ReadingPlan(vtkAlgorithm* consumer, vtkInformation* input, std::int
   const bool isLarge = this->isTooLarge(this->Whole.bytes, group);
   this->InParts = wholeReader.empty();
   this->WholeReader = isLarge && !this->InParts ? wholeReader + ", the source" : "";
-  this->IsToldLarge = group.any(this->InParts && isLarge);
   const bool mayBeLarge = this->InParts && this->isTooLarge(MostUntold * this->Whole.bytes, group);
-  this->Probes = this->IsToldLarge || (mayProbe && group.size() == 1 && mayBeLarge);
-  if (this->Probes && !this->IsToldLarge) {
+  if (group.any(this->InParts && isLarge)) {
+    this->Asks = FirstAsked::VoxelOfTooMuch;
+  } else if (mayProbe && group.size() == 1 && mayBeLarge) {
+    this->Asks = FirstAsked::VoxelToLearn;
     this->Errors->hold(); // who cannot give a voxel may give all
   }
   if (this->Whole.dims.x * this->Whole.dims.y * this->Whole.dims.z == 0) {
     return;
   }
-  if (this->Probes || !this->Problem.empty()) {
+  if (this->Asks != FirstAsked::All || !this->Problem.empty()) {
     this->Whole.ask(input, true);
   } else {
     this->ask(input, group);
@@ -84,8 +85,8 @@ vtkDataObject* ReadingPlan::afterProbe(vtkDataObject* data, bool failed,
   }
   const int* const extent = this->Whole.extent;
   const bool isWhole = isKnown && std::equal(extent, extent + 6, image->GetExtent());
-  const bool isLarge =
-      isKnown ? group.any(this->isTooLarge(this->Whole.bytes, group)) : this->IsToldLarge;
+  const bool isLarge = isKnown ? group.any(this->isTooLarge(this->Whole.bytes, group))
+                               : this->Asks == FirstAsked::VoxelOfTooMuch;
   const bool allWhole = !group.any(!isWhole);
   this->InPieces = isLarge && !allWhole;
   if (this->InPieces) {
@@ -116,11 +117,12 @@ ParallelInput ReadingPlan::find(vtkDataObject* data, std::unique_ptr<UpstreamErr
                                 const Finder& find, const ControllerGroup& group)
 {
   const bool failed = group.any(errors && errors->any());
-  if (!this->Probes || this->IsToldLarge) {
+  if (this->Asks != FirstAsked::VoxelToLearn) {
     group.together([&] { errors ? errors->check() : void(); });
   }
   errors.reset(); // who reads on watches, too
-  vtkDataObject* const found = this->Probes ? this->afterProbe(data, failed, group) : data;
+  vtkDataObject* const found =
+      this->Asks == FirstAsked::All ? data : this->afterProbe(data, failed, group);
   if (group.size() > 1 && !this->InPieces) {
     return FindPiece(found, this->Whole, find, group);
   }

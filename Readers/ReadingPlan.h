@@ -38,7 +38,7 @@ public:
               bool mayProbe, const ControllerGroup& group);
 
   /// Whether a voxel was asked for that never came, of what might give all of it.
-  bool isUnanswered() const { return this->Errors && this->Probes && !this->IsToldLarge; }
+  bool isUnanswered() const { return this->Errors && this->Asks == FirstAsked::VoxelToLearn; }
 
   const WholeImage& whole() const { return this->Whole; }
 
@@ -63,6 +63,13 @@ public:
                      const Finder& find, const ControllerGroup& group);
 
 private:
+  /// What is asked for before it is known how the rest comes.
+  enum class FirstAsked {
+    All,
+    VoxelOfTooMuch, ///< by what the source tells, all of it is too large
+    VoxelToLearn    ///< that says whether it is
+  };
+
   bool isTooLarge(double bytes, const ControllerGroup& group) const;
   void ask(vtkInformation* input, const ControllerGroup& group) const;
   vtkDataObject* afterProbe(vtkDataObject* data, bool failed, const ControllerGroup& group);
@@ -70,11 +77,10 @@ private:
   vtkAlgorithm* Consumer = nullptr;
   double MostBytes = 0; ///< that this process may hold
   WholeImage Whole;
-  bool IsHeld = false;      ///< what this process would ask for
-  bool InParts = true;      ///< may be asked for
-  bool IsToldLarge = false; ///< too large, by what the source tells before it is asked
-  bool Probes = false;      ///< asks for a voxel first
-  bool InPieces = false;    ///< after find()
+  bool IsHeld = false; ///< what this process would ask for
+  bool InParts = true; ///< may be asked for
+  FirstAsked Asks = FirstAsked::All;
+  bool InPieces = false; ///< after find()
   std::string Problem;
   std::string WholeReader;
   std::unique_ptr<UpstreamErrors> Errors;
