@@ -58,7 +58,8 @@ public:
   /// Seconds that it took to learn that.
   virtual double surveySeconds() const { return 0; }
 
-  /// Whether that came out of a checkpoint: then it fits nothing but the rest of that training.
+  /// Whether that came out of a checkpoint: then it fits nothing but the rest of that training;
+  /// see UnfitSurvey.
   virtual bool isFromCheckpoint() const { return false; }
 
   /// Samples of the prepared mini-batch: that are drawn here, and with those of other processes.

@@ -4,6 +4,7 @@
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
 #include "Core/Training/Checkpoint.h"
+#include "Core/Training/TrainingIdentity.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -51,7 +52,7 @@ bool KeptSurvey::resume(StreamedVolume& volume) const
   }
   const TrainingObserver nobody;
   const TrainingRun run(this->Whole, volume.statistics(), this->Options, nobody, &this->Group);
-  return this->isInAll(IdentityOf(run, volume) == *kept) &&
+  return this->isInAll(HaveSameSamples(IdentityOf(run, volume), *kept)) &&
          volume.isAsBefore(this->Group.valueOfFirst(before.steps));
 }
 

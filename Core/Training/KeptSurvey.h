@@ -22,10 +22,10 @@ public:
   /// All of these must outlive it.
   KeptSurvey(const VolumeInfo& whole, const TrainingOptions& options, const TrainingGroup& group);
 
-  /// Takes up what is kept, as long as it is of the training that is asked for and the volume still
-  /// looks the same, in all processes, and there is a checkpoint. False otherwise; then `volume`
-  /// may have become anything. What may be wrong with a checkpoint the user learns where the
-  /// training goes on from it, or not. For all.
+  /// Takes up what is kept, as long as it is of the training that is asked for, whatever trained
+  /// then and trains now, and the volume still looks the same, in all processes, and there is a
+  /// checkpoint. False otherwise; then `volume` may have become anything. What may be wrong with a
+  /// checkpoint the user learns where the training goes on from it, or not. For all.
   bool resume(StreamedVolume& volume) const;
 
   /// Of a group: writes the files, unless reading takes less time than training from one checkpoint

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <string>
 #include <thread>
 
 namespace inr {
@@ -32,13 +33,6 @@ TrainingOptions WithModel(TrainingOptions options, const StreamBudget& budget)
   }
   return options;
 }
-
-/// A volume of which is known what a first reading tells.
-struct Surveyed
-{
-  std::unique_ptr<StreamedVolume> volume;
-  bool isFromCheckpoint = false;
-};
 
 double ShareToRead(const StreamedVolume& volume, const TrainingOptions& options)
 {
@@ -130,20 +124,6 @@ public:
   }
 };
 
-void Train(TrainingRun& run, Surveyed& surveyed, const TrainingGroup& group, const Arena& arena,
-           ProgressRelay& relay, double rereads)
-{
-  StreamedVolume& volume = *surveyed.volume;
-  SamplePool& pool = volume.begin(rereads);
-  if (group.size() == 1) {
-    PoolBatches batches(volume, pool, surveyed.isFromCheckpoint);
-    TrainWhileReading(run, volume, batches, arena, relay);
-    return;
-  }
-  PoolReadBetweenSteps batches(volume, pool);
-  run.train(batches, volume.estimate(PsnrEstimate::UsualVoxels), arena);
-}
-
 /// The same in all processes, whose readers may keep different arrays beside the one.
 StreamBudget CommonBudget(const VolumeInfo& whole, const TrainingOptions& options,
                           const VolumeReader& reader, const TrainingGroup& group)
@@ -160,6 +140,119 @@ StreamBudget CommonBudget(const VolumeInfo& whole, const TrainingOptions& option
   return PlanStream(whole, smallest, *std::max_element(bytes.begin(), bytes.end()), group.size());
 }
 
+VolumeInfo WholeOf(const VolumeReader& reader, const VolumeInfo& info)
+{
+  VolumeInfo whole = info;
+  whole.dims = reader.dims();
+  whole.type = reader.type();
+  return whole;
+}
+
+/// One that is told of nothing twice: that the checkpoint is of no use, it has heard.
+CheckpointOptions WithoutIgnored(CheckpointOptions options)
+{
+  options.tell = [tell = options.tell](CheckpointEvent event, const std::string& text) {
+    tell&& event != CheckpointEvent::Ignored ? tell(event, text) : void();
+  };
+  return options;
+}
+
+/// From the first reading to the measured model.
+class StreamedTraining
+{
+public:
+  StreamedTraining(VolumeReader& reader, const VolumeInfo& info, const TrainingOptions& asked,
+                   const TrainingGroup& group, const TrainingObserver& observer)
+      : Reader(reader), Group(group), Observer(observer), Whole(WholeOf(reader, info)),
+        Budget(CommonBudget(this->Whole, asked, reader, group)),
+        Options(WithModel(asked, this->Budget)), Threads(this->Options.threads),
+        Kept(this->Whole, this->Options, group), Volume(this->makeVolume())
+  {}
+
+  ModelPointer train()
+  {
+    if (this->Kept.resume(*this->Volume)) {
+      try {
+        return this->trainOn(true);
+      } catch (const UnfitSurvey&) { // as where something else trains than what began
+        this->Options.checkpoint = WithoutIgnored(this->Options.checkpoint);
+      }
+    }
+    this->Volume.reset(); // there is memory for one
+    this->Volume = this->makeVolume();
+    this->Volume->survey(
+        [&](double done) { this->say(TrainingPhase::Reading, ReadingShare * done, 0); });
+    return this->trainOn(false);
+  }
+
+private:
+  std::unique_ptr<StreamedVolume> makeVolume() const
+  {
+    return std::make_unique<StreamedVolume>(this->Reader, this->Budget,
+                                            MacroCellSizeOf(this->Whole, this->Options),
+                                            this->Options, this->Group, this->Threads);
+  }
+
+  void say(TrainingPhase phase, double fraction, std::uint64_t steps) const
+  {
+    if (this->Observer && !this->Observer({phase, fraction, steps, 0})) {
+      throw Error(ErrorCode::Cancelled, phase == TrainingPhase::Reading
+                                            ? "stopped on request while the data were read"
+                                            : "stopped while measuring the quality");
+    }
+  }
+
+  ModelPointer trainOn(bool isFromCheckpoint)
+  {
+    ProgressRelay relay(this->Observer, ReadingShare);
+    const TrainingObserver relayed = [&](const TrainingProgress& now) { return relay(now); };
+    TrainingRun run(this->Whole, this->Volume->statistics(), this->Options, relayed, &this->Group);
+    if (run.isConstant()) {
+      return run.constantModel();
+    }
+    this->Kept.keep(*this->Volume, run, isFromCheckpoint);
+    this->takeSteps(run, relay, isFromCheckpoint);
+    std::shared_ptr<Model> trained;
+    this->Group.together(
+        [&] { trained = run.store(this->Volume->estimate(PsnrEstimate::StoringVoxels)); });
+    this->measure(*trained, *MakeEvaluator(trained, this->Options.kernel));
+    return trained;
+  }
+
+  void takeSteps(TrainingRun& run, ProgressRelay& relay, bool isFromCheckpoint)
+  {
+    StreamedVolume& volume = *this->Volume;
+    SamplePool& pool = volume.begin(ShareToRead(volume, this->Options));
+    if (this->Group.size() == 1) {
+      PoolBatches batches(volume, pool, isFromCheckpoint);
+      TrainWhileReading(run, volume, batches, this->Threads, relay);
+      return;
+    }
+    PoolReadBetweenSteps batches(volume, pool);
+    run.train(batches, volume.estimate(PsnrEstimate::UsualVoxels), this->Threads);
+  }
+
+  void measure(Model& trained, const Evaluator& evaluator)
+  {
+    const double begin = ReadingShare + (1.0 - ReadingShare) * TrainingShare;
+    const DecodedReport report = this->Volume->measure(evaluator, trained, [&](double done) {
+      this->say(TrainingPhase::Measuring, begin + (1.0 - begin) * done, trained.training->steps);
+    });
+    trained.quality = report.quality;
+    trained.macroCells = report.macroCells;
+  }
+
+  VolumeReader& Reader;
+  const TrainingGroup& Group;
+  const TrainingObserver& Observer;
+  VolumeInfo Whole;
+  StreamBudget Budget;
+  TrainingOptions Options;
+  Arena Threads;
+  KeptSurvey Kept;
+  std::unique_ptr<StreamedVolume> Volume; ///< of which is known what a first reading tells
+};
+
 } // namespace
 
 ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const TrainingOptions& asked,
@@ -172,53 +265,7 @@ ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const Trai
                         const TrainingGroup& group, const TrainingObserver& observer)
 {
   CheckArguments(reader.dims(), asked);
-  VolumeInfo whole = info;
-  whole.dims = reader.dims();
-  whole.type = reader.type();
-  const StreamBudget budget = CommonBudget(whole, asked, reader, group);
-  const TrainingOptions options = WithModel(asked, budget);
-  const Arena arena(options.threads);
-  const auto say = [&](TrainingPhase phase, double fraction, std::uint64_t steps) {
-    if (observer && !observer({phase, fraction, steps, 0})) {
-      throw Error(ErrorCode::Cancelled, phase == TrainingPhase::Reading
-                                            ? "stopped on request while the data were read"
-                                            : "stopped while measuring the quality");
-    }
-  };
-
-  const auto makeVolume = [&] {
-    return std::make_unique<StreamedVolume>(reader, budget, MacroCellSizeOf(whole, options),
-                                            options, group, arena);
-  };
-  Surveyed surveyed{makeVolume()};
-  const KeptSurvey kept(whole, options, group);
-  surveyed.isFromCheckpoint = kept.resume(*surveyed.volume);
-  if (!surveyed.isFromCheckpoint) {
-    surveyed.volume.reset(); // there is memory for one
-    surveyed.volume = makeVolume();
-    surveyed.volume->survey(
-        [&](double done) { say(TrainingPhase::Reading, ReadingShare * done, 0); });
-  }
-  StreamedVolume& volume = *surveyed.volume;
-  ProgressRelay relay(observer, ReadingShare);
-  const TrainingObserver relayed = [&](const TrainingProgress& now) { return relay(now); };
-  TrainingRun run(whole, volume.statistics(), options, relayed, &group);
-  if (run.isConstant()) {
-    return run.constantModel();
-  }
-  kept.keep(volume, run, surveyed.isFromCheckpoint);
-  Train(run, surveyed, group, arena, relay, ShareToRead(volume, options));
-  std::shared_ptr<Model> trained;
-  group.together([&] { trained = run.store(volume.estimate(PsnrEstimate::StoringVoxels)); });
-
-  const double begin = ReadingShare + (1.0 - ReadingShare) * TrainingShare;
-  const DecodedReport report =
-      volume.measure(*MakeEvaluator(trained, options.kernel), *trained, [&](double done) {
-        say(TrainingPhase::Measuring, begin + (1.0 - begin) * done, trained->training->steps);
-      });
-  trained->quality = report.quality;
-  trained->macroCells = report.macroCells;
-  return trained;
+  return StreamedTraining(reader, info, asked, group, observer).train();
 }
 
 } // namespace inr

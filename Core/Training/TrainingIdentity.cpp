@@ -13,6 +13,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* KernelName = "the kernel family";
+
 /// Numbers with all their digits, names in quotes.
 std::string Text(const json& value)
 {
@@ -46,7 +48,7 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
           {"the model", Text(DescriptionToJson(model.description))},
           {"the parameters to start from (checksum)", Text(ChecksumOf(options.start))},
           {"the number of processes", Text(processes)},
-          {"the kernel family", model.training->kernel},
+          {KernelName, model.training->kernel},
           {"the optimiser", OptimiserName},
           {"Seed", Text(options.seed)},
           {"TargetPSNR", Text(options.targetPsnr)},
@@ -56,6 +58,13 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
           {"TimeLimit", Text(options.timeLimit)},
           {"the samples, which MemoryLimit decides on,", batches.name()},
           {"the precision of the file", NameOf(ParameterTypeNames, options.storedAs)}};
+}
+
+bool HaveSameSamples(TrainingIdentity one, TrainingIdentity other)
+{
+  one.erase(KernelName);
+  other.erase(KernelName);
+  return one == other;
 }
 
 } // namespace inr

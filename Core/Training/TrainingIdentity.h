@@ -16,4 +16,8 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
                             const PsnrEstimate& estimate, const BatchSource& batches,
                             int processes);
 
+/// Whether they are of the same data, drawn from alike: of the same training but for what it
+/// computes with.
+bool HaveSameSamples(TrainingIdentity one, TrainingIdentity other);
+
 } // namespace inr

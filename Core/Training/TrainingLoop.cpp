@@ -160,9 +160,9 @@ void TrainingLoop::resume(Descent& descent, BatchSource& batches)
   };
   this->Keeper.keep(batches.survey());
   const std::optional<TrainingState> mine = this->Keeper.resume(descent.state());
-  if (batches.isFromCheckpoint() && !mine) { // what the user is told then is true of the next time
-    throw Error(ErrorCode::CannotRead, "'" + this->Options.checkpoint.path +
-                                           "' changed while it was read; begin the training anew");
+  if (batches.isFromCheckpoint() && !mine) {
+    throw UnfitSurvey(ErrorCode::CannotRead,
+                      "'" + this->Options.checkpoint.path + "' is of another training");
   }
   const Before before =
       this->Group.valueOfFirst(Before{mine.has_value(), mine.value_or(TrainingState())});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Error.h"
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Training/CheckpointKeeper.h"
 #include "Core/Training/Descent.h"
@@ -16,6 +17,14 @@ namespace inr {
 /// Share of the progress bar that training gets when quality is measured afterwards.
 constexpr double TrainingShare = 0.9;
 
+/// What batches have from a checkpoint fits nothing but the rest of its training, and that is not
+/// what follows.
+class UnfitSurvey : public Error
+{
+public:
+  using Error::Error;
+};
+
 /// Steps until one of the options' limits is reached, telling the observer.
 class TrainingLoop
 {
@@ -26,8 +35,8 @@ public:
       : Options(options), Observer(observer), Keeper(keeper), Group(group), Pipeline(pipeline)
   {}
 
-  /// Throws what TrainModel says of training itself. The checkpoint is written between steps and
-  /// before an error.
+  /// Throws what TrainModel says of training itself and, before the first step, UnfitSurvey. The
+  /// checkpoint is written between steps and before an error.
   void run(Descent& descent, BatchSource& batches, const PsnrEstimate& estimate,
            const EvaluateKernel& kernel);
 

@@ -6,6 +6,7 @@
 #include "Core/Training/GradientDescent.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/RandomModel.h"
+#include "Testing/Core/Training/FakeTrainer.h"
 #include "Testing/Core/Training/FieldReader.h"
 
 #include <gtest/gtest.h>
@@ -42,6 +43,7 @@ protected:
     this->Options.checkpoint.interval = 0;
     this->Options.checkpoint.tell = [this](CheckpointEvent event, const std::string& text) {
       this->Resumed += event == CheckpointEvent::Resumed ? 1 : 0;
+      this->Ignored += event == CheckpointEvent::Ignored ? 1 : 0;
       this->Warning = event == CheckpointEvent::Ignored ? text : this->Warning;
     };
   }
@@ -53,6 +55,7 @@ protected:
     reader.before = this->Before;
     this->Warning.clear();
     this->Resumed = 0;
+    this->Ignored = 0;
     this->Surveyed = false;
     inr::ModelPointer model;
     try {
@@ -105,6 +108,7 @@ protected:
 
   double Read = 0; ///< times the volume, in the last training
   int Resumed = 0;
+  int Ignored = 0;
   bool Surveyed = false;
   std::string Warning;
 };
@@ -228,6 +232,40 @@ TEST_F(ResumeStreaming, ReadsAgainForOtherMacroCells)
   EXPECT_EQ(this->Resumed, 1);
   EXPECT_TRUE(this->Surveyed);
   this->expectModelOf(this->trainWithoutCheckpoint(), model);
+}
+
+TEST_F(ResumeStreaming, ReadsNothingTwiceForAnAcceleratorEither)
+{
+  FakeTrainingDevice device;
+  device.planned = this->Options.maximumSteps;
+  this->Options.acceleration.accelerator = std::make_shared<FakeTrainer>(device);
+  const inr::ModelPointer whole = this->trainWithoutCheckpoint();
+  this->stopAfter(25);
+  this->expectModelOf(whole, this->train());
+  EXPECT_EQ(this->Resumed, 1);
+  EXPECT_FALSE(this->Surveyed);
+}
+
+// As on a login node first, and then where there is a GPU: nothing says so but the training itself.
+TEST_F(ResumeStreaming, BeginsAnewWhereSomethingElseTrains)
+{
+  FakeTrainingDevice device;
+  device.planned = this->Options.maximumSteps;
+  const auto accelerator = std::make_shared<FakeTrainer>(device);
+  for (const bool accelerated : {true, false}) {
+    SCOPED_TRACE(accelerated);
+    this->Options.acceleration.accelerator = accelerated ? nullptr : accelerator;
+    std::filesystem::remove(this->Path);
+    this->stopAfter(25);
+    this->Options.acceleration.accelerator = accelerated ? accelerator : nullptr;
+    const inr::ModelPointer whole = this->trainWithoutCheckpoint();
+    this->expectModelOf(whole, this->train());
+    EXPECT_TRUE(this->Surveyed);
+    EXPECT_EQ(this->Resumed, 0);
+    EXPECT_EQ(this->Ignored, 1);
+    EXPECT_NE(this->Warning.find("the kernel family"), std::string::npos) << this->Warning;
+    EXPECT_TRUE(std::filesystem::remove(this->Path + ".other"));
+  }
 }
 
 TEST_F(ResumeStreaming, IsNoneOfOtherSettings)
