@@ -48,7 +48,7 @@ int DefaultMacroCellSize(const glm::i64vec3& volumeDims)
   return edge;
 }
 
-MacroCells MakeMacroCells(const glm::i64vec3& volumeDims, int edge)
+std::int64_t CountMacroCells(const glm::i64vec3& volumeDims, int edge)
 {
   RequireVolume(volumeDims);
   if (edge < 1) {
@@ -61,6 +61,12 @@ MacroCells MakeMacroCells(const glm::i64vec3& volumeDims, int edge)
                                          " voxels are too many for this volume; choose larger "
                                          "ones");
   }
+  return count;
+}
+
+MacroCells MakeMacroCells(const glm::i64vec3& volumeDims, int edge)
+{
+  const std::int64_t count = CountMacroCells(volumeDims, edge);
   MacroCells cells;
   for (int axis = 0; axis < 3; ++axis) {
     cells.dims[axis] = CellsAlong(volumeDims[axis], edge);

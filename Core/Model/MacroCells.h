@@ -65,7 +65,12 @@ struct MacroCells
 /// 2^22 cells.
 int DefaultMacroCellSize(const glm::i64vec3& volumeDims);
 
-/// An empty-ranged grid with cells of `edge` voxels over a volume of `volumeDims` voxels.
+/// How many cells of `edge` voxels cover a volume. Throws Error(InvalidArgument) where there is no
+/// such volume or cell, Error(TooLarge) where they are too many for a file.
+std::int64_t CountMacroCells(const glm::i64vec3& volumeDims, int edge);
+
+/// An empty-ranged grid with cells of `edge` voxels over a volume of `volumeDims` voxels. Throws
+/// what CountMacroCells throws.
 MacroCells MakeMacroCells(const glm::i64vec3& volumeDims, int edge);
 
 } // namespace inr

@@ -45,10 +45,10 @@ double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio,
   if (ratio <= 0.0) {
     return std::min(DefaultParameters(voxels), bytes / SmallestRatio / DefaultBytes);
   }
-  const MacroCells cells =
-      MakeMacroCells(dims, macroCellSize > 0 ? macroCellSize : DefaultMacroCellSize(dims));
+  const std::int64_t cells =
+      CountMacroCells(dims, macroCellSize > 0 ? macroCellSize : DefaultMacroCellSize(dims));
   const double bytesPerCell = storedAs == ParameterType::Quantised ? 2.0 : 8.0;
-  const double cellBytes = bytesPerCell * static_cast<double>(cells.ranges.size());
+  const double cellBytes = bytesPerCell * static_cast<double>(cells);
   return (bytes / ratio - cellBytes - FramingBytes) / BytesPerParameter(storedAs);
 }
 

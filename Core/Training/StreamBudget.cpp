@@ -5,6 +5,7 @@
 #include "Core/Training/BatchSource.h"
 #include "Core/Training/BlockGrid.h"
 #include "Core/Training/GradientExchange.h"
+#include "Core/Training/TrainingRun.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,12 +31,10 @@ constexpr std::int64_t LargestPool = 512 * MiB;
 /// A source may hold a piece twice: as it came from the disk, and as it is handed on.
 constexpr std::int64_t CopiesOfBlock = 3;
 
-std::int64_t CellBytes(const VolumeInfo& info, int macroCellSize)
+std::int64_t CellBytes(const VolumeInfo& info, const TrainingOptions& options)
 {
-  const int edge = macroCellSize > 0 ? macroCellSize : DefaultMacroCellSize(info.dims);
-  const glm::i64vec3 cells =
-      (info.dims + std::int64_t{edge} - std::int64_t{1}) / std::int64_t{edge};
-  return 48 * cells.x * cells.y * cells.z; // of data and decoded ones as doubles, twice as floats
+  // Of data and decoded ones as doubles, twice as floats.
+  return 48 * CountMacroCells(info.dims, MacroCellSizeOf(info, options));
 }
 
 bool IsAccelerated(const TrainingOptions& options, int processes)
@@ -51,11 +50,27 @@ std::int64_t FreeBytes(const VolumeInfo& info, const TrainingOptions& options,
       processes > 1 ? std::max(ExchangeBytes(Layout(description), processes),
                                (2 * processes + 1) * GatheredRanges) // not at the same time
                     : 0;
-  return options.memoryLimit - Overhead - exchanged - CellBytes(info, options.macroCellSize) -
+  return options.memoryLimit - Overhead - exchanged - CellBytes(info, options) -
          TrainingBytes(description, IsAccelerated(options, processes));
 }
 
 std::int64_t LeastFreeBytes() { return (CopiesOfBlock + 1) * SmallestShare; }
+
+std::string InMiB(std::int64_t bytes) { return std::to_string(bytes / MiB + 1) + " MiB"; }
+
+/// Whatever the model.
+void RequireRoomForCells(const VolumeInfo& info, const TrainingOptions& options)
+{
+  const std::int64_t cells = CellBytes(info, options);
+  const std::int64_t others = Overhead + LeastFreeBytes();
+  if (cells + others > options.memoryLimit && cells > others) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the ranges of macro-cells of " + std::to_string(MacroCellSizeOf(info, options)) +
+                    " voxels, of a volume read in pieces, take " + InMiB(cells + others) +
+                    " with what they are measured in, and the MemoryLimit is " +
+                    InMiB(options.memoryLimit - 1) + "; raise it or choose a larger MacroCellSize");
+  }
+}
 
 constexpr int MostHalvings = 40; // of the default model: by then it is the smallest
 
@@ -100,6 +115,7 @@ std::int64_t TrainingBytes(const Description& description, bool accelerated)
 StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
                         std::int64_t bytesPerVoxel, int processes)
 {
+  RequireRoomForCells(info, options);
   StreamBudget budget{FittingDescription(info, options, processes), 0, 0};
   const std::int64_t left = FreeBytes(info, options, budget.description, processes);
   if (left < LeastFreeBytes()) {
@@ -107,14 +123,13 @@ StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
     const Description smallest = DescriptionAt(std::ldexp(1.0, MostHalvings), info, options);
     const std::int64_t leftBySmallest = left + TrainingBytes(budget.description, accelerated) -
                                         TrainingBytes(smallest, accelerated);
-    const auto inMiB = [](std::int64_t bytes) { return std::to_string(bytes / MiB + 1) + " MiB"; };
     throw Error(ErrorCode::InvalidArgument,
                 "training a model of " + std::to_string(Layout(budget.description).parameterCount) +
                     " parameters from a volume read in pieces takes " +
-                    inMiB(options.memoryLimit - left + LeastFreeBytes()) +
+                    InMiB(options.memoryLimit - left + LeastFreeBytes()) +
                     (processes > 1 ? " in each process and its share of the MemoryLimit is "
                                    : " and the MemoryLimit is ") +
-                    inMiB(options.memoryLimit - 1) + "; raise it" +
+                    InMiB(options.memoryLimit - 1) + "; raise it" +
                     (leftBySmallest < LeastFreeBytes()
                          ? ", as the smallest model takes too much, too"
                          : " or ask for a smaller model (TargetRatio, or ModelConfig)"));

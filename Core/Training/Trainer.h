@@ -28,7 +28,7 @@ struct TrainingOptions
   /// limit is seen to allow. To repeat a training, as its record says.
   std::uint64_t plannedSteps = 0;
   std::uint64_t seed = 1;
-  int macroCellSize = 0;                  ///< voxels, a power of two; 0 = DefaultMacroCellSize
+  int macroCellSize = 0; ///< voxels, a power of two up to 2^29; 0 = DefaultMacroCellSize
   std::optional<Description> description; ///< empty = ChooseDescription
   /// A model of a similar volume, whose parameters are where the training starts if they mean the
   /// same, that is, if it has the same description; null = random ones.
@@ -64,7 +64,10 @@ struct TrainingProgress
 
 /// Called on the thread that trains, after every step, between the blocks of a long one and between
 /// those of measuring; not while the volume is searched for its range, the model is set up or a
-/// step's result is entered into it. Return false to stop, which throws Error(Cancelled).
+/// step's result is entered into it. Return false to stop, which throws Error(Cancelled). Where a
+/// process alone trains from a VolumeReader, the thread that called reads, another one trains, and
+/// the first is told the latest between two readings; what checkpoints and accelerators tell comes
+/// on the other.
 using TrainingObserver = std::function<bool(const TrainingProgress&)>;
 
 /// A model size for the volume: upstream-readable, about volume bytes / `ratio` when its parameters

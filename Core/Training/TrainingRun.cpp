@@ -75,10 +75,12 @@ void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options)
   if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
     throw Error(ErrorCode::InvalidArgument, "there are no voxels to train on");
   }
+  constexpr int largestEdge = 1 << 29; // so that a single layer's spacing can be told in a file
   const int edge = options.macroCellSize;
-  if (edge < 0 || (edge & (edge - 1)) != 0) {
-    throw Error(ErrorCode::InvalidArgument, "MacroCellSize is " + std::to_string(edge) +
-                                                "; set a power of two, or 0 for the default");
+  if (edge < 0 || edge > largestEdge || (edge & (edge - 1)) != 0) {
+    throw Error(ErrorCode::InvalidArgument,
+                "MacroCellSize is " + std::to_string(edge) + "; set a power of two up to " +
+                    std::to_string(largestEdge) + ", or 0 for the default");
   }
   const bool limited = options.targetPsnr > 0 || options.maximumSteps > 0 || options.timeLimit > 0;
   if (!limited) {

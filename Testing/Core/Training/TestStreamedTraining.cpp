@@ -190,6 +190,29 @@ TEST(StreamedTraining, SaysHowMuchMemoryAModelNeeds)
   ExpectError(reader, options, "raise it, as the smallest model takes too much");
 }
 
+TEST(StreamedTraining, SaysWhereMacroCellsTakeTooMuchMemory)
+{
+  inr::VolumeInfo info;
+  info.dims = glm::i64vec3(1024);
+  info.type = inr::ScalarType::Float32;
+  inr::TrainingOptions options;
+  options.memoryLimit = 1024 * MiB;
+  const auto problem = [&](int edge) -> std::string {
+    options.macroCellSize = edge;
+    try {
+      inr::PlanStream(info, options, 4, 1);
+    } catch (const inr::Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(problem(0), "");
+  EXPECT_EQ(problem(8), "");
+  EXPECT_NE(problem(2).find("macro-cells of 2 voxels"), std::string::npos) << problem(2);
+  EXPECT_NE(problem(2).find("choose a larger MacroCellSize"), std::string::npos);
+  EXPECT_NE(problem(1).find("choose larger ones"), std::string::npos) << problem(1);
+}
+
 TEST(StreamedTraining, FindsADefaultModelForEveryLimitThatHasRoomForOne)
 {
   inr::VolumeInfo info;

@@ -293,7 +293,7 @@ TEST(Trainer, TakesPowersOfTwoForMacroCells)
   inr::TrainingOptions options = Steps(1);
   options.macroCellSize = 8;
   EXPECT_EQ(inr::TrainModel(field.data(), {}, options)->macroCells.dims, glm::i64vec3(3, 3, 3));
-  for (const int edge : {12, -8}) {
+  for (const int edge : {12, -8, 1 << 30}) { // the last one no reader would take
     options.macroCellSize = edge;
     EXPECT_THROW(inr::TrainModel(field.data(), {}, options), inr::Error);
   }
