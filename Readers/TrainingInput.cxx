@@ -9,7 +9,10 @@
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
+#include <vtkUnsignedCharArray.h>
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -31,6 +34,38 @@ vtkSmartPointer<vtkDataArray> Contiguous(vtkDataArray* array)
       vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
   copy->DeepCopy(array);
   return copy;
+}
+
+bool IsHidden(const vtkUnsignedCharArray& ghosts, vtkIdType point)
+{
+  return (ghosts.GetValue(point) & vtkDataSetAttributes::HIDDENPOINT) != 0;
+}
+
+/// Makes NaNs of hidden points' values, in a copy; of integers, that there are such.
+void LeaveOutHidden(vtkImageData* image, TrainingInput& input)
+{
+  const vtkUnsignedCharArray* ghosts = image->GetPointGhostArray();
+  vtkIdType point = 0;
+  const vtkIdType points = ghosts ? ghosts->GetNumberOfTuples() : 0;
+  while (point < points && !IsHidden(*ghosts, point)) {
+    ++point;
+  }
+  if (point == points) {
+    return;
+  }
+  const int type = input.values->GetDataType();
+  if (type != VTK_FLOAT && type != VTK_DOUBLE) {
+    input.showsHidden = true;
+    return;
+  }
+  auto copy = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+  copy->DeepCopy(input.values);
+  for (; point < points; ++point) {
+    if (IsHidden(*ghosts, point)) {
+      copy->SetTuple1(point, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  input.values = copy;
 }
 
 } // namespace
@@ -80,6 +115,7 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
   }
   input.info.type = *type;
   input.values = Contiguous(array);
+  LeaveOutHidden(image, input);
   input.data.values = input.values->GetVoidPointer(0);
   input.data.type = *type;
   input.data.dims = input.info.dims;

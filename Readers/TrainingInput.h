@@ -19,10 +19,13 @@ struct TrainingInput
   vtkSmartPointer<vtkDataArray> values; ///< keeps `data` alive
   inr::VolumeData data;
   inr::VolumeInfo info;
+  bool showsHidden = false; ///< values of hidden points, of a type that has no NaN, are among them
 };
 
 /// The image's geometry, with the origin at the first point of its extent, its time step, if any,
-/// and the `values`, copied only where they do not lie in memory one after the other.
+/// and the `values`, copied only where they do not lie in memory one after the other or some are of
+/// points that a filter has hidden (as ResampleToImage does outside of a mesh): NaNs take the place
+/// of these.
 /// Throws inr::Error(InvalidArgument) that says what is wrong with the array.
 TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values);
 

@@ -26,6 +26,7 @@ public:
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
   /// Of this Write; null = not looked for. Who trains has it, too: Backend may be set meanwhile.
+  bool ShowsHidden = false; ///< of the file in work; see TrainingInput
   std::shared_ptr<TrainingBackend> Beside;
   inr::ModelPointer Previous; ///< what was written last, if it is of a time step
 };

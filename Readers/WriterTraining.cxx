@@ -178,7 +178,15 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   this->Internal->Previous = model->volume.time ? model : nullptr;
   if (model->training->nonFinite > 0 && group.rank() == 0) {
     vtkWarningMacro("Array '" << input.info.arrayName << "' has " << model->training->nonFinite
-                              << " NaN or infinite values; they were left out of the training.");
+                              << " NaN or infinite values, or hidden points; they were left out of "
+                                 "the training, and what the model shows there is made up.");
+  }
+  if (group.any(this->Internal->ShowsHidden) && group.rank() == 0) {
+    vtkWarningMacro("Some points of array '"
+                    << input.info.arrayName
+                    << "' are hidden, but a model has no mask and integers no NaN: their values "
+                       "are shown like all others. Make the array a float or double one "
+                       "(Calculator, Result Array Type) to leave them out of the training.");
   }
 }
 

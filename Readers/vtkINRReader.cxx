@@ -376,6 +376,11 @@ std::string vtkINRReader::Summary() const
   if (quality && quality->sampledVoxels > 0) {
     text += ", measured on " + std::to_string(quality->sampledVoxels) + " voxels";
   }
+  const std::optional<inr::TrainingRecord>& training = this->Internal->Source->Header().training;
+  if (training && training->nonFinite > 0) {
+    text += "; what it shows at " + std::to_string(training->nonFinite) +
+            " voxels that had no value is made up";
+  }
   return text;
 }
 

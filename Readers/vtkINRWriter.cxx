@@ -261,7 +261,9 @@ TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
                          "' is not point data; if it is cell data, use "
                          "CellDataToPointData first");
   }
-  return MakeTrainingInput(image, array);
+  TrainingInput input = MakeTrainingInput(image, array);
+  this->Internal->ShowsHidden |= input.showsHidden;
+  return input;
 }
 
 void vtkINRWriter::SetController(vtkMultiProcessController* controller)
@@ -278,6 +280,7 @@ vtkMultiProcessController* vtkINRWriter::GetController() { return this->Internal
 void vtkINRWriter::BeginFile()
 {
   this->Internal->Target = this->FileName ? this->FileName : "";
+  this->Internal->ShowsHidden = false;
   this->PSNR = this->SSIM = this->MaximumError = this->Ratio = 0;
   this->TrainingSeconds = this->WaitingSeconds = this->ExchangeSeconds = 0;
   this->Steps = 0;

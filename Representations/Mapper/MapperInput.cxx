@@ -25,8 +25,9 @@ std::string NotAnInr(vtkAbstractArray* array)
            "vtkINRReader.";
   }
   return std::string("The input's array '") + (array->GetName() ? array->GetName() : "") +
-         "' is not an INR (a filter may have turned it into ordinary voxels); connect a "
-         "vtkINRReader, or draw it with an ordinary volume mapper.";
+         "' is not an INR (a filter may have turned it into ordinary voxels); show the reader "
+         "itself, or this as \"Volume\" (in VTK: connect a vtkINRReader, or use another volume "
+         "mapper).";
 }
 
 } // namespace

@@ -210,6 +210,53 @@ TEST_F(Writer, WarnsOfValuesThatAreNoNumbers)
   ASSERT_EQ(messages.warnings().size(), 1u);
   EXPECT_NE(messages.warnings()[0].find("2 NaN or infinite values"), std::string::npos);
   EXPECT_LE(this->decode()->GetScalarRange()[1], 1.0);
+  vtkNew<vtkINRReader> reader;
+  reader->SetFileName(this->path().c_str());
+  reader->Update();
+  auto* summary = vtkStringArray::SafeDownCast(
+      reader->GetOutput()->GetFieldData()->GetAbstractArray("INRSummary"));
+  ASSERT_TRUE(summary);
+  const std::string text = summary->GetValue(0);
+  EXPECT_NE(text.find("at 2 voxels that had no value is made up"), std::string::npos) << text;
+}
+
+namespace {
+
+/// As ResampleToImage does with points outside of a mesh; their values are 0 there.
+void HidePoint(vtkImageData* image, vtkIdType point)
+{
+  image->AllocatePointGhostArray();
+  image->GetPointGhostArray()->SetValue(point, vtkDataSetAttributes::HIDDENPOINT);
+}
+
+} // namespace
+
+TEST_F(Writer, LeavesOutWhatIsHidden)
+{
+  const auto image = MakeImage({9, 8, 7}, VTK_FLOAT, 1, 2);
+  vtkDataArray* array = image->GetPointData()->GetScalars();
+  array->SetTuple1(10, -500);
+  HidePoint(image, 10);
+  const MessageCapture messages;
+  this->write(image);
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  ASSERT_EQ(messages.warnings().size(), 1u);
+  EXPECT_NE(messages.warnings()[0].find("has 1 NaN or infinite values, or hidden points"),
+            std::string::npos)
+      << messages.text();
+  EXPECT_GE(this->decode()->GetScalarRange()[0], 1.0);
+  EXPECT_EQ(array->GetTuple1(10), -500); // the source's own
+}
+
+TEST_F(Writer, WarnsOfHiddenIntegers)
+{
+  const auto image = MakeImage({9, 8, 7}, VTK_UNSIGNED_CHAR, 1, 200);
+  HidePoint(image, 10);
+  const MessageCapture messages;
+  this->write(image);
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  ASSERT_EQ(messages.warnings().size(), 1u);
+  EXPECT_NE(messages.warnings()[0].find("are hidden, but a model has no mask"), std::string::npos);
 }
 
 TEST_F(Writer, RefusesDataThatItCannotSave)
