@@ -25,8 +25,8 @@ public:
   bool IsWriting = false; ///< the steps stay those that there were at the beginning
   vtkSmartPointer<vtkMultiProcessController> Controller =
       vtkMultiProcessController::GetGlobalController();
-  /// Of this Write; null = not looked for. Who trains has it, too: Backend may be set meanwhile.
   bool ShowsHidden = false; ///< of the file in work; see TrainingInput
+  /// Of this Write; null = not looked for. Who trains has it, too: Backend may be set meanwhile.
   std::shared_ptr<TrainingBackend> Beside;
   inr::ModelPointer Previous; ///< what was written last, if it is of a time step
 };

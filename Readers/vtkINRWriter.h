@@ -134,8 +134,8 @@ public:
   ///@}
 
   ///@{
-  /// Edge of the macro-cells in voxels, a power of two; 0 (default) = the smallest power of two
-  /// from 16 that gives at most 2^22 cells.
+  /// Edge of the macro-cells in voxels, a power of two up to 2^29; 0 (default) = the smallest power
+  /// of two from 16 that gives at most 2^22 cells.
   vtkSetClampMacro(MacroCellSize, int, 0, VTK_INT_MAX);
   vtkGetMacro(MacroCellSize, int);
   ///@}

@@ -22,10 +22,11 @@ TrainingIdentity IdentityOf(const TrainingRun& run, StreamedVolume& volume)
   return run.identity(volume.estimate(PsnrEstimate::UsualVoxels), volume.pool());
 }
 
+/// Whatever trained: see HaveSameSamples.
 std::string ToText(const TrainingIdentity& identity)
 {
   std::string text;
-  for (const auto& [name, value] : identity) {
+  for (const auto& [name, value] : WithoutKernel(identity)) {
     text.append(name).append("\n").append(value).append("\n");
   }
   return text;

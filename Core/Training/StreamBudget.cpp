@@ -58,8 +58,14 @@ std::int64_t LeastFreeBytes() { return (CopiesOfBlock + 1) * SmallestShare; }
 
 std::string InMiB(std::int64_t bytes) { return std::to_string(bytes / MiB + 1) + " MiB"; }
 
+const char* LimitText(int processes)
+{
+  return processes > 1 ? " in each process and its share of the MemoryLimit is "
+                       : " and the MemoryLimit is ";
+}
+
 /// Whatever the model.
-void RequireRoomForCells(const VolumeInfo& info, const TrainingOptions& options)
+void RequireRoomForCells(const VolumeInfo& info, const TrainingOptions& options, int processes)
 {
   const std::int64_t cells = CellBytes(info, options);
   const std::int64_t others = Overhead + LeastFreeBytes();
@@ -67,7 +73,7 @@ void RequireRoomForCells(const VolumeInfo& info, const TrainingOptions& options)
     throw Error(ErrorCode::InvalidArgument,
                 "the ranges of macro-cells of " + std::to_string(MacroCellSizeOf(info, options)) +
                     " voxels, of a volume read in pieces, take " + InMiB(cells + others) +
-                    " with what they are measured in, and the MemoryLimit is " +
+                    " with what they are measured in" + LimitText(processes) +
                     InMiB(options.memoryLimit - 1) + "; raise it or choose a larger MacroCellSize");
   }
 }
@@ -115,7 +121,7 @@ std::int64_t TrainingBytes(const Description& description, bool accelerated)
 StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
                         std::int64_t bytesPerVoxel, int processes)
 {
-  RequireRoomForCells(info, options);
+  RequireRoomForCells(info, options, processes);
   StreamBudget budget{FittingDescription(info, options, processes), 0, 0};
   const std::int64_t left = FreeBytes(info, options, budget.description, processes);
   if (left < LeastFreeBytes()) {
@@ -126,9 +132,7 @@ StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
     throw Error(ErrorCode::InvalidArgument,
                 "training a model of " + std::to_string(Layout(budget.description).parameterCount) +
                     " parameters from a volume read in pieces takes " +
-                    InMiB(options.memoryLimit - left + LeastFreeBytes()) +
-                    (processes > 1 ? " in each process and its share of the MemoryLimit is "
-                                   : " and the MemoryLimit is ") +
+                    InMiB(options.memoryLimit - left + LeastFreeBytes()) + LimitText(processes) +
                     InMiB(options.memoryLimit - 1) + "; raise it" +
                     (leftBySmallest < LeastFreeBytes()
                          ? ", as the smallest model takes too much, too"

@@ -148,7 +148,7 @@ VolumeInfo WholeOf(const VolumeReader& reader, const VolumeInfo& info)
   return whole;
 }
 
-/// One that is told of nothing twice: that the checkpoint is of no use, it has heard.
+/// For a second attempt: that the checkpoint is of no use was told at the first.
 CheckpointOptions WithoutIgnored(CheckpointOptions options)
 {
   options.tell = [tell = options.tell](CheckpointEvent event, const std::string& text) {

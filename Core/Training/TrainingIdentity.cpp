@@ -60,11 +60,15 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
           {"the precision of the file", NameOf(ParameterTypeNames, options.storedAs)}};
 }
 
-bool HaveSameSamples(TrainingIdentity one, TrainingIdentity other)
+TrainingIdentity WithoutKernel(TrainingIdentity identity)
 {
-  one.erase(KernelName);
-  other.erase(KernelName);
-  return one == other;
+  identity.erase(KernelName);
+  return identity;
+}
+
+bool HaveSameSamples(const TrainingIdentity& one, const TrainingIdentity& other)
+{
+  return WithoutKernel(one) == WithoutKernel(other);
 }
 
 } // namespace inr

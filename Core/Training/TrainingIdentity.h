@@ -16,8 +16,11 @@ TrainingIdentity IdentityOf(const Model& model, const TrainingOptions& options,
                             const PsnrEstimate& estimate, const BatchSource& batches,
                             int processes);
 
+/// But for what the training computes with.
+TrainingIdentity WithoutKernel(TrainingIdentity identity);
+
 /// Whether they are of the same data, drawn from alike: of the same training but for what it
 /// computes with.
-bool HaveSameSamples(TrainingIdentity one, TrainingIdentity other);
+bool HaveSameSamples(const TrainingIdentity& one, const TrainingIdentity& other);
 
 } // namespace inr

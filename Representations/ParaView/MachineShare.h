@@ -8,7 +8,7 @@ namespace inr {
 /// What one of several processes on a machine may take of it.
 struct MachineShare
 {
-  /// Its share of its cores, among those processes that may run on the same ones: the ranks of a
+  /// Its share of the cores, among those processes that may run on the same ones: the ranks of a
   /// node that are not bound to cores of their own; 0 = as many as there are.
   int threads = 0;
   int rank = 0;      ///< among the processes on this machine, from 0 on

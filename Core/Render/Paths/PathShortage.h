@@ -30,7 +30,7 @@ public:
     }
   }
 
-  /// Of the bricks that a round wanted, no more than some can come.
+  /// A round wanted more bricks than there is room for.
   void note() { this->Known = Knowledge::Lacks; }
 
   /// As far as is known.

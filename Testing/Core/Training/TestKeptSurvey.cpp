@@ -181,6 +181,20 @@ TEST_F(KeptSurvey, IsOfNoOtherTraining)
   }
 }
 
+// What was read stays of use, for all that follows.
+TEST_F(KeptSurvey, IsOfAnyKernel)
+{
+  this->stopAfter(10);
+  this->Options.kernel = "baseline";
+  const std::vector<Outcome> whole = this->trainWithoutCheckpoint();
+  for (const std::uint64_t steps : {10u, 20u}) {
+    this->stopAfter(steps);
+    EXPECT_FALSE(this->Surveyed);
+  }
+  this->expectModelOf(whole, this->train());
+  EXPECT_FALSE(this->Surveyed);
+}
+
 TEST_F(KeptSurvey, IsReadAgainWhenTheDataHaveChanged)
 {
   const auto middle = static_cast<std::ptrdiff_t>(this->Data.values.size() / 2);
