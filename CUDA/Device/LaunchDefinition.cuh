@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What Launch.h declares, for nvcc: INR_INSTANTIATE(Kernel), within namespace inr::cuda, makes a
-// kernel one that can be launched.
+// What Launch.h declares, for nvcc: INR_INSTANTIATE(Kernel) makes a kernel one that can be launched.
 #pragma once
 
 #include "CUDA/Device/Kernels/Block.h"
@@ -54,9 +53,10 @@ void LaunchKernel(const Kernel& kernel, std::int64_t blocks, std::int64_t shared
   Check(cudaGetLastError(), "kernel launch");
 }
 
-#define INR_INSTANTIATE(Kernel)                                                                    \
-  template std::int64_t PrepareKernel<Kernel>(std::int64_t);                                       \
-  template void LaunchKernel<Kernel>(const Kernel&, std::int64_t, std::int64_t, cudaStream_t)
-
 } // namespace cuda
 } // namespace inr
+
+#define INR_INSTANTIATE(Kernel)                                                                    \
+  template std::int64_t inr::cuda::PrepareKernel<Kernel>(std::int64_t);                            \
+  template void inr::cuda::LaunchKernel<Kernel>(const Kernel&, std::int64_t, std::int64_t,         \
+                                                cudaStream_t)

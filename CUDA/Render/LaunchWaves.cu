@@ -1,14 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CUDA/Render/Kernels/MarchWave.h"
-#include "CUDA/Render/Kernels/PathWave.h"
 #include "CUDA/Device/LaunchDefinition.cuh"
+#include "CUDA/Render/Kernels/LaunchedWaves.h"
 
-namespace inr {
-namespace cuda {
-
-INR_INSTANTIATE(AdvanceWave<MarchStages>);
-INR_INSTANTIATE(ListNeighbors<MarchStages>);
-INR_INSTANTIATE(AdvanceWave<PathStages>);
-
-} // namespace cuda
-} // namespace inr
+INR_WAVES_KERNELS(INR_INSTANTIATE);
