@@ -41,8 +41,9 @@ bool IsHidden(const vtkUnsignedCharArray& ghosts, vtkIdType point)
   return (ghosts.GetValue(point) & vtkDataSetAttributes::HIDDENPOINT) != 0;
 }
 
-/// Makes NaNs of hidden points' values, in a copy; of integers, that there are such.
-void LeaveOutHidden(vtkImageData* image, TrainingInput& input)
+/// Makes NaNs of hidden points' values, in a copy of the image's `own`; of integers, says that
+/// there are such.
+void LeaveOutHidden(vtkImageData* image, vtkDataArray* own, TrainingInput& input)
 {
   const vtkUnsignedCharArray* ghosts = image->GetPointGhostArray();
   vtkIdType point = 0;
@@ -58,14 +59,15 @@ void LeaveOutHidden(vtkImageData* image, TrainingInput& input)
     input.showsHidden = true;
     return;
   }
-  auto copy = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
-  copy->DeepCopy(input.values);
+  if (input.values == own) {
+    input.values.TakeReference(vtkDataArray::CreateDataArray(type));
+    input.values->DeepCopy(own);
+  }
   for (; point < points; ++point) {
     if (IsHidden(*ghosts, point)) {
-      copy->SetTuple1(point, std::numeric_limits<double>::quiet_NaN());
+      input.values->SetTuple1(point, std::numeric_limits<double>::quiet_NaN());
     }
   }
-  input.values = copy;
 }
 
 } // namespace
@@ -115,7 +117,7 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
   }
   input.info.type = *type;
   input.values = Contiguous(array);
-  LeaveOutHidden(image, input);
+  LeaveOutHidden(image, array, input);
   input.data.values = input.values->GetVoidPointer(0);
   input.data.type = *type;
   input.data.dims = input.info.dims;

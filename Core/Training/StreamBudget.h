@@ -23,7 +23,8 @@ std::int64_t TrainingBytes(const Description& description, bool accelerated = fa
 /// The model is the one that the options ask for, or else the default one, made as much smaller as
 /// the limit demands. `options.memoryLimit` is for each of so many processes. Throws
 /// Error(InvalidArgument) that names the figures where `options.memoryLimit` cannot hold the
-/// training of the model that was asked for.
+/// training of the model that was asked for, or the ranges of so many macro-cells; what
+/// CountMacroCells throws.
 StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
                         std::int64_t bytesPerVoxel, int processes = 1);
 

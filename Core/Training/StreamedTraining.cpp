@@ -152,7 +152,9 @@ VolumeInfo WholeOf(const VolumeReader& reader, const VolumeInfo& info)
 CheckpointOptions WithoutIgnored(CheckpointOptions options)
 {
   options.tell = [tell = options.tell](CheckpointEvent event, const std::string& text) {
-    tell&& event != CheckpointEvent::Ignored ? tell(event, text) : void();
+    if (tell && event != CheckpointEvent::Ignored) {
+      tell(event, text);
+    }
   };
   return options;
 }

@@ -197,10 +197,11 @@ TEST(StreamedTraining, SaysWhereMacroCellsTakeTooMuchMemory)
   info.type = inr::ScalarType::Float32;
   inr::TrainingOptions options;
   options.memoryLimit = 1024 * MiB;
+  int processes = 1;
   const auto problem = [&](int edge) -> std::string {
     options.macroCellSize = edge;
     try {
-      inr::PlanStream(info, options, 4, 1);
+      inr::PlanStream(info, options, 4, processes);
     } catch (const inr::Error& error) {
       return error.what();
     }
@@ -210,6 +211,9 @@ TEST(StreamedTraining, SaysWhereMacroCellsTakeTooMuchMemory)
   EXPECT_EQ(problem(8), "");
   EXPECT_NE(problem(2).find("macro-cells of 2 voxels"), std::string::npos) << problem(2);
   EXPECT_NE(problem(2).find("choose a larger MacroCellSize"), std::string::npos);
+  processes = 4;
+  EXPECT_NE(problem(2).find("in each process and its share of the MemoryLimit"), std::string::npos)
+      << problem(2);
   EXPECT_NE(problem(1).find("choose larger ones"), std::string::npos) << problem(1);
 }
 

@@ -3,6 +3,7 @@
 
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkFloatArray.h>
 #include <vtkImageAlgorithm.h>
 #include <vtkImageData.h>
@@ -12,6 +13,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +33,7 @@ public:
   int FailingRequest = 0;       ///< by number from 1; 0 = none
   bool FailsFromThere = false;  ///< also afterwards
   bool OnlyComplains = false;   ///< and succeeds, in place of failing
+  int HiddenFrom = 1 << 30;     ///< points of this z and beyond are hidden, and -1000
   int MoreArrays = 0;           ///< besides the one
   bool TellsOfArrays = false;   ///< of these, too, before it is asked for them
   double Time = 0;              ///< of the last request
@@ -107,6 +110,22 @@ protected:
         }
       }
     }
+    this->hide(image, extent);
     return 1;
+  }
+
+private:
+  void hide(vtkImageData* image, const int extent[6]) const
+  {
+    const int first = std::max(extent[4], this->HiddenFrom);
+    if (first > extent[5]) {
+      return;
+    }
+    image->AllocatePointGhostArray();
+    int corner[3] = {extent[0], extent[2], first};
+    for (vtkIdType k = image->ComputePointId(corner); k < image->GetNumberOfPoints(); ++k) {
+      image->GetPointGhostArray()->SetValue(k, vtkDataSetAttributes::HIDDENPOINT);
+      image->GetPointData()->GetArray("field")->SetTuple1(k, -1000);
+    }
   }
 };

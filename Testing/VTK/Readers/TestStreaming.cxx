@@ -81,6 +81,36 @@ TEST_F(Streaming, GoesThroughFilters)
   EXPECT_GT(this->Writer->GetPSNR(), 30);
 }
 
+// The upper half, of most pieces nothing or all.
+TEST_F(Streaming, LeavesOutWhatIsHidden)
+{
+  this->Source->HiddenFrom = 80;
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  ASSERT_EQ(messages.warnings().size(), 1u) << messages.text();
+  EXPECT_NE(messages.warnings()[0].find("has 8192000 NaN or infinite values, or hidden points"),
+            std::string::npos)
+      << messages.text();
+  EXPECT_GT(this->Source->Requests, 20);
+  vtkNew<vtkINRReader> reader;
+  reader->SetFileName(this->path().c_str());
+  reader->Update();
+  EXPECT_GE(reader->GetOutput()->GetScalarRange()[0], 59.0);
+}
+
+TEST_F(Streaming, WarnsOfHiddenIntegers)
+{
+  this->Source->HiddenFrom = 80;
+  this->Source->Type = VTK_SHORT;
+  this->Writer->SetMaximumSteps(5);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  ASSERT_EQ(messages.warnings().size(), 1u) << messages.text();
+  EXPECT_NE(messages.warnings()[0].find("are hidden, but a model has no mask"), std::string::npos);
+}
+
 TEST_F(Streaming, OfEveryTimeStep)
 {
   this->Writer->WriteTimeStepsOn();
