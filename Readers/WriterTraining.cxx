@@ -177,9 +177,12 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   this->UpdateProgress(1.0);
   this->Internal->Previous = model->volume.time ? model : nullptr;
   if (model->training->nonFinite > 0 && group.rank() == 0) {
-    vtkWarningMacro("Array '" << input.info.arrayName << "' has " << model->training->nonFinite
-                              << " NaN or infinite values, or hidden points; they were left out of "
-                                 "the training, and what the model shows there is made up.");
+    vtkWarningMacro(
+        "Array '" << input.info.arrayName << "' has " << model->training->nonFinite
+                  << " NaN or infinite values, or hidden points; they were left out of "
+                     "the training, and what the model shows there is made up. To hide it "
+                     "later, give them a value outside of the data's range before "
+                     "saving (Calculator; of hidden points, then PassArrays).");
   }
   if (group.any(this->Internal->ShowsHidden) && group.rank() == 0) {
     vtkWarningMacro("Some points of array '"
