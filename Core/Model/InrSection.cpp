@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Model/InrSection.h"
 
-#include <glm/matrix.hpp>
+#include "Core/Error.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -15,7 +16,6 @@ using nlohmann::json;
 
 constexpr std::int64_t PlainVersion = 1;   // readable upstream, our section ignored
 constexpr std::int64_t CompactVersion = 2; // quantised parameters, packed blobs
-constexpr std::size_t MaximumNameLength = 1024;
 constexpr const char* ChecksumPrefix = "crc32:";
 constexpr const char* AxisNames[3] = {"x", "y", "z"};
 
@@ -297,48 +297,6 @@ BsonObject OwnSection(const Model& model, std::uint32_t checksum)
     section.object("training", TrainingSection(*model.training));
   }
   return section;
-}
-
-void RequireValidDims(const glm::i64vec3& dims, ErrorCode code)
-{
-  constexpr std::int64_t MaximumDimension = std::numeric_limits<std::int32_t>::max();
-  constexpr std::int64_t MaximumVoxels = std::int64_t{1} << 53;
-  std::int64_t voxels = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t size = dims[axis];
-    if (size < 1 || size > MaximumDimension || size > MaximumVoxels / voxels) {
-      throw Error(code, "a volume cannot have " + std::to_string(dims.x) + " x " +
-                            std::to_string(dims.y) + " x " + std::to_string(dims.z) + " voxels");
-    }
-    voxels *= size;
-  }
-}
-
-void RequireValidVolume(const VolumeInfo& volume, ErrorCode code)
-{
-  RequireValidDims(volume.dims, code);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(volume.spacing[axis]) || volume.spacing[axis] == 0) {
-      throw Error(code, "the spacing must be finite and not zero");
-    }
-    if (!std::isfinite(volume.origin[axis])) {
-      throw Error(code, "the origin must be finite");
-    }
-  }
-  const double determinant = glm::determinant(volume.direction);
-  if (!std::isfinite(determinant) || determinant == 0) {
-    throw Error(code, "the direction matrix must be finite and invertible");
-  }
-  if (!(volume.low <= volume.high) || !std::isfinite(volume.high - volume.low)) {
-    throw Error(code, "the value range must be finite, its low end not above its high end");
-  }
-  if (volume.time && !std::isfinite(*volume.time)) {
-    throw Error(code, "the time must be finite");
-  }
-  if (volume.arrayName.size() > MaximumNameLength) {
-    throw Error(code,
-                "the array's name is longer than " + std::to_string(MaximumNameLength) + " bytes");
-  }
 }
 
 } // namespace inr

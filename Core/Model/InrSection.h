@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Error.h"
 #include "Core/Model/BsonObject.h"
 #include "Core/Model/JsonSection.h"
 #include "Core/Model/Model.h"
@@ -37,13 +36,5 @@ BsonObject OwnSection(const Model& model, std::uint32_t checksum);
 /// The integers `x`, `y` and `z` of a section; unchecked.
 glm::i64vec3 ParseDims(const JsonSection& section);
 BsonObject DimsSection(const glm::i64vec3& dims);
-
-/// Throws Error(`code`) unless dims are 1 to 2^31 - 1 with a product of at most 2^53.
-void RequireValidDims(const glm::i64vec3& dims, ErrorCode code);
-
-/// The same of a volume's, and unless spacing is finite and not zero, origin and direction are
-/// finite, the direction can be inverted, and low <= high are finite with a finite difference, as
-/// is a time. A name may have up to 1024 bytes.
-void RequireValidVolume(const VolumeInfo& volume, ErrorCode code);
 
 } // namespace inr

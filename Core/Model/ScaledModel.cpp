@@ -2,7 +2,6 @@
 #include "Core/Model/ScaledModel.h"
 
 #include "Core/Error.h"
-#include "Core/Model/InrSection.h"
 #include "Core/Model/RangeGrids.h"
 #include "Core/Parallel.h"
 
