@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -173,17 +174,33 @@ TrainingRecord ParseTraining(const JsonSection& section)
 // BSON has signed integers only: the whole range survives as two's complement.
 std::int64_t AsSigned(std::uint64_t value) { return static_cast<std::int64_t>(value); }
 
+constexpr std::int64_t LargestApron = 1024;
+
 std::int64_t ParseApron(const JsonSection& section, MacroCellProvenance provenance)
 {
-  constexpr std::int64_t most = 1024;
   const std::int64_t unsaid = provenance == MacroCellProvenance::Decoded ? 1 : 0;
   const std::int64_t apron = section.integer("macrocell_apron", unsaid);
-  if (apron < 0 || apron > most) {
+  if (apron < 0 || apron > LargestApron) {
     throw Error(ErrorCode::InvalidModel, "an apron of " + std::to_string(apron) +
                                              " voxels around macro-cells; it must be 0 to " +
-                                             std::to_string(most));
+                                             std::to_string(LargestApron));
   }
   return apron;
+}
+
+/// One number for all axes, so what holds along each of them: those of another grid than the
+/// volume's own differ, and ranges must not be taken for wider than they are. A single cell holds
+/// everything.
+std::int64_t ApronInVoxels(const MacroCells& cells, const glm::i64vec3& dims)
+{
+  constexpr double rounding = 1e-6; // of dividing by the dimensions and multiplying again
+  auto least = static_cast<double>(cells.ranges.size() > 1 ? LargestApron : 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cells.dims[axis] > 1) {
+      least = std::min(least, cells.apron[axis] * static_cast<double>(dims[axis]));
+    }
+  }
+  return static_cast<std::int64_t>(std::floor(least + rounding));
 }
 
 BsonObject QualitySection(const Quality& quality)
@@ -281,8 +298,7 @@ BsonObject OwnSection(const Model& model, std::uint32_t checksum)
       .object("data_range", BsonObject().real("low", volume.low).real("high", volume.high))
       .text("hash_rule", NameOf(RuleNames, model.description.grid.rule))
       .text("macrocell_provenance", NameOf(ProvenanceNames, model.macroCells.provenance))
-      .integer("macrocell_apron",
-               std::llround(model.macroCells.apron.x * static_cast<double>(volume.dims.x)))
+      .integer("macrocell_apron", ApronInVoxels(model.macroCells, volume.dims))
       .text("checksum", ChecksumToText(checksum));
   if (model.nativeDims.value_or(volume.dims) != volume.dims) {
     section.object("native_dims", DimsSection(*model.nativeDims));

@@ -126,6 +126,36 @@ TEST_F(ModelFile, AnApronThatIsNotSaidIsAVoxel)
             1.0 / glm::dvec3(written->volume.dims));
 }
 
+/// The file has one number, of voxels of the grid that the volume is said to be.
+TEST_F(ModelFile, AnApronNeverBecomesWider)
+{
+  const inr::ModelPointer model = FullModel();
+  auto ofCells = std::make_shared<inr::Model>(*model);
+  ofCells->volume.dims = {40, 30, 20};
+  ofCells->macroCells.apron = 3.0 / glm::dvec3(ofCells->volume.dims);
+  const inr::ModelPointer trained = ofCells;
+  auto wide = std::make_shared<inr::Model>(*trained);
+  wide->volume.dims.x = 80; // as with an override
+  auto flat = std::make_shared<inr::Model>(*trained);
+  flat->volume.dims.x = 1;
+  flat->macroCells = inr::MakeMacroCells(flat->volume.dims, 16);
+  flat->macroCells.apron = 3.0 / glm::dvec3(flat->volume.dims);
+  for (const auto& [written, voxels] : {std::pair(trained, 3),
+                                        {inr::ScaledModel(trained, 1.5), 4},
+                                        {inr::ScaledModel(trained, 0.5), 1},
+                                        {inr::ScaledModel(flat, 0.5), 1},
+                                        {inr::ModelPointer(wide), 3}}) {
+    const inr::ModelPointer read = inr::ModelFromBytes(inr::ModelToBytes(*written));
+    const glm::dvec3 dims(read->volume.dims);
+    EXPECT_EQ(glm::round(read->macroCells.apron * dims), glm::dvec3(voxels));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (read->macroCells.dims[axis] > 1) {
+        EXPECT_LE(read->macroCells.apron[axis], written->macroCells.apron[axis] + 1e-9) << axis;
+      }
+    }
+  }
+}
+
 TEST_F(ModelFile, RangesNeverBecomeNarrower)
 {
   const auto written = FullModel();
