@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Model/MacroCells.h"
 
-#include "Core/Error.h"
-
+#include <cmath>
 #include <string>
 
 namespace inr {
@@ -37,6 +36,22 @@ void RequireVolume(const glm::i64vec3& dims)
 }
 
 } // namespace
+
+void RequireValidGeometry(const MacroCells& cells, ErrorCode code)
+{
+  constexpr double largest = 1e9;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double edge = cells.spacing[axis];
+    const double covered = static_cast<double>(cells.dims[axis]) * edge;
+    if (!(edge > 0 && edge <= largest) || !(covered >= 1.0 - 1e-6)) {
+      throw Error(code, "the spacings of macro-cells must be positive, at most 1e9, and let the "
+                        "cells cover the unit cube");
+    }
+    if (!(cells.apron[axis] >= 0) || !std::isfinite(cells.apron[axis])) {
+      throw Error(code, "the apron of macro-cells must be finite and not negative");
+    }
+  }
+}
 
 int DefaultMacroCellSize(const glm::i64vec3& volumeDims)
 {

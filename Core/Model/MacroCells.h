@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Error.h"
 #include "Core/HostDevice.h"
 
 #include <glm/gtc/type_precision.hpp>
@@ -36,7 +37,7 @@ struct ValueRange
 /// Where the ranges come from, in falling order of trust.
 enum class MacroCellProvenance {
   Decoded,  ///< every voxel of the stored network, with an apron
-  Training, ///< training samples, widened by the measured maximum error
+  Training, ///< every voxel of the data, with an apron, widened by the measured maximum error
   File      ///< whatever the writing program put there (upstream)
 };
 
@@ -60,6 +61,11 @@ struct MacroCells
     return x + this->dims.x * (y + this->dims.y * z);
   }
 };
+
+/// Throws Error(`code`) unless the cells cover the unit cube, with edges of at most 1e9 of it
+/// (those of a single layer of voxels reach far beyond it), and the apron is finite and not
+/// negative.
+void RequireValidGeometry(const MacroCells& cells, ErrorCode code);
 
 /// Edge in voxels of the cells for a volume: the smallest power of two >= 16 that gives at most
 /// 2^22 cells.

@@ -125,7 +125,6 @@ void RequireValidCells(const JsonSection& section, const MacroCells& cells, cons
 {
   constexpr std::int64_t mostCells = std::int64_t{1} << 28; // of a packed table
   constexpr auto rangeSize = static_cast<std::int64_t>(sizeof(ValueRange));
-  constexpr double largest = 1e9; // a single layer of voxels has cells that reach far beyond it
   // Dividing what is left by each count keeps every product within bounds.
   std::int64_t left = compact ? mostCells : blob.size / rangeSize;
   std::int64_t count = 1;
@@ -136,14 +135,8 @@ void RequireValidCells(const JsonSection& section, const MacroCells& cells, cons
     }
     left /= along;
     count *= along;
-    const double covered = static_cast<double>(along) * cells.spacing[axis];
-    if (!(cells.spacing[axis] > 0) || !(covered >= 1.0 - 1e-6)) {
-      section.refuse("spacings", "must be positive and let the cells cover the unit cube");
-    }
-    if (!(cells.spacing[axis] <= largest)) {
-      section.refuse("spacings", "must be at most 1e9, as a cell is not larger than any volume");
-    }
   }
+  RequireValidGeometry(cells, ErrorCode::InvalidModel);
   if (compact ? !MayExpand(blob.size, PlainRangeBytes(count)) : count * rangeSize != blob.size) {
     section.refuse("dims", "do not fit the " + std::to_string(blob.size) + " bytes of ranges");
   }

@@ -37,7 +37,9 @@ bool IsRootKey(const std::string& key)
 
 bool LooksLikeText(const std::string& start)
 {
-  const std::size_t first = start.find_first_not_of(" \t\r\n");
+  constexpr const char* byteOrderMark = "\xef\xbb\xbf"; // as editors of some systems put there
+  const std::size_t begin = start.rfind(byteOrderMark, 0) == 0 ? 3 : 0;
+  const std::size_t first = start.find_first_not_of(" \t\r\n", begin);
   return first != std::string::npos && (start[first] == '{' || start[first] == '/');
 }
 
@@ -134,7 +136,7 @@ bool IsModelFile(const std::string& path)
   try {
     const InputFile file(path);
     const std::string start = StartOf(file);
-    return IsRootKey(FirstBsonKey(start)) ||
+    return StartsWithItsSize(start, file) || IsRootKey(FirstBsonKey(start)) ||
            (LooksLikeText(start) && IsRootKey(FirstTextKey(start)));
   } catch (const std::exception&) { // Error, or no memory
     return false;

@@ -11,6 +11,7 @@
 #include "Core/Model/Quantised.h"
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <new>
@@ -213,8 +214,15 @@ void RequireStorable(const Model& model)
   RequireValidVolume(model.volume, ErrorCode::InvalidModel);
   const MacroCells& cells = model.macroCells;
   const auto cellCount = static_cast<std::int64_t>(cells.ranges.size());
-  if (!cells.empty() && cells.dims.x * cells.dims.y * cells.dims.z != cellCount) {
-    throw Error(ErrorCode::InvalidModel, "the number of macro-cell ranges does not fit their dims");
+  if (!cells.empty()) {
+    RequireValidGeometry(cells, ErrorCode::InvalidModel);
+    if (cells.dims.x * cells.dims.y * cells.dims.z != cellCount) {
+      throw Error(ErrorCode::InvalidModel,
+                  "the number of macro-cell ranges does not fit their dims");
+    }
+  }
+  if (model.training && !std::isfinite(model.training->seconds)) {
+    throw Error(ErrorCode::InvalidModel, "the seconds of the training must be a finite number");
   }
   RequireSize(Frame(model, LargestSizes(model), 0).total());
 }

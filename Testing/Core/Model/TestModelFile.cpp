@@ -156,6 +156,32 @@ TEST_F(ModelFile, AnApronNeverBecomesWider)
   }
 }
 
+TEST_F(ModelFile, IsNotWrittenWhereItCouldNotBeRead)
+{
+  const auto refusal = [](const auto& change) -> std::string {
+    const auto model = FullModel();
+    change(*model);
+    try {
+      inr::ModelToBytes(*model);
+    } catch (const inr::Error& error) {
+      EXPECT_EQ(error.code(), inr::ErrorCode::InvalidModel);
+      return error.what();
+    }
+    return "written";
+  };
+  const auto withCells = [&](const auto& change) {
+    return refusal([&](inr::Model& model) { change(model.macroCells); });
+  };
+  EXPECT_NE(withCells([](auto& cells) { cells.spacing.x = 2e9; }).find("at most 1e9"),
+            std::string::npos);
+  EXPECT_NE(withCells([](auto& cells) { cells.spacing.y = 0.01; }).find("cover"),
+            std::string::npos);
+  EXPECT_NE(withCells([](auto& cells) { cells.apron.z = NAN; }).find("apron"), std::string::npos);
+  EXPECT_NE(withCells([](auto& cells) { cells.apron.z = -1; }).find("apron"), std::string::npos);
+  EXPECT_NE(refusal([](auto& model) { model.training->seconds = NAN; }).find("seconds"),
+            std::string::npos);
+}
+
 TEST_F(ModelFile, RangesNeverBecomeNarrower)
 {
   const auto written = FullModel();
@@ -220,6 +246,12 @@ TEST_F(ModelFile, IsRecognisedByContent)
 {
   this->roundTrip(*FullModel());
   EXPECT_TRUE(inr::IsModelFile(Folder.file("model.inr")));
+  nlohmann::json document = nlohmann::json::from_bson(ReadBytes(Folder.file("model.inr")));
+  document["a comment"] = "keys may come in any order, and others be among them";
+  const std::vector<std::uint8_t> commented = nlohmann::json::to_bson(document);
+  WriteBytes(Folder.file("commented.inr"), {commented.begin(), commented.end()});
+  EXPECT_TRUE(inr::IsModelFile(Folder.file("commented.inr")));
+  EXPECT_NO_THROW(inr::ReadModel(Folder.file("commented.inr")));
   WriteBytes(Folder.file("inria.inr"), "#INRIMAGE-4#{\nXDIM=3\n");
   EXPECT_FALSE(inr::IsModelFile(Folder.file("inria.inr")));
   EXPECT_FALSE(inr::IsModelFile(Folder.file("missing.inr")));

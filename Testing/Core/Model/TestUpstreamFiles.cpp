@@ -41,6 +41,17 @@ TEST_P(UpstreamFiles, Open)
   EXPECT_FALSE(model->quality.has_value());
 }
 
+/// As editors of some systems save texts.
+TEST(UpstreamTexts, OpenBehindAByteOrderMark)
+{
+  const std::string text = INR_UPSTREAM_DIR "/compact_text.upstream";
+  const TemporaryFolder folder;
+  WriteBytes(folder.file("marked.json"), "\xef\xbb\xbf" + ReadBytes(text));
+  EXPECT_TRUE(inr::IsModelFile(folder.file("marked.json")));
+  EXPECT_EQ(inr::ReadModel(folder.file("marked.json"))->parameters,
+            inr::ReadModel(text)->parameters);
+}
+
 TEST_P(UpstreamFiles, TellTheirRanges)
 {
   const inr::ModelPointer model = inr::ReadModel(this->path());
