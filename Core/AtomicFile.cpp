@@ -12,6 +12,7 @@
 #include <system_error>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 namespace inr {
 namespace {
@@ -159,12 +160,16 @@ void RemoveAbandonedFiles(const std::string& path)
   const fs::path target = FollowLinks(path);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    const pid_t process = WriterOf(name, target.filename().string());
+  std::vector<fs::path> abandoned; // what is removed while a folder is read may end the reading
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    const pid_t process = WriterOf(entry->path().filename().string(), target.filename().string());
     if (process != 0 && (process == getpid() || IsGone(process))) {
-      fs::remove(entry.path(), ignored);
+      abandoned.push_back(entry->path());
     }
+  }
+  for (const fs::path& file : abandoned) {
+    fs::remove(file, ignored);
   }
 }
 

@@ -56,9 +56,10 @@ InstructionSet ChooseInstructionSet(const std::string& name, bool (*usable)(Inst
                       "build does not offer; ask for none by name and get the fastest that runs");
     }
   }
-  throw Error(ErrorCode::Unsupported,
-              "there is no kernel '" + name +
-                  "'; known are baseline, avx2 and avx512 (empty = the fastest)");
+  throw Error(
+      ErrorCode::Unsupported,
+      "there is no kernel '" + name +
+          "'; known are baseline, avx2 and avx512, to infer with also amx (empty = the fastest)");
 }
 
 } // namespace inr

@@ -155,7 +155,7 @@ Description ParseDescription(const std::string& text)
   json model;
   try {
     model = json::parse(text, nullptr, true, /*ignore_comments=*/true);
-  } catch (const json::parse_error& failure) {
+  } catch (const json::exception& failure) { // a number may be too large for one, too
     throw Error(ErrorCode::Malformed,
                 std::string("the model configuration is not JSON: ") + failure.what());
   }

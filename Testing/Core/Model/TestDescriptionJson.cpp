@@ -44,6 +44,12 @@ TEST(DescriptionJson, ReadsTheExampleWithComments)
   EXPECT_EQ(inr::Layout(description).parameterCount, 23380992u);
 }
 
+TEST(DescriptionJson, SaysOfNumbersThatAreNoneWhereTheyStand)
+{
+  ExpectRefused(R"({"encoding": {"per_level_scale": 1e999}})", ErrorCode::Malformed,
+                "the model configuration is not JSON");
+}
+
 TEST(DescriptionJson, DefaultsAreThoseOfTinyCudaNn)
 {
   const Description description = ParseDescription(std::string("{}"));
