@@ -20,8 +20,8 @@ enum class ErrorCode {
   Device           ///< no GPU that can be used, its memory is short, or it failed
 };
 
-/// The only exception type that Core throws. `what()` says what, where and, where possible, what to
-/// do. It never crosses the VTK border.
+/// All that Core throws, but for std::bad_alloc where memory runs out in the midst of something.
+/// `what()` says what, where and, where possible, what to do. It never crosses the VTK border.
 class Error : public std::runtime_error
 {
 public:

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace inr {
 
@@ -34,6 +35,13 @@ void RequireFinite(bool finite, std::uint64_t steps)
 
 } // namespace
 
+Error NoMemoryToTrain()
+{
+  return Error(ErrorCode::TooLarge,
+               "there is not enough memory to train; choose a smaller model (a higher TargetRatio, "
+               "or fewer parameters in ModelConfig), or end other programs");
+}
+
 void TrainingLoop::run(Descent& descent, BatchSource& batches, const PsnrEstimate& estimate,
                        const EvaluateKernel& kernel)
 {
@@ -45,21 +53,29 @@ void TrainingLoop::run(Descent& descent, BatchSource& batches, const PsnrEstimat
   try {
     this->train(descent, batches, estimate, kernel);
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::InvalidModel) {
-      throw; // after a divergence there is nothing to go on from
-    }
-    if (this->Group.rank() > 0) {
-      this->waitForFirst();
-      throw;
-    }
-    const StateArrays arrays = descent.state(); // which may change the number of steps
-    const std::string kept = this->Keeper.writeAtStop(this->state(descent, false), arrays);
-    this->waitForFirst();
-    throw Error(error.code(), std::string(error.what()) + "; " + kept);
+    this->stop(descent, error);
+  } catch (const std::bad_alloc&) {
+    this->stop(descent, NoMemoryToTrain());
   }
   this->finish(descent);
   const StateArrays arrays = descent.state();
   this->Keeper.writeAtEnd(this->state(descent, true), arrays);
+}
+
+/// Throws it, with what is kept of the steps before.
+void TrainingLoop::stop(Descent& descent, const Error& error)
+{
+  if (error.code() == ErrorCode::InvalidModel) {
+    throw error; // after a divergence there is nothing to go on from
+  }
+  if (this->Group.rank() > 0) {
+    this->waitForFirst();
+    throw error;
+  }
+  const StateArrays arrays = descent.state(); // which may change the number of steps
+  const std::string kept = this->Keeper.writeAtStop(this->state(descent, false), arrays);
+  this->waitForFirst();
+  throw Error(error.code(), std::string(error.what()) + "; " + kept);
 }
 
 /// Until it has written the checkpoint: whoever started the processes may end all of them when one

@@ -25,6 +25,9 @@ public:
   using Error::Error;
 };
 
+/// What to say where std::bad_alloc ends a training.
+Error NoMemoryToTrain();
+
 /// Steps until one of the options' limits is reached, telling the observer.
 class TrainingLoop
 {
@@ -53,6 +56,7 @@ private:
   void train(Descent& descent, BatchSource& batches, const PsnrEstimate& estimate,
              const EvaluateKernel& kernel);
   void finish(Descent& descent);
+  [[noreturn]] void stop(Descent& descent, const Error& error);
   void waitForFirst() const;
   TrainingState state(const Descent& descent, bool finished) const;
   void write(Descent& descent);

@@ -10,6 +10,7 @@
 #include "Core/Model/Quantised.h"
 #include "Core/Training/AcceleratedDescent.h"
 #include "Core/Training/Quantise.h"
+#include "Core/Training/Ssim.h"
 #include "Core/Training/TrainingIdentity.h"
 #include "Core/Training/TrainingLoop.h"
 
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 
 namespace inr {
 
@@ -148,7 +150,7 @@ ModelPointer TrainingRun::constantModel()
   }
   const glm::i64vec3 dims = model.volume.dims;
   // Whether there is a window without a gap is not worth a search.
-  const bool windowFits = std::min({dims.x, dims.y, dims.z}) >= 7 && model.training->nonFinite == 0;
+  const bool windowFits = SliceSsim::HasWindows(dims) && model.training->nonFinite == 0;
   model.quality = Quality{std::numeric_limits<double>::infinity(),
                           windowFits ? 1.0 : std::numeric_limits<double>::quiet_NaN(), 0.0};
   const auto made = std::make_shared<Model>(std::move(model));
@@ -164,6 +166,15 @@ TrainingIdentity TrainingRun::identity(const PsnrEstimate& estimate,
 }
 
 void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena)
+{
+  try {
+    this->takeSteps(batches, estimate, arena);
+  } catch (const std::bad_alloc&) { // before the first step, or while the steps were written
+    throw NoMemoryToTrain();
+  }
+}
+
+void TrainingRun::takeSteps(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena)
 {
   Model& model = this->Result;
   GradientDescent host(model.description, this->Options.seed, this->Set, arena);

@@ -47,6 +47,7 @@ public:
 private:
   std::unique_ptr<AcceleratedDescent> accelerate(GradientDescent& host, const BatchSource& batches,
                                                  const Arena& arena) const;
+  void takeSteps(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena);
   void record(const AcceleratedDescent* accelerated);
   StopCheck storingCheck() const;
   const TrainingGroup& group() const { return this->Together ? *this->Together : this->Alone; }

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <new>
 
 namespace {
 
@@ -101,6 +102,23 @@ TEST_F(Resume, GivesTheModelThatItWouldHaveGiven)
   EXPECT_EQ(resumed->training->steps, 12u);
   EXPECT_EQ(resumed->training->plannedSteps, whole->training->plannedSteps);
   EXPECT_EQ(resumed->quality->psnr, whole->quality->psnr);
+}
+
+TEST_F(Resume, KeepsTheStepsBeforeMemoryRanOut)
+{
+  try {
+    inr::TrainModel(this->Data.data(), {}, this->options(12), [](const inr::TrainingProgress& now) {
+      return now.steps < 5 ? true : throw std::bad_alloc();
+    });
+    FAIL() << "went on";
+  } catch (const inr::Error& error) {
+    EXPECT_EQ(error.code(), inr::ErrorCode::TooLarge);
+    const std::string told = error.what();
+    EXPECT_NE(told.find("not enough memory to train"), std::string::npos) << told;
+    EXPECT_NE(told.find("5 steps are kept in '" + this->Path), std::string::npos) << told;
+  }
+  this->train(this->options(12));
+  EXPECT_EQ(this->count(CheckpointEvent::Resumed), 1);
 }
 
 TEST_F(Resume, LeavesNothingWhereNothingIsWorthKeeping)
