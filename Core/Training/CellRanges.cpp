@@ -25,7 +25,7 @@ CellRanges::Range RangeOf(const T* values, std::int64_t stride, std::int64_t cou
   if (!finite) {
     return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
-  return {static_cast<double>(low), static_cast<double>(high)};
+  return {DoubleBelow(low), DoubleAbove(high)};
 }
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
