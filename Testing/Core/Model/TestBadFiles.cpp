@@ -4,6 +4,9 @@
 #include "Core/Error.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 
+#include <nlohmann/json.hpp>
+
+#include <cmath>
 #include <cstring>
 
 namespace {
@@ -18,20 +21,25 @@ struct BadFiles : testing::Test
     this->Good = ReadBytes(Folder.file("good.inr"));
   }
 
-  void expectRefused(const std::string& bytes, const std::string& what)
+  /// `words`: of the reason, where another one would do, too.
+  void expectRefused(const std::string& bytes, const std::string& what,
+                     const std::string& words = "")
   {
     const std::string path = Folder.file("bad.inr");
     WriteBytes(path, bytes);
-    this->expectRefusedPath(path, what);
+    this->expectRefusedPath(path, what, words);
   }
 
-  void expectRefusedPath(const std::string& path, const std::string& what)
+  void expectRefusedPath(const std::string& path, const std::string& what,
+                         const std::string& words = "")
   {
     try {
       inr::ReadModel(path);
       ADD_FAILURE() << what << " was accepted";
     } catch (const inr::Error& error) {
-      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << what;
+      const std::string message = error.what();
+      EXPECT_NE(message.find(path), std::string::npos) << what;
+      EXPECT_NE(message.find(words), std::string::npos) << what << ": " << message;
     }
   }
 
@@ -122,13 +130,17 @@ TEST_F(BadFiles, HugeClaims)
 
 TEST_F(BadFiles, DamagedParameters)
 {
-  const float nan = NAN;
-  const float infinity = HUGE_VALF;
   const float other = 0.125f;
-  for (const float& value : {nan, infinity, other}) { // the last is caught by the checksum
-    this->expectRefused(this->with("params_binary", 5 + 40, &value, 4), "a parameter");
+  this->expectRefused(this->with("params_binary", 5 + 40, &other, 4), "a parameter", "checksum");
+  nlohmann::json document = nlohmann::json::from_bson(this->Good);
+  document.erase("inr"); // and the checksum with it
+  const std::vector<std::uint8_t> unchecked = nlohmann::json::to_bson(document);
+  this->Good.assign(unchecked.begin(), unchecked.end());
+  for (const float value : {NAN, HUGE_VALF}) {
+    this->expectRefused(this->with("params_binary", 5 + 40, &value, 4), "a parameter",
+                        "not a finite number");
+    this->expectRefused(this->with("data", 5 + 8, &value, 4), "a range", "not a finite number");
   }
-  this->expectRefused(this->with("data", 5 + 8, &nan, 4), "a range");
 }
 
 TEST_F(BadFiles, WrongWordsAndTypes)
@@ -165,11 +177,10 @@ TEST_F(BadFiles, DeepNesting) { this->expectRefused(Nested(2000), "2,000 levels"
 TEST_F(BadFiles, DuplicateKeys)
 {
   std::string bytes = this->Good;
-  bytes.replace(bytes.find("n_levels"), 8, "base_res"); // two short names of one length
-  this->expectRefused(bytes, "a lost key");
-  bytes = this->Good;
-  bytes.replace(bytes.find(std::string("spacing\0", 8)), 7, "origin\0"); // as `origin`, twice
-  this->expectRefused(bytes, "a duplicate");
+  bytes.replace(bytes.find(std::string("ssim\0", 5)), 4, "psnr");
+  this->expectRefused(bytes, "a duplicate", "'psnr' occurs twice");
+  this->expectRefused(R"({"model": {}, "model": {}})", "a duplicate in a text",
+                      "'model' occurs twice");
 }
 
 } // namespace
