@@ -336,7 +336,7 @@ private:
   CacheLayout Layout;
   CachePrecision Precision;
   Storage Tables;
-  CellRanges Cells;
+  CellTable Cells;
   std::uint64_t Frame = 1;
   std::int64_t Mapped = 0;
   Machine* Beside = nullptr;               ///< that infers what was begun

@@ -17,7 +17,7 @@
 namespace inr {
 
 /// Ranges of macro-cells as plain data, in the memory of whoever reads them.
-struct CellRanges
+struct CellTable
 {
   glm::i64vec3 dims{0}; ///< of no cells by default
   glm::dvec3 spacing{0};
@@ -46,7 +46,7 @@ struct CellBox
 };
 
 /// All cells that a brick's voxels reach into. `cells`: not empty.
-INR_HOST_DEVICE inline CellBox CellsOfBrick(const CellRanges& cells, const HierarchyView& hierarchy,
+INR_HOST_DEVICE inline CellBox CellsOfBrick(const CellTable& cells, const HierarchyView& hierarchy,
                                             const BrickId& id)
 {
   const glm::i64vec3& size = hierarchy.level(id.level).size;

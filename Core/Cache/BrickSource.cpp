@@ -32,7 +32,7 @@ BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
 /// Of all cells that a brick's voxels reach into.
 ValueRange RangeWithin(const MacroCells& cells, const Hierarchy& hierarchy, BrickKey key)
 {
-  const CellRanges ranges{cells.dims, cells.spacing, cells.ranges.data()};
+  const CellTable ranges{cells.dims, cells.spacing, cells.ranges.data()};
   const CellBox box = CellsOfBrick(ranges, hierarchy.view(), IdOf(key));
   const glm::i64vec3 end = box.first + box.dims;
   ValueRange range;

@@ -30,7 +30,7 @@ struct StoreBricks
   const float* values; ///< of bricks behind each other
   CacheCounts* counts;
   std::uint32_t* marked; ///< voxels of each brick that are no numbers: Core has to compute them
-  CellRanges cells;      ///< normalised; integers divide what the cells of a brick span, too
+  CellTable cells;       ///< normalised; integers divide what the cells of a brick span, too
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
