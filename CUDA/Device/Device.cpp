@@ -49,6 +49,7 @@ Device Describe(int ordinal)
   device.name = properties.name;
   device.major = properties.major;
   device.minor = properties.minor;
+  device.code = CodeFor(INR_CUDA_TARGETS, 10 * device.major + device.minor);
   device.memory = static_cast<std::int64_t>(properties.totalGlobalMem);
   device.multiprocessors = properties.multiProcessorCount;
   device.sharedPerBlock = static_cast<std::int64_t>(properties.sharedMemPerBlockOptin);
@@ -76,10 +77,9 @@ std::string WhyNot(const Device& device)
   if (capability < Oldest) {
     return TextOf(device) + " is too old: 7.5 is the least";
   }
-  return HasCode(INR_CUDA_TARGETS, capability)
-             ? ""
-             : TextOf(device) + " runs none of this build's kernels, which are for " +
-                   INR_CUDA_TARGETS + "; configure with -DINR_CUDA_ARCHITECTURES=all";
+  return device.code > 0 ? ""
+                         : TextOf(device) + " runs none of this build's kernels, which are for " +
+                               INR_CUDA_TARGETS + "; configure with -DINR_CUDA_ARCHITECTURES=all";
 }
 
 void AppendReason(Devices& devices, const std::string& reason)

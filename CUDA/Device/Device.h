@@ -15,6 +15,7 @@ struct Device
   std::string name; ///< "NVIDIA A100-SXM4-40GB"
   int major = 0;    ///< of the compute capability
   int minor = 0;
+  int code = 0;            ///< what runs there of this build's: see CodeFor
   std::int64_t memory = 0; ///< bytes
   int multiprocessors = 0;
   std::int64_t sharedPerBlock = 0; ///< bytes a block may ask for
@@ -36,10 +37,11 @@ struct Devices
 };
 Devices FindDevices();
 
-/// Whether code for `targets` ("80-real 90-real 90-virtual", in CMake's words) runs on a device
-/// of a compute capability, 86 for 8.6: code for a real one on the same generation from there on,
-/// and code for a virtual one, which the driver translates, on all that are no older.
-bool HasCode(const std::string& targets, int capability);
+/// For which of `targets` ("80-real 90-real 90-virtual", in CMake's words) the code is that runs on
+/// a device of a compute capability, 86 for 8.6; 0 where none does. Code for a real one runs on the
+/// same generation from there on. Code for a virtual one, which the driver translates, does on all
+/// that are no older, where there is no other; of each kind the latest.
+int CodeFor(const std::string& targets, int capability);
 
 /// Devices::of what there is. Throws Error(Device) with the reason where there is none.
 Device ChooseDevice(int localRank = 0);

@@ -2,23 +2,30 @@
 #include "CUDA/Device/Device.h"
 #include "Core/Error.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace inr {
 namespace cuda {
 
-bool HasCode(const std::string& targets, int capability)
+int CodeFor(const std::string& targets, int capability)
 {
   std::istringstream stream(targets);
   std::string target;
+  int latestReal = 0;
+  int latestVirtual = 0;
   while (stream >> target) {
     const int built = std::stoi(target);
-    const bool real = target.find("-real") != std::string::npos;
-    if (built <= capability && (!real || built / 10 == capability / 10)) {
-      return true;
+    if (built > capability) {
+      continue;
+    }
+    if (target.find("-real") == std::string::npos) {
+      latestVirtual = std::max(latestVirtual, built);
+    } else if (built / 10 == capability / 10) {
+      latestReal = std::max(latestReal, built);
     }
   }
-  return false;
+  return latestReal > 0 ? latestReal : latestVirtual;
 }
 
 const Device* Devices::of(int localRank) const

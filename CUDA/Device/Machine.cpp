@@ -12,7 +12,9 @@ void GpuMachine::after(const GpuMachine& other) const
   const cudaError_t recorded = cudaEventRecord(event, other.Work.get());
   const cudaError_t waiting =
       recorded == cudaSuccess ? cudaStreamWaitEvent(this->Work.get(), event, 0) : recorded;
-  cudaEventDestroy(event); // which goes on until it has happened
+  if (cudaEventDestroy(event) != cudaSuccess) { // it goes on until it has happened
+    cudaGetLastError();
+  }
   Check(waiting, "waiting for another stream");
 }
 

@@ -95,10 +95,11 @@ private:
   template <class Kernel> std::int64_t blocksAtOnce(std::int64_t sharedBytes)
   {
     static const char kernel = 0; // another one's is elsewhere
-    const auto [known, isNew] = this->Blocks.try_emplace({&kernel, sharedBytes}, 0);
-    if (isNew) {
+    const std::pair key(&kernel, sharedBytes);
+    auto known = this->Blocks.find(key);
+    if (known == this->Blocks.end()) {
       const CurrentDevice current(this->Device);
-      known->second = PrepareKernel<Kernel>(sharedBytes);
+      known = this->Blocks.emplace(key, PrepareKernel<Kernel>(sharedBytes)).first;
     }
     return known->second;
   }

@@ -65,23 +65,13 @@ void Check(cudaError_t status, const char* call)
 
 CurrentDevice::CurrentDevice(int ordinal)
 {
-  int before = -1;
-  INR_CUDA(cudaGetDevice(&before));
-  if (before != ordinal) {
-    if (Contexts().get(&this->Before) != CUDA_SUCCESS) {
-      this->Before = nullptr;
-    }
-    INR_CUDA(cudaSetDevice(ordinal));
-    this->Changed = true;
+  if (Contexts().get(&this->Before) != CUDA_SUCCESS) {
+    this->Before = nullptr;
   }
+  INR_CUDA(cudaSetDevice(ordinal));
 }
 
-CurrentDevice::~CurrentDevice()
-{
-  if (this->Changed) {
-    Contexts().set(this->Before);
-  }
-}
+CurrentDevice::~CurrentDevice() { Contexts().set(this->Before); }
 
 Stream::Stream(int device) : Device(device)
 {
@@ -96,6 +86,7 @@ Stream::~Stream()
     const CurrentDevice current(this->Device);
     cudaStreamSynchronize(this->Handle);
     cudaStreamDestroy(this->Handle);
+    cudaGetLastError();             // nobody's any more: the thread's next launch would report it
   } catch (const std::exception&) { // it is lost, and its streams with it
   }
 }
@@ -133,6 +124,7 @@ Memory::~Memory()
   try {
     const CurrentDevice current(this->Device);
     this->Where == Place::Device ? cudaFree(this->Address) : cudaFreeHost(this->Address);
+    cudaGetLastError();
   } catch (const std::exception&) { // it is lost, and its memory with it
   }
 }

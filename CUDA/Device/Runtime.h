@@ -17,10 +17,11 @@ void Check(cudaError_t status, const char* call);
 
 #define INR_CUDA(call) ::inr::cuda::Check((call), #call)
 
-/// Makes a device the calling thread's, for as long as this lives: the application may have chosen
-/// another one. What comes back is the driver's context, which may be none: to choose a device
-/// makes a context on it since CUDA 12, and a thread that has chosen none is said to have device 0.
-/// For the same reason whatever wants a context at all is called within one of these.
+/// Makes a device's primary context the calling thread's, for as long as this lives: the
+/// application may have chosen another device, or made a context of its own on the same one, which
+/// the runtime would use. What comes back is the driver's context, which may be none: to choose a
+/// device makes a context on it since CUDA 12, and a thread that has chosen none is said to have
+/// device 0. For the same reason whatever wants a context at all is called within one of these.
 class CurrentDevice
 {
 public:
@@ -31,7 +32,6 @@ public:
 
 private:
   CUcontext Before = nullptr;
-  bool Changed = false;
 };
 
 /// A queue of work that waits for none but its own.

@@ -59,11 +59,12 @@ Array<float> UploadedFeatures(const PackedModel<FloatNumbers>& /*packed*/, const
   return Uploaded(FeaturesOf(model), FeatureCountOf(model), device, stream);
 }
 
-/// Whether products of parts of float32 numbers are to be had.
+/// Whether products of parts of float32 numbers are to be had: by the code, as what the driver
+/// translates for a later GPU has them no more than the one that it was made for.
 bool HasWideTiles(const Device& device)
 {
-  constexpr int first = 8; // compute capability 8.0
-  return device.major >= first;
+  constexpr int first = 80; // compute capability 8.0
+  return device.code >= first;
 }
 
 } // namespace

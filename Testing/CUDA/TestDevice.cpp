@@ -41,11 +41,20 @@ TEST(Device, WhatIsNotUsedHasAReason)
 TEST(Device, RunsCodeForItsGenerationAndWhatTheDriverTranslates)
 {
   const std::string one = "80-real 80-virtual";
-  EXPECT_FALSE(HasCode(one, 75));
-  EXPECT_TRUE(HasCode(one, 80) && HasCode(one, 86) && HasCode(one, 90) && HasCode(one, 121));
+  EXPECT_EQ(CodeFor(one, 75), 0);
+  for (const int capability : {80, 86, 90, 121}) {
+    EXPECT_EQ(CodeFor(one, capability), 80) << capability;
+  }
   const std::string two = "75-real 86-real 90-real";
-  EXPECT_TRUE(HasCode(two, 75) && HasCode(two, 86) && HasCode(two, 89) && HasCode(two, 90));
-  EXPECT_FALSE(HasCode(two, 80) || HasCode(two, 100) || HasCode(two, 120) || HasCode(two, 70));
+  for (const auto& [capability, code] :
+       {std::pair(75, 75), {86, 86}, {89, 86}, {90, 90}, {70, 0}, {80, 0}, {100, 0}, {120, 0}}) {
+    EXPECT_EQ(CodeFor(two, capability), code) << capability;
+  }
+  // What the driver translates is code for what it was made for, wherever it runs.
+  EXPECT_EQ(CodeFor("75-real 75-virtual", 80), 75);
+  EXPECT_EQ(CodeFor("90-virtual 75-virtual 80-real", 89), 80);
+  EXPECT_EQ(CodeFor("90-virtual 75-virtual 80-real", 100), 90);
+  EXPECT_EQ(CodeFor("80-real 86-virtual", 89), 80);
 }
 
 TEST(Device, WithoutOneTheReasonIsThrown)
