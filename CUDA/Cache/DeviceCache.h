@@ -11,6 +11,8 @@
 #include "CUDA/Inference/Overflow.h"
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -45,6 +47,17 @@ public:
     this->forgetRequests();
     this->map();
     this->loadCoarsest();
+  }
+
+  DeviceCache(const DeviceCache&) = delete;
+  DeviceCache& operator=(const DeviceCache&) = delete;
+  /// Waits for what was begun beside: it uses memory that is about to go.
+  ~DeviceCache()
+  {
+    try {
+      this->isLoading() ? this->Beside->wait() : void();
+    } catch (const std::exception&) { // it is lost, and nothing is on its way any more
+    }
   }
 
   const Hierarchy& hierarchy() const { return this->Levels; }
@@ -272,7 +285,7 @@ private:
       this->repair(stored);
       this->store(most);
     }
-    this->Mapped = std::min(this->Mapped + stored, this->Layout.capacity);
+    this->Mapped = std::min(this->mapped() + stored, this->Layout.capacity);
     return {static_cast<std::int64_t>(counts.listed.bricks),
             static_cast<std::int64_t>(counts.listed.overflowed), stored,
             static_cast<std::int64_t>(counts.marked), stored < counts.wanted};
@@ -338,7 +351,7 @@ private:
   Storage Tables;
   CellTable Cells;
   std::uint64_t Frame = 1;
-  std::int64_t Mapped = 0;
+  std::atomic<std::int64_t> Mapped{0};     ///< which others may ask for while it is used
   Machine* Beside = nullptr;               ///< that infers what was begun
   std::int64_t Listed = 0;                 ///< bricks of that, at most
   std::shared_ptr<const BrickSource> Core; ///< once it was needed

@@ -5,6 +5,7 @@
 
 #include "CUDA/Render/DeviceColors.h"
 #include "CUDA/Render/Kernels/RenderScene.h"
+#include "Core/Error.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/Marching/PreIntegratedColors.h"
 
@@ -32,6 +33,9 @@ template <class Machine>
 MarchSettings SettingsOn(Machine& machine, const MarchSettings& given, const ColorLookup& colors,
                          Belongings<Machine>& arrays)
 {
+  if (given.cellSampling != nullptr) { // it would be read from the host's memory
+    throw Error(ErrorCode::InvalidArgument, "an accelerator draws nothing by a tolerance");
+  }
   MarchSettings settings = given;
   SurfaceLookup& surfaces = settings.projector.surfaces;
   surfaces.values = arrays.put(machine, surfaces.values, surfaces.count);

@@ -16,9 +16,9 @@ struct MarchJob
 {
   const Frame& frame;
   const RayGeometry& geometry;
-  const MarchSettings& settings;
-  const ColorLookup& colors; ///< those that were set
-  const Shading* shading;    ///< null: colours as the transfer function gives them
+  const MarchSettings& settings; ///< none by a tolerance: `cellSampling` is null
+  const ColorLookup& colors;     ///< those that were set
+  const Shading* shading;        ///< null: colours as the transfer function gives them
 };
 
 /// Draws frames of a model through a cache of its own or straight from the network, in the CPU's

@@ -5,7 +5,9 @@
 
 #include "Testing/CUDA/HostMachine.h"
 
+#include <deque>
 #include <functional>
+#include <utility>
 #include <vector>
 
 class LazyMachine
@@ -13,25 +15,26 @@ class LazyMachine
 public:
   template <class T> using Array = HostMachine::Array<T>;
 
-  explicit LazyMachine(HostLaunch launch = {}) : Host(launch) {}
+  /// `late`: else it does everything at once, as beside one that is late.
+  explicit LazyMachine(HostLaunch launch = {}, bool late = true) : Host(launch), Late(late) {}
 
   template <class T> Array<T> allocate(std::int64_t count) const
   {
     return this->Host.allocate<T>(count);
   }
+  void requireFree(std::int64_t /*bytes*/, const char* /*what*/) const {}
   template <class T> Array<T> allocatePinned(std::int64_t count) const
   {
     return this->Host.allocate<T>(count);
   }
   template <class T> void beginToMachine(T* to, const T* from, std::int64_t count)
   {
-    this->Begun.push_back([=] { this->Host.copy(to, from, count); });
+    this->begin([=] { this->Host.copy(to, from, count); });
   }
   template <class T> void toMachine(T* to, const T* from, std::int64_t count)
   {
     std::vector<T> staged(from, from + count);
-    this->Begun.push_back(
-        [=, staged = std::move(staged)] { this->Host.copy(to, staged.data(), count); });
+    this->begin([=, staged = std::move(staged)] { this->Host.copy(to, staged.data(), count); });
   }
   template <class T> void toHost(T* to, const T* from, std::int64_t count)
   {
@@ -40,26 +43,45 @@ public:
   }
   template <class T> void copy(T* to, const T* from, std::int64_t count)
   {
-    this->Begun.push_back([=] { this->Host.copy(to, from, count); });
+    this->begin([=] { this->Host.copy(to, from, count); });
   }
   template <class T> void fill(T* to, int byte, std::int64_t count)
   {
-    this->Begun.push_back([=] { this->Host.fill(to, byte, count); });
+    this->begin([=] { this->Host.fill(to, byte, count); });
   }
   template <class Kernel>
   void run(const Kernel& kernel, std::int64_t items, std::int64_t sharedBytes = 0)
   {
-    this->Begun.push_back([=] { this->Host.run(kernel, items, sharedBytes); });
+    this->begin([=] { this->Host.run(kernel, items, sharedBytes); });
   }
-  void wait()
+  void wait() { this->goOnTo(this->Done + this->Begun.size()); }
+  void after(LazyMachine& other)
   {
-    for (const std::function<void()>& work : this->Begun) {
-      work();
-    }
-    this->Begun.clear();
+    this->begin([&other, end = other.Done + other.Begun.size()] { other.goOnTo(end); });
   }
+  bool isIdle() const { return this->Begun.empty(); }
 
 private:
+  void begin(std::function<void()> work)
+  {
+    this->Begun.push_back(std::move(work));
+    if (!this->Late) {
+      this->wait();
+    }
+  }
+  /// Until so many pieces of work are done, since the beginning.
+  void goOnTo(std::size_t end)
+  {
+    while (this->Done < end) {
+      const std::function<void()> work = std::move(this->Begun.front());
+      this->Begun.pop_front();
+      ++this->Done; // first: it may wait for another machine, and that one for this
+      work();
+    }
+  }
+
   HostMachine Host;
-  std::vector<std::function<void()>> Begun;
+  bool Late;
+  std::deque<std::function<void()>> Begun;
+  std::size_t Done = 0;
 };

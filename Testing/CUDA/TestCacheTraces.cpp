@@ -4,7 +4,7 @@
 #include "CUDA/Cache/DeviceCache.h"
 #include "Testing/CUDA/CacheModel.h"
 #include "Testing/CUDA/CacheTools.h"
-#include "Testing/CUDA/LateMachine.h"
+#include "Testing/CUDA/LazyMachine.h"
 #include "Testing/CUDA/RuledInference.h"
 
 #include <gtest/gtest.h>
@@ -124,14 +124,15 @@ INSTANTIATE_TEST_SUITE_P(Kernels, CacheTrace,
                                   std::to_string(std::get<1>(info.param));
                          });
 
-/// Whether what infers beside the frames does so as late as can be, or at once.
-class CacheBesideFrames : public testing::TestWithParam<std::tuple<bool, int>>
+/// Whether frames are drawn, and what infers beside them does so, as late as can be, or at once.
+class CacheBesideFrames : public testing::TestWithParam<std::tuple<bool, bool, int>>
 {
 protected:
-  static bool late() { return std::get<0>(GetParam()); }
+  static bool drawsLate() { return std::get<0>(GetParam()); }
+  static bool infersLate() { return std::get<1>(GetParam()); }
   static HostLaunch launch()
   {
-    return Launches()[static_cast<std::size_t>(std::get<1>(GetParam()))];
+    return Launches()[static_cast<std::size_t>(std::get<2>(GetParam()))];
   }
 
   void beginFrame()
@@ -150,7 +151,7 @@ protected:
 
   void finishLoad()
   {
-    EXPECT_EQ(this->Cache.hasInferred(), !late());
+    EXPECT_EQ(this->Cache.hasInferred(), !infersLate());
     const auto loaded = this->Cache.finishLoad();
     const CacheModel::Loaded expected = this->Simple.store(this->Listed);
     EXPECT_EQ(loaded.requested, this->Wishes);
@@ -169,12 +170,18 @@ protected:
     EXPECT_TRUE(this->Cache.isLoading());
   }
 
+  void expectSame()
+  {
+    this->Where.wait();
+    ExpectSame(this->Cache, this->Simple);
+  }
+
   static constexpr CachePrecision Precision = CachePrecision::Bits16;
 
   Hierarchy Levels{{50, 40, 30}, 6};
-  LateMachine Where{false, launch()};
-  LateMachine Beside{late(), launch()};
-  inr::cuda::DeviceCache<LateMachine, RuledInference> Cache{
+  LazyMachine Where{launch(), drawsLate()};
+  LazyMachine Beside{launch(), infersLate()};
+  inr::cuda::DeviceCache<LazyMachine, RuledInference> Cache{
       this->Where, {}, this->Levels, Precision, BytesFor(this->Levels, Precision, 60)};
   CacheModel Simple{this->Levels, this->Cache.capacity()};
   std::vector<BrickKey> Listed;
@@ -195,22 +202,39 @@ TEST_P(CacheBesideFrames, IsThatOfASimpleCache)
     if (!this->Cache.isLoading()) {
       this->beginLoad();
     }
-    ExpectSame(this->Cache, this->Simple);
+    this->expectSame();
     ASSERT_FALSE(HasFailure()) << frame;
   }
   EXPECT_GT(this->Dropped, 0);
   this->Cache.load(0, true); // finishes what was begun
   this->Simple.store(this->Listed);
   EXPECT_FALSE(this->Cache.isLoading());
-  ExpectSame(this->Cache, this->Simple);
+  this->expectSame();
   ExpectContents(this->Cache, this->Simple);
 }
 
+TEST(CacheBeside, WaitsForWhatItHasBegunWhenItGoes)
+{
+  const Hierarchy levels({50, 40, 30}, 6);
+  LazyMachine where;
+  LazyMachine beside;
+  {
+    inr::cuda::DeviceCache<LazyMachine, RuledInference> cache(
+        where, {}, levels, CachePrecision::Bits16, BytesFor(levels, CachePrecision::Bits16, 60));
+    Ask(where, cache.view(), WishesFor(DifferentBricks(levels, 5)));
+    cache.beginLoad(beside, 5, true);
+    EXPECT_FALSE(beside.isIdle());
+  }
+  EXPECT_TRUE(beside.isIdle());
+}
+
 INSTANTIATE_TEST_SUITE_P(Kernels, CacheBesideFrames,
-                         testing::Combine(testing::Bool(), testing::Range(0, 4)),
+                         testing::Combine(testing::Bool(), testing::Bool(), testing::Range(0, 4)),
                          [](const auto& info) {
-                           return std::string(std::get<0>(info.param) ? "Late" : "AtOnce") +
-                                  std::to_string(std::get<1>(info.param));
+                           return std::string(std::get<0>(info.param) ? "DrawsLate"
+                                                                      : "DrawsAtOnce") +
+                                  (std::get<1>(info.param) ? "InfersLate" : "InfersAtOnce") +
+                                  std::to_string(std::get<2>(info.param));
                          });
 
 } // namespace
