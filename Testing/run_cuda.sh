@@ -32,6 +32,7 @@ count() {
   if [ "$1" -eq 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
 }
 
+export CUDA_DEVICE_ORDER=PCI_BUS_ID # as nvidia-smi counts
 # Code for this machine's GPU alone, where nvidia-smi can say which that is.
 capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2> /dev/null | head -n 1 | tr -d '. ')
 gpu=
@@ -79,6 +80,10 @@ small='Kernels/Bricks.LayersAreThoseOfTheWhole/Gpu*:Kernels/Conformance.ValueDoe
 small+=':Kernels/Conformance.EveryWidthAgreesWithCore/Gpu*'
 small+=':Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuLit:Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuPlain'
 small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuLitMixedLevels:Kernels/Drawing.TracesThePathsOfTheCpu/Gpu'
+small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuLayered:Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuSurfacesLit'
+small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuIntegratedLayered'
+small+=':Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuLitLayered:Kernels/WaitingFor.NeedsNoMoreThanTheSmallestCache/GpuSurfaces'
+small+=':Kernels/DrawingSettings.RoundsWhatItKeepsAsTheCpuDoes/Gpu*'
 small+=':Kernels/Training.AgreesForEveryShape/Gpu:Kernels/Training.UpdatesAreCoresOwn/Gpu'
 for tool in memcheck racecheck synccheck; do
   echo "== compute-sanitizer $tool"
