@@ -144,6 +144,7 @@ TEST_F(ModelFile, AnApronNeverBecomesWider)
                                         {inr::ScaledModel(trained, 1.5), 4},
                                         {inr::ScaledModel(trained, 0.5), 1},
                                         {inr::ScaledModel(flat, 0.5), 1},
+                                        {inr::ScaledModel(flat, 1.5), 4},
                                         {inr::ModelPointer(wide), 3}}) {
     const inr::ModelPointer read = inr::ModelFromBytes(inr::ModelToBytes(*written));
     const glm::dvec3 dims(read->volume.dims);
