@@ -47,7 +47,7 @@ function (inr_add_build target isa flags)
     target_include_directories(${objects} PRIVATE "${PROJECT_SOURCE_DIR}")
     target_link_libraries(${objects} PRIVATE inr_options)
     # -Wno-psabi: vectors are only passed between functions that are inlined.
-    target_compile_options(${objects} PRIVATE -O3 -Wno-psabi ${flags})
+    target_compile_options(${objects} PRIVATE ${INR_OPTIMISE} -Wno-psabi ${flags})
     target_compile_definitions(${objects} PRIVATE INR_ISA=${isa})
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
   endif ()

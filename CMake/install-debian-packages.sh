@@ -19,7 +19,7 @@ packages=(
   "${own[@]}" xvfb xauth
 )
 case ${1:-} in
-  test) packages+=(libgtest-dev libbenchmark-dev python3-pil) ;;
+  test) packages+=(libgtest-dev libbenchmark-dev python3-pil clang libclang-rt-14-dev) ;;
   core) packages=("${own[@]}" libgtest-dev) ;;
 esac
 

@@ -88,13 +88,14 @@ else
   fail "plain VTK is not to be had"
 fi
 
-# Core alone, as on a machine without VTK, under the sanitizers; without the long training runs, all but
-# one of the scenes that are hard on a tolerance and of the sizes that stand in for finer ones, and what
-# waits for a small cache in two ways at once elsewhere: they execute the same lines over and over again.
-repeated='^(Trainer|Examples|TargetRatio|Divergence|WarmStart|Resume)\.|StatedErrors'
+# Core alone, as on a machine without VTK and by another compiler, under the sanitizers; without the long
+# training runs, all but one of the scenes that are hard on a tolerance and of the sizes that stand in for
+# finer ones, and what waits for a small cache in two ways at once elsewhere: they execute the same lines
+# over and over again.
+repeated='^(Trainer|Examples|TargetRatio|Divergence|WarmStart|Resume|RandomTolerances)\.|StatedErrors'
 repeated+='|IsAsGoodAsTrainingFromMemory|MakesTheDefaultModelFit|GivesAllTheSameModelEveryTime'
 repeated+='|HardToKeepTo\.ATolerance/[^N]|StandInForFinerOnes/[023]'
-repeated+='|SmallestCache/Host(Lit|Layered|Surfaces|Paths)$'
+repeated+='|SmallestCache/Host(Lit|Layered|Surfaces|Paths|Integrated|LitLayered|LayeredPaths|LayeredSurfaces)$'
 build asan && run_tests build-asan -L 'core|fuzz' -E "$repeated" "$@"
 
 [ "$skipped" -eq 0 ] || echo "== $skipped skipped, as their output says why"
