@@ -9,25 +9,7 @@
 namespace inr {
 namespace {
 
-// https://bsonspec.org/spec.html
-constexpr char Real = '\x01';
-constexpr char Text = '\x02';
-constexpr char Object = '\x03';
-constexpr char Array = '\x04';
-constexpr char Binary = '\x05';
-constexpr char Flag = '\x08';
-constexpr char Integer32 = '\x10';
-constexpr char Integer64 = '\x12';
-
 std::string LengthOf(std::size_t bytes) { return ToBytes(static_cast<std::int32_t>(bytes)); }
-
-void Append(std::string& document, char type, const std::string& key, const std::string& value)
-{
-  document += type;
-  document += key;
-  document += '\0';
-  document += value;
-}
 
 /// `elements` between their length and the end.
 std::string AsDocument(const std::string& elements)
@@ -37,58 +19,63 @@ std::string AsDocument(const std::string& elements)
 
 } // namespace
 
+std::string BsonElement(BsonType type, const std::string& key, const std::string& value)
+{
+  return static_cast<char>(type) + key + '\0' + value;
+}
+
 BsonObject& BsonObject::text(const std::string& key, const std::string& value)
 {
-  return this->set(key, Text, LengthOf(value.size() + 1) + value + '\0');
+  return this->set(key, BsonType::String, LengthOf(value.size() + 1) + value + '\0');
 }
 
 BsonObject& BsonObject::integer(const std::string& key, std::int64_t value)
 {
   using Short = std::numeric_limits<std::int32_t>;
   return value >= Short::min() && value <= Short::max()
-             ? this->set(key, Integer32, ToBytes(static_cast<std::int32_t>(value)))
-             : this->set(key, Integer64, ToBytes(value));
+             ? this->set(key, BsonType::Int32, ToBytes(static_cast<std::int32_t>(value)))
+             : this->set(key, BsonType::Int64, ToBytes(value));
 }
 
 BsonObject& BsonObject::real(const std::string& key, double value)
 {
-  return this->set(key, Real, ToBytes(value));
+  return this->set(key, BsonType::Double, ToBytes(value));
 }
 
 BsonObject& BsonObject::flag(const std::string& key, bool value)
 {
-  return this->set(key, Flag, std::string(1, value ? '\x01' : '\x00'));
+  return this->set(key, BsonType::Boolean, std::string(1, value ? '\x01' : '\x00'));
 }
 
 BsonObject& BsonObject::object(const std::string& key, const BsonObject& value)
 {
-  return this->set(key, Object, value.bytes());
+  return this->set(key, BsonType::Object, value.bytes());
 }
 
 BsonObject& BsonObject::reals(const std::string& key, const std::vector<double>& values)
 {
   std::string elements;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    Append(elements, Real, std::to_string(k), ToBytes(values[k]));
+    elements += BsonElement(BsonType::Double, std::to_string(k), ToBytes(values[k]));
   }
-  return this->set(key, Array, AsDocument(elements));
+  return this->set(key, BsonType::Array, AsDocument(elements));
 }
 
 BsonObject& BsonObject::emptyBinary(const std::string& key)
 {
-  return this->set(key, Binary, LengthOf(0) + '\0'); // and the general subtype
+  return this->set(key, BsonType::Binary, LengthOf(0) + '\0'); // and the general subtype
 }
 
 std::string BsonObject::bytes() const
 {
   std::string elements;
   for (const auto& [key, element] : this->Elements) {
-    Append(elements, element.type, key, element.value);
+    elements += BsonElement(element.type, key, element.value);
   }
   return AsDocument(elements);
 }
 
-BsonObject& BsonObject::set(const std::string& key, char type, std::string value)
+BsonObject& BsonObject::set(const std::string& key, BsonType type, std::string value)
 {
   this->Elements[key] = {type, std::move(value)};
   return *this;

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Model/BsonTypes.h"
+
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace inr {
+
+/// The bytes of an element whose value's are `value`.
+std::string BsonElement(BsonType type, const std::string& key, const std::string& value);
 
 /// A BSON document to be written: keys in byte order, and whole numbers as short as they fit, as
 /// upstream's library has them. That library's own values take memory to be destroyed, and end the
@@ -28,10 +33,10 @@ public:
 private:
   struct Element
   {
-    char type;
+    BsonType type;
     std::string value;
   };
-  BsonObject& set(const std::string& key, char type, std::string value);
+  BsonObject& set(const std::string& key, BsonType type, std::string value);
 
   std::map<std::string, Element> Elements;
 };

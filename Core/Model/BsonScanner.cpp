@@ -2,6 +2,7 @@
 #include "Core/Model/BsonScanner.h"
 
 #include "Core/Error.h"
+#include "Core/Model/BsonTypes.h"
 #include "Core/Model/LittleEndian.h"
 
 #include <algorithm>
@@ -12,19 +13,6 @@ namespace inr {
 namespace {
 
 using Container = DocumentBuilder::Container;
-
-enum ElementType : std::uint8_t {
-  EndOfDocument = 0x00,
-  Double = 0x01,
-  String = 0x02,
-  Object = 0x03,
-  Array = 0x04,
-  Binary = 0x05,
-  Boolean = 0x08,
-  Null = 0x0A,
-  Int32 = 0x10,
-  Int64 = 0x12
-};
 
 constexpr std::int64_t SmallestDocument = 5; // its length and the closing zero
 
@@ -166,18 +154,18 @@ private:
   void element()
   {
     const std::int64_t at = this->Input.position();
-    const std::uint8_t type = this->Input.byte();
-    if (type == EndOfDocument) {
+    const auto type = static_cast<BsonType>(this->Input.byte());
+    if (type == BsonType::EndOfDocument) {
       this->close(at);
       return;
     }
     const std::string key = this->Input.key();
     switch (type) {
-    case Object:
+    case BsonType::Object:
       return this->open(Container::Object, key, at);
-    case Array:
+    case BsonType::Array:
       return this->open(Container::Array, key, at);
-    case Binary:
+    case BsonType::Binary:
       return this->binary(key, at);
     default:
       return this->Builder.value(key, this->scalar(type, at), at);
@@ -197,24 +185,26 @@ private:
     this->Builder.blob(key, std::move(blob), at);
   }
 
-  nlohmann::json scalar(std::uint8_t type, std::int64_t at)
+  nlohmann::json scalar(BsonType type, std::int64_t at)
   {
     switch (type) {
-    case Double:
+    case BsonType::Double:
       return this->Input.number<double>();
-    case String:
+    case BsonType::String:
       return this->Input.text();
-    case Boolean:
+    case BsonType::Boolean:
       return this->Input.byte() != 0;
-    case Null:
+    case BsonType::Null:
       return nullptr;
-    case Int32:
+    case BsonType::Int32:
       return this->Input.number<std::int32_t>();
-    case Int64:
+    case BsonType::Int64:
       return this->Input.number<std::int64_t>();
     default:
       throw Error(ErrorCode::Malformed,
-                  "there is no element type " + std::to_string(type) + " in a model file", at);
+                  "there is no element type " + std::to_string(static_cast<int>(type)) +
+                      " in a model file",
+                  at);
     }
   }
 

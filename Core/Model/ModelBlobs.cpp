@@ -131,7 +131,17 @@ template <typename Vector> std::string BytesOf(const Vector& values)
 
 } // namespace
 
-std::size_t ParameterSize(ParameterType type) { return type == ParameterType::Half ? 2 : 4; }
+std::size_t ParameterSize(ParameterType type)
+{
+  switch (type) {
+  case ParameterType::Half:
+    return sizeof(std::uint16_t);
+  case ParameterType::Float:
+    return sizeof(float);
+  default:
+    throw Error(ErrorCode::InvalidArgument, "quantised parameters have no size of their own");
+  }
+}
 
 AlignedVector<float> DecodeParameters(const InputFile& file, const Blob& blob, ParameterType type,
                                       std::uint32_t& checksum)

@@ -17,7 +17,7 @@ constexpr NameTable<ParameterType, 3> ParameterTypeNames = {
      {"float", ParameterType::Float},
      {"quantised", ParameterType::Quantised}}};
 
-std::size_t ParameterSize(ParameterType type); ///< bytes; of Half and Float
+std::size_t ParameterSize(ParameterType type); ///< bytes; throws for Quantised
 
 /// How a file spells macro-cell ranges; see FORMAT.md.
 enum class CellEncoding {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
 #include "Core/Model/BsonScanner.h"
+#include "Core/Model/BsonTypes.h"
 #include "Core/Model/CompactBlobs.h"
 #include "Core/Model/LittleEndian.h"
 #include "Core/Model/ModelBytes.h"
@@ -15,7 +16,6 @@
 namespace inr {
 namespace {
 
-constexpr std::int64_t SizeLimit = std::numeric_limits<std::int32_t>::max();
 constexpr std::int64_t StartLength = 4096;
 constexpr const char* InriaMagic = "#INRIMAGE";
 
@@ -63,7 +63,7 @@ Document Scan(const InputFile& file)
   if (file.size() == 0) {
     throw Error(ErrorCode::Malformed, "the file is empty");
   }
-  if (file.size() > SizeLimit) {
+  if (file.size() > MostBsonBytes) {
     throw Error(ErrorCode::TooLarge, "a model file is smaller than 2 GiB");
   }
   const std::string start = StartOf(file);

@@ -13,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <new>
 #include <utility>
 #include <vector>
@@ -21,7 +20,6 @@
 namespace inr {
 namespace {
 
-constexpr std::int64_t SizeLimit = std::numeric_limits<std::int32_t>::max();
 constexpr std::size_t LengthSize = sizeof(std::int32_t);
 
 struct BlobSizes
@@ -58,11 +56,7 @@ void AddToLength(std::string& bytes, std::size_t position, std::int64_t amount)
 
 std::string Element(const std::string& key, const BsonObject& section)
 {
-  std::string bytes(1, '\x03');
-  bytes += key;
-  bytes += '\0';
-  bytes += section.bytes();
-  return bytes;
+  return BsonElement(BsonType::Object, key, section.bytes());
 }
 
 // An element whose binary value `blobKey` has `blobBytes` bytes that are not there yet; they belong
@@ -72,7 +66,7 @@ std::pair<std::string, std::string> SplitElement(const std::string& key, BsonObj
 {
   std::string bytes = Element(key, section.emptyBinary(blobKey));
   const std::size_t document = 1 + key.size() + 1;
-  const std::string marker = '\x05' + blobKey + '\0';
+  const std::string marker = BsonElement(BsonType::Binary, blobKey, "");
   const std::size_t length = bytes.find(marker, document) + marker.size();
   AddToLength(bytes, document, blobBytes);
   AddToLength(bytes, length, blobBytes);
@@ -176,7 +170,7 @@ BlobSizes LargestSizes(const Model& model)
 
 void RequireSize(std::int64_t bytes)
 {
-  if (bytes > SizeLimit) {
+  if (bytes > MostBsonBytes) {
     throw Error(ErrorCode::TooLarge, "the model would take " + std::to_string(bytes) +
                                          " bytes; a model file must be smaller than 2 GiB");
   }
