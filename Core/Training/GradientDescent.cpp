@@ -2,7 +2,6 @@
 #include "Core/Training/GradientDescent.h"
 
 #include "Core/Inference/HugePages.h"
-#include "Core/Inference/KernelTable.h"
 #include "Core/Training/AdamSchedule.h"
 #include "Core/Training/RandomStream.h"
 
@@ -12,8 +11,6 @@
 #include <numeric>
 
 namespace inr {
-
-const TrainKernel& TrainKernelFor(InstructionSet set) { return INR_KERNEL_FOR(set, Train); }
 
 namespace {
 

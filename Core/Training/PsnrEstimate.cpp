@@ -60,7 +60,8 @@ std::vector<float> PsnrEstimate::values(const ModelView& model, const EvaluateKe
   std::vector<float> values(this->Targets.size());
   std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(network.view())));
   for (std::int64_t first = 0; first < count && check.goesOn(); first += BlockSize) {
-    kernel.evaluate(network.view(), &this->Positions[first].x, BlockSize, &values[first],
+    kernel.evaluate(network.view(), &this->Positions[first].x,
+                    std::min<std::int64_t>(BlockSize, count - first), &values[first],
                     workspace.data());
   }
   std::transform(values.begin(), values.end(), values.begin(), NormalisedOutput);

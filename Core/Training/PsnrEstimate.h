@@ -18,10 +18,9 @@ public:
   static constexpr std::int64_t UsualVoxels = 1 << 15;
   static constexpr std::int64_t StoringVoxels = 4 * UsualVoxels; ///< where a tenth of a dB counts
 
-  /// `voxels` is a multiple of 64.
   PsnrEstimate(const SampleSource& source, std::uint64_t seed, std::int64_t voxels = UsualVoxels);
 
-  /// The same from targets at the first of positions(), a multiple of 64 of them.
+  /// The same from targets at the first of positions().
   PsnrEstimate(std::vector<glm::vec3> positions, std::vector<float> targets);
 
   /// Centres of the random voxels: fewer are the first of more.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/SamplePool.h"
 
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Optimiser.h"
 #include "Core/Training/RandomStream.h"
 
 #include <algorithm>

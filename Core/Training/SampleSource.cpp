@@ -76,21 +76,27 @@ void SamplePiece(const VolumePiece& piece, const glm::i64vec3& dims, const glm::
   });
 }
 
+void SampleNormalised(const VolumePiece& piece, const glm::i64vec3& dims,
+                      const glm::vec3* positions, std::int64_t count, double low, double high,
+                      float* targets)
+{
+  constexpr std::int64_t blockSize = 256;
+  std::array<double, blockSize> values{};
+  for (std::int64_t first = 0; first < count; first += blockSize) {
+    const std::int64_t size = std::min(blockSize, count - first);
+    SamplePiece(piece, dims, positions + first, size, low, values.data());
+    std::transform(values.begin(), values.begin() + size, targets + first,
+                   [&](double value) { return NormalisedTarget(value, 0, high - low); });
+  }
+}
+
 InMemorySource::InMemorySource(const VolumeData& volume, double low, double high)
     : Volume{volume, glm::i64vec3(0)}, Low(low), High(high)
 {}
 
 void InMemorySource::sample(const glm::vec3* positions, std::int64_t count, float* targets) const
 {
-  constexpr std::int64_t blockSize = 256;
-  std::array<double, blockSize> values{};
-  for (std::int64_t first = 0; first < count; first += blockSize) {
-    const std::int64_t size = std::min(blockSize, count - first);
-    SamplePiece(this->Volume, this->dims(), positions + first, size, this->Low, values.data());
-    std::transform(values.begin(), values.begin() + size, targets + first, [this](double value) {
-      return NormalisedTarget(value, 0, this->High - this->Low);
-    });
-  }
+  SampleNormalised(this->Volume, this->dims(), positions, count, this->Low, this->High, targets);
 }
 
 } // namespace inr

@@ -48,6 +48,11 @@ glm::vec3 RandomPosition(std::uint64_t stream, std::uint64_t k, const glm::i64ve
 void SamplePiece(const VolumePiece& piece, const glm::i64vec3& dims, const glm::vec3* positions,
                  std::int64_t count, double origin, double* values);
 
+/// The same, normalised to (v - low)/(high - low).
+void SampleNormalised(const VolumePiece& piece, const glm::i64vec3& dims,
+                      const glm::vec3* positions, std::int64_t count, double low, double high,
+                      float* targets);
+
 /// The whole volume in memory, in its own type.
 class InMemorySource : public SampleSource
 {

@@ -7,7 +7,6 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <vector>
 
@@ -109,14 +108,7 @@ bool VolumePart::isNear(const glm::vec3& corner, const glm::vec3& extent) const
 void VolumePart::sample(const glm::vec3* positions, std::int64_t count, double low, double high,
                         float* targets) const
 {
-  constexpr std::int64_t blockSize = 256;
-  std::array<double, blockSize> values{};
-  for (std::int64_t first = 0; first < count; first += blockSize) {
-    const std::int64_t size = std::min(blockSize, count - first);
-    SamplePiece(this->Piece, this->Dims, positions + first, size, low, values.data());
-    std::transform(values.begin(), values.begin() + size, targets + first,
-                   [&](double value) { return NormalisedTarget(value, 0, high - low); });
-  }
+  SampleNormalised(this->Piece, this->Dims, positions, count, low, high, targets);
 }
 
 void SharedSource::sample(const glm::vec3* positions, std::int64_t count, float* targets) const

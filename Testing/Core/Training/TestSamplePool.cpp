@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a pool gives is what the volume holds, and every region of it equally often.
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Optimiser.h"
 #include "Core/Training/SamplePool.h"
 #include "Testing/Core/Training/FieldReader.h"
 
