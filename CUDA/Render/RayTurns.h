@@ -3,7 +3,6 @@
 
 #include "CUDA/Render/Kernels/RayOrder.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -14,12 +13,12 @@ namespace cuda {
 template <class Machine> class RayTurns
 {
 public:
-  /// `most`: rays in a window.
-  RayTurns(Machine& machine, std::int64_t most)
-      : Where(machine), Later{machine.template allocate<std::uint32_t>(most),
-                              machine.template allocate<std::uint32_t>(most)},
-        Waiters{machine.template allocate<std::uint32_t>(most),
-                machine.template allocate<std::uint32_t>(most)},
+  /// `windowSize`: rays in a window, at most.
+  RayTurns(Machine& machine, std::int64_t windowSize)
+      : Where(machine), Later{machine.template allocate<std::uint32_t>(windowSize),
+                              machine.template allocate<std::uint32_t>(windowSize)},
+        Waiters{machine.template allocate<std::uint32_t>(windowSize),
+                machine.template allocate<std::uint32_t>(windowSize)},
         Counts(machine.template allocate<std::uint64_t>(CountOfCounts))
   {}
 
@@ -29,42 +28,28 @@ public:
     this->Order = order;
     this->First = first;
     this->Waiting = rays;
-    this->Most = rays;
     this->Begins = true;
   }
-  /// So many of those that wait may go on at once, at least one.
-  void limit(std::int64_t rays) { this->Most = std::max<std::int64_t>(rays, 1); }
-  std::int64_t limit() const { return std::min(this->Most, this->Waiting); }
-  /// Rays that wait for bricks, since run.
+  /// Rays that wait: to begin or, since run, for bricks.
   std::int64_t waiting() const { return this->Waiting; }
 
-  /// Runs a kernel with members lists and begin as of MarchRays, launch by launch: its Turns say
-  /// how far each lets rays come, the last one without limit. Waits once, to be told how many rays
-  /// wait: if none, all is done.
-  template <class Kernel> void run(Kernel kernel)
+  /// Lets `now` of the rays that wait go on. Runs a kernel with members lists and begin as of
+  /// MarchRays, launch by launch: its Turns say how far each lets rays come, the last one without
+  /// limit. Waits once, to be told how many rays wait: if none, all is done.
+  template <class Kernel> void run(Kernel kernel, std::int64_t now)
   {
-    const std::int64_t now = this->limit();
     const int next = 1 - this->Current;
     this->setNow(now);
     this->clear(WaitingOf + next);
-    kernel.lists = RayLists{this->Order,
-                            this->First,
-                            this->Begins ? nullptr : this->Waiters[this->Current].data(),
-                            this->count(Now),
-                            this->count(Begun),
-                            nullptr,
-                            nullptr,
-                            this->Waiters[next].data(),
-                            this->count(WaitingOf + next),
-                            0};
+    kernel.lists = this->listsInto(next);
     kernel.begin = this->Begins;
     int out = 0;
-    for (const int most : Kernel::Turns) {
+    for (const int stepsPerRay : Kernel::Turns) {
       this->clear(Begun);
       this->clear(LaterOf + out);
       kernel.lists.later = this->Later[out].data();
       kernel.lists.laterCount = this->count(LaterOf + out);
-      kernel.lists.most = most;
+      kernel.lists.most = stepsPerRay;
       this->Where.run(kernel, now);
       kernel.lists.now = kernel.lists.later;
       kernel.lists.nowCount = kernel.lists.laterCount;
@@ -82,6 +67,20 @@ private:
   enum Count { Now, Begun, LaterOf, WaitingOf = LaterOf + 2, CountOfCounts = WaitingOf + 2 };
 
   using List = typename Machine::template Array<std::uint32_t>;
+
+  /// From what waits into what waits `next`; where else rays go each turn says for itself.
+  RayLists listsInto(int next) const
+  {
+    RayLists lists{};
+    lists.order = this->Order;
+    lists.first = this->First;
+    lists.now = this->Begins ? nullptr : this->Waiters[this->Current].data();
+    lists.nowCount = this->count(Now);
+    lists.begun = this->count(Begun);
+    lists.waiting = this->Waiters[next].data();
+    lists.waitingCount = this->count(WaitingOf + next);
+    return lists;
+  }
 
   std::uint64_t* count(int which) const { return this->Counts.data() + which; }
   void clear(int which) { this->Where.fill(this->count(which), 0, 1); }
@@ -110,7 +109,6 @@ private:
   RayOrder Order{};
   std::int64_t First = 0;
   std::int64_t Waiting = 0;
-  std::int64_t Most = 0;
   int Current = 0; ///< list of those that wait
   bool Begins = false;
 };

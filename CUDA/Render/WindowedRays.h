@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "CUDA/Render/RayThrottle.h"
 #include "CUDA/Render/RayTurns.h"
 #include "Core/Error.h"
 #include "Core/Render/Tiles/TileLoop.h"
@@ -19,9 +20,8 @@ namespace cuda {
 template <class Machine, class Cache, class Progress> class WindowedRays
 {
 public:
-  /// `most`: rays of a window.
-  WindowedRays(Machine& machine, Cache& cache, std::int64_t most)
-      : Where(machine), Bricks(cache), Most(most)
+  WindowedRays(Machine& machine, Cache& cache, std::int64_t windowSize)
+      : Where(machine), Bricks(cache), WindowSize(windowSize)
   {}
 
   /// Runs a kernel like MarchRays, but for its members of lists, over all rays, once: none of them
@@ -39,7 +39,7 @@ public:
   /// All rays of a picture are to begin.
   void begin(const RayOrder& order)
   {
-    this->reserve(std::min(order.rays(), this->Most));
+    this->reserve(std::min(order.rays(), this->WindowSize));
     this->Order = order;
     this->First = 0;
     this->beginWindow();
@@ -87,8 +87,9 @@ private:
 
   void beginWindow()
   {
-    this->Waiting = std::min(this->Most, this->Order.rays() - this->First);
-    this->Turns->beginWindow(this->Order, this->First, this->Waiting);
+    const std::int64_t rays = std::min(this->WindowSize, this->Order.rays() - this->First);
+    this->Turns->beginWindow(this->Order, this->First, rays);
+    this->Throttle.beginWindow(rays);
   }
 
   /// The present window's rays, as far as they come; whether any of them wait. If none do, it is
@@ -97,34 +98,26 @@ private:
   {
     kernel.progress = this->Room->data();
     kernel.cache = this->Bricks.view();
-    this->Turns->run(kernel);
+    this->Turns->run(kernel, this->Throttle.atOnce(this->Turns->waiting()));
     if (this->Turns->waiting() > 0) {
       return true;
     }
-    this->First += this->Most;
+    this->First += this->WindowSize;
     if (!this->done()) {
       this->beginWindow();
     }
     return false;
   }
 
-  /// What the waiting rays want, at most so many bricks, as long as there is time for more. If
-  /// bricks that the others have just used leave no room, fewer go on at once, and in the end a
-  /// single ray, whose next sample has what it needs when nothing else is there.
+  /// What the waiting rays want, at most so many bricks, as long as there is time for more.
   void load(std::int64_t most, const std::function<bool()>& goesOn)
   {
+    const std::int64_t waiting = this->Turns->waiting();
     const auto loaded = this->Bricks.load(most, true, goesOn);
-    const std::int64_t atOnce = this->Turns->limit();
-    if (loaded.loaded == 0 && atOnce == 1) {
+    if (loaded.loaded == 0 && this->Throttle.atOnce(waiting) == 1) {
       this->Bricks.clear();
     }
-    // More again only when a ray has ended: else a number that is too large and its half would take
-    // turns for ever.
-    const bool ended = this->Turns->waiting() < this->Waiting;
-    const bool few = 4 * loaded.loaded < this->Bricks.capacity();
-    const bool crowded = loaded.full && (few || !ended);
-    this->Turns->limit(crowded ? atOnce / 2 : (ended ? 2 * atOnce : atOnce));
-    this->Waiting = this->Turns->waiting();
+    this->Throttle.adapt({loaded.loaded, this->Bricks.capacity(), loaded.full}, waiting);
   }
 
   void reserve(std::int64_t rays)
@@ -141,10 +134,10 @@ private:
 
   Machine& Where;
   Cache& Bricks;
-  std::int64_t Most;
+  std::int64_t WindowSize; ///< rays, at most
   RayOrder Order{};
-  std::int64_t First = 0;   ///< ray of the window
-  std::int64_t Waiting = 0; ///< rays of the window, when bricks were last loaded
+  std::int64_t First = 0; ///< ray of the window
+  RayThrottle Throttle;
   std::optional<Rays> Room;
   std::optional<RayTurns<Machine>> Turns;
 };

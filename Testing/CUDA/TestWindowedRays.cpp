@@ -147,6 +147,35 @@ void RunToEnd(Rays& rays, const CountSamples& kernel, const inr::cuda::RayOrder&
 }
 
 /// Whatever the size of a window, of which the last one is smaller.
+/// Supplies of a cache of 8 bricks that never has room for all.
+TEST(RayThrottle, LetsFewerGoOnWhereThereIsNoRoomDownToOne)
+{
+  inr::cuda::RayThrottle throttle;
+  throttle.beginWindow(100);
+  EXPECT_EQ(throttle.atOnce(100), 100);
+  for (const std::int64_t atOnce : {50, 25, 12, 6, 3, 1, 1}) {
+    throttle.adapt({8, 8, true}, 100);
+    EXPECT_EQ(throttle.atOnce(100), atOnce);
+  }
+}
+
+TEST(RayThrottle, LetsMoreGoOnOnlyWhenARayHasEnded)
+{
+  inr::cuda::RayThrottle throttle;
+  throttle.beginWindow(100);
+  throttle.adapt({8, 8, true}, 100);
+  throttle.adapt({8, 8, false}, 100); // there was room, but nobody has ended
+  EXPECT_EQ(throttle.atOnce(100), 50);
+  throttle.adapt({8, 8, false}, 99);
+  EXPECT_EQ(throttle.atOnce(99), 99); // as many as there are
+  throttle.adapt({8, 8, true}, 98);   // crowded, but much came in, and one has ended
+  EXPECT_EQ(throttle.atOnce(98), 98);
+  throttle.adapt({1, 8, true}, 97); // too little for so many
+  EXPECT_EQ(throttle.atOnce(97), 48);
+  throttle.beginWindow(30);
+  EXPECT_EQ(throttle.atOnce(30), 30);
+}
+
 TEST(WindowedRays, EndEveryRayOnce)
 {
   for (const bool backward : {false, true}) {
