@@ -16,7 +16,7 @@ namespace cuda {
 struct WindowSizes
 {
   std::int64_t rays = 1 << 20;  ///< 160 MiB of their progress, 240 at most
-  std::int64_t paths = 1 << 17; ///< 69 MB
+  std::int64_t paths = 1 << 17; ///< 69 MiB
 };
 
 /// Draws frames through a cache by kernels on a machine; see AcceleratedRenderer.
