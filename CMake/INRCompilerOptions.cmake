@@ -31,6 +31,11 @@ if (INR_SANITIZE)
   target_compile_options(inr_options INTERFACE
     -fsanitize=${INR_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(inr_options INTERFACE -fsanitize=${INR_SANITIZE})
+  # Each compiler has other words of its own for it.
+  target_compile_definitions(inr_options INTERFACE INR_SANITIZED)
+  if (INR_SANITIZE MATCHES "thread")
+    target_compile_definitions(inr_options INTERFACE INR_SANITIZED_THREADS)
+  endif ()
 endif ()
 if (INR_BUILD_FUZZERS)
   if (NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")

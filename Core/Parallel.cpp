@@ -67,7 +67,7 @@ std::uint64_t AvailableCoresKey()
 #endif
 }
 
-#ifdef __SANITIZE_THREAD__
+#ifdef INR_SANITIZED_THREADS
 
 namespace {
 
@@ -128,7 +128,7 @@ void Arena::forEachBlock(std::int64_t count, std::int64_t block,
   }
   const std::int64_t blocks = (count + block - 1) / block;
   const auto run = [&](std::int64_t k) { body(k * block, std::min((k + 1) * block, count)); };
-#ifdef __SANITIZE_THREAD__
+#ifdef INR_SANITIZED_THREADS
   RunOnThreads(this->threads(), blocks, run);
 #else
   this->Self->Tasks.execute([&] {

@@ -25,7 +25,8 @@ seconds=()  # what passed at the second attempt
 # build PRESET: configures and builds; a failure counts as one failed test.
 build() {
   echo "== Building preset $1"
-  if cmake --preset "$1" > "build-$1.log" 2>&1 && cmake --build --preset "$1" >> "build-$1.log" 2>&1; then
+  # Nothing is kept of a configuration for another compiler: with it the preset's values would be lost.
+  if cmake --fresh --preset "$1" > "build-$1.log" 2>&1 && cmake --build --preset "$1" >> "build-$1.log" 2>&1; then
     passed=$((passed + 1))
     rm -f "build-$1.log"
     return 0

@@ -145,8 +145,8 @@ public:
     this->list(this->Listed, byContribution);
     this->forgetRequests();
     beside.after(this->Where);
-    this->infer(beside);
     this->Beside = &beside;
+    this->infer(beside);
   }
   bool isLoading() const { return this->Beside != nullptr; } ///< begun and not finished
   /// Whether finishLoad would not wait for bricks to be inferred.

@@ -12,9 +12,7 @@ void GpuMachine::after(const GpuMachine& other) const
   const cudaError_t recorded = cudaEventRecord(event, other.Work.get());
   const cudaError_t waiting =
       recorded == cudaSuccess ? cudaStreamWaitEvent(this->Work.get(), event, 0) : recorded;
-  if (cudaEventDestroy(event) != cudaSuccess) { // it goes on until it has happened
-    cudaGetLastError();
-  }
+  Forget(cudaEventDestroy(event)); // which goes on until it has happened
   Check(waiting, "waiting for another stream");
 }
 

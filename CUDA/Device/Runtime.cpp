@@ -63,12 +63,23 @@ void Check(cudaError_t status, const char* call)
                                      cudaGetErrorName(status) + ", " + call + ")");
 }
 
+void Forget(cudaError_t status)
+{
+  if (status != cudaSuccess) {
+    cudaGetLastError();
+  }
+}
+
 CurrentDevice::CurrentDevice(int ordinal)
 {
   if (Contexts().get(&this->Before) != CUDA_SUCCESS) {
     this->Before = nullptr;
   }
-  INR_CUDA(cudaSetDevice(ordinal));
+  const cudaError_t status = cudaSetDevice(ordinal);
+  if (status != cudaSuccess) {
+    Contexts().set(this->Before);
+    Check(status, "cudaSetDevice(ordinal)");
+  }
 }
 
 CurrentDevice::~CurrentDevice() { Contexts().set(this->Before); }
@@ -84,9 +95,8 @@ Stream::~Stream()
   // What is still on its way would otherwise use memory that its owner is about to free.
   try {
     const CurrentDevice current(this->Device);
-    cudaStreamSynchronize(this->Handle);
-    cudaStreamDestroy(this->Handle);
-    cudaGetLastError();             // nobody's any more: the thread's next launch would report it
+    Forget(cudaStreamSynchronize(this->Handle));
+    Forget(cudaStreamDestroy(this->Handle));
   } catch (const std::exception&) { // it is lost, and its streams with it
   }
 }
@@ -123,8 +133,7 @@ Memory::~Memory()
   }
   try {
     const CurrentDevice current(this->Device);
-    this->Where == Place::Device ? cudaFree(this->Address) : cudaFreeHost(this->Address);
-    cudaGetLastError();
+    Forget(this->Where == Place::Device ? cudaFree(this->Address) : cudaFreeHost(this->Address));
   } catch (const std::exception&) { // it is lost, and its memory with it
   }
 }

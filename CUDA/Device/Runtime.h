@@ -15,6 +15,9 @@ namespace cuda {
 /// Throws where `status` is no success. `call`: its text.
 void Check(cudaError_t status, const char* call);
 
+/// Where nobody can be told: else the thread's next launch would report it.
+void Forget(cudaError_t status);
+
 #define INR_CUDA(call) ::inr::cuda::Check((call), #call)
 
 /// Makes a device's primary context the calling thread's, for as long as this lives: the

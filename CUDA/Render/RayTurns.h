@@ -13,6 +13,8 @@ namespace cuda {
 template <class Machine> class RayTurns
 {
 public:
+  static constexpr std::int64_t BytesPerRay = 4 * sizeof(std::uint32_t); ///< of a window
+
   /// `windowSize`: rays in a window, at most.
   RayTurns(Machine& machine, std::int64_t windowSize)
       : Where(machine), Later{machine.template allocate<std::uint32_t>(windowSize),

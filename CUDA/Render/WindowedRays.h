@@ -125,8 +125,9 @@ private:
     if (!this->Room || this->Room->size() < rays) {
       this->Turns.reset();
       this->Room.reset();
-      this->Where.requireFree(rays * static_cast<std::int64_t>(sizeof(Progress)),
-                              "what the rays of a picture wait in");
+      this->Where.requireFree(
+          rays * (static_cast<std::int64_t>(sizeof(Progress)) + RayTurns<Machine>::BytesPerRay),
+          "what the rays of a picture wait in");
       this->Room.emplace(this->Where.template allocate<Progress>(rays));
       this->Turns.emplace(this->Where, rays);
     }

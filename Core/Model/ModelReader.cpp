@@ -9,7 +9,6 @@
 #include "Core/Model/ModelHeader.h"
 
 #include <algorithm>
-#include <limits>
 #include <new>
 #include <utility>
 

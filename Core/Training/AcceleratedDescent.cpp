@@ -218,6 +218,8 @@ void AcceleratedDescent::settle()
       throw;
     }
     this->giveUp(error.what());
+  } catch (const std::bad_alloc&) { // for what it has
+    this->giveUp("there is not enough memory for its parameters");
   }
 }
 

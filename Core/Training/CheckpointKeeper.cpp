@@ -128,6 +128,8 @@ std::string CheckpointKeeper::replace(const TrainingState& state, const StateArr
                "'" + this->Options.path + "' holds " + std::to_string(state.steps) + " steps");
   } catch (const Error& error) {
     problem = error.what();
+  } catch (const std::bad_alloc&) {
+    problem = "there is not enough memory to write '" + this->Options.path + "'";
   }
   this->WriteSeconds = clock.seconds();
   this->SinceWritten = TrainingClock();

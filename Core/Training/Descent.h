@@ -24,7 +24,8 @@ public:
 
   /// One mini-batch; returns the mean squared error over it, before the update. Nothing when
   /// `check` stopped it: then no parameter has changed, and the next step draws the same batch. An
-  /// update that has begun is always finished.
+  /// update that has begun is always finished, but where memory runs out: Error(InvalidModel) says
+  /// that there is nothing to go on from.
   virtual std::optional<double> step(BatchSource& batches,
                                      const StopCheck& check = StopCheck()) = 0;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/GradientDescent.h"
 
+#include "Core/Error.h"
 #include "Core/Inference/HugePages.h"
 #include "Core/Training/AdamSchedule.h"
 #include "Core/Training/RandomStream.h"
@@ -8,7 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <new>
 #include <numeric>
+#include <string>
 
 namespace inr {
 
@@ -138,12 +141,24 @@ std::optional<double> GradientDescent::step(BatchSource& batches, const StopChec
   if (!loss) {
     return loss;
   }
+  this->update();
+  return loss;
+}
+
+void GradientDescent::update()
+{
   const float rate = this->Rate.at(this->Steps, this->PlannedSteps);
   ++this->Steps;
-  this->updateLayers(rate);
-  this->updateOtherLayers(rate);
-  this->updateGrid(rate);
-  return loss;
+  try {
+    this->updateLayers(rate);
+    this->updateOtherLayers(rate);
+    this->updateGrid(rate);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::InvalidModel, "memory ran out within step " +
+                                             std::to_string(this->Steps) +
+                                             " of the training: some parameters are those of the "
+                                             "step before; choose a smaller model");
+  }
 }
 
 std::optional<double> GradientDescent::computeTogether(BatchSource& batches, const StopCheck& check)

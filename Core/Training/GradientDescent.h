@@ -83,6 +83,7 @@ private:
                           std::int64_t end, std::int64_t total, const StopCheck& check);
   void sumShards();
   void scatter(const float* xyz, std::int64_t count, const StopCheck& check);
+  void update();
   void updateLayers(float learningRate);
   void updateOtherLayers(float learningRate);
   void updateGrid(float learningRate);

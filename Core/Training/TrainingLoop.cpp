@@ -55,6 +55,9 @@ void TrainingLoop::run(Descent& descent, BatchSource& batches, const PsnrEstimat
   } catch (const Error& error) {
     this->stop(descent, error);
   } catch (const std::bad_alloc&) {
+    if (this->Group.size() > 1) { // outside of what all do together: nobody would answer
+      throw NoMemoryToTrain();
+    }
     this->stop(descent, NoMemoryToTrain());
   }
   this->finish(descent);
@@ -66,7 +69,7 @@ void TrainingLoop::run(Descent& descent, BatchSource& batches, const PsnrEstimat
 void TrainingLoop::stop(Descent& descent, const Error& error)
 {
   if (error.code() == ErrorCode::InvalidModel) {
-    throw error; // after a divergence there is nothing to go on from
+    throw error; // there is nothing to go on from
   }
   if (this->Group.rank() > 0) {
     this->waitForFirst();

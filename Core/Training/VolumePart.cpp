@@ -7,7 +7,6 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 namespace inr {

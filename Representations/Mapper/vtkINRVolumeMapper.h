@@ -212,8 +212,7 @@ public:
    * Whether composited pictures take into account all values between a sample and the one before,
    * as if the field were linear there (pre-integrated classification), instead of the sample's own
    * value: thin peaks in the opacity show with far less grain at the same SampleDistance, for some
-   * 1.5 times the time. With an ErrorTolerance of 0 or more it does not count.
-   * Default off.
+   * 1.5 times the time. With an ErrorTolerance of 0 or more it does not count. Default off.
    */
   vtkSetMacro(PreIntegration, bool);
   vtkGetMacro(PreIntegration, bool);

@@ -36,7 +36,7 @@ inline std::int64_t BytesToInferIn(const inr::cuda::Device& device)
 {
   const inr::cuda::FloatTables tables(*TrainedModel(), nullptr, nullptr);
   const std::int64_t perThread =
-      device.major < 8 ? inr::cuda::ScratchPerThread(tables.view(nullptr, nullptr)) : 0;
+      device.code < 80 ? inr::cuda::ScratchPerThread(tables.view(nullptr, nullptr)) : 0;
   return inr::cuda::ThreadsPerBlock * static_cast<std::int64_t>(sizeof(float)) * perThread;
 }
 

@@ -146,7 +146,6 @@ void RunToEnd(Rays& rays, const CountSamples& kernel, const inr::cuda::RayOrder&
   EXPECT_TRUE(rays.done());
 }
 
-/// Whatever the size of a window, of which the last one is smaller.
 /// Supplies of a cache of 8 bricks that never has room for all.
 TEST(RayThrottle, LetsFewerGoOnWhereThereIsNoRoomDownToOne)
 {
@@ -176,6 +175,7 @@ TEST(RayThrottle, LetsMoreGoOnOnlyWhenARayHasEnded)
   EXPECT_EQ(throttle.atOnce(30), 30);
 }
 
+/// Whatever the size of a window, of which the last one is smaller.
 TEST(WindowedRays, EndEveryRayOnce)
 {
   for (const bool backward : {false, true}) {

@@ -26,7 +26,7 @@ TEST(ReservedArray, KeepsItsElementsWhileItGrowsAndShrinks)
   }
 }
 
-#if !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__) // their own memory counts
+#ifndef INR_SANITIZED // whose own memory counts
 std::int64_t ResidentBytes()
 {
   std::int64_t total = 0;

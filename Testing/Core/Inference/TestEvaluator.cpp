@@ -159,7 +159,7 @@ std::shared_ptr<inr::Model> ScaledModel(float scale)
   return model;
 }
 
-/// What overflows or underflows in one kernel does so in all.
+/// None overflows, and what underflows in one kernel does so in all.
 TEST(Evaluator, KernelsAgreeOnHugeAndTinyNumbers)
 {
   const std::vector<glm::vec3> positions = RandomPositions(500);
