@@ -43,7 +43,8 @@ std::string StepFileName(const std::string& name, const std::string& suffix, int
   if (!std::regex_match(suffix, parts, std::regex("([^%/]*)%([.0]?)([0-9]?)d([^%/]*)"))) {
     throw inr::Error(inr::ErrorCode::InvalidArgument,
                      "the FileNameSuffix '" + suffix +
-                         "' has no place for the number; write %d, or %.3d for three digits");
+                         "' must have one %d in it, or %.3d for three digits (up to 9), and "
+                         "no other % or /");
   }
   const std::size_t width = parts[3].length() > 0 ? std::stoul(parts[3]) : 0;
   const std::string digits = std::to_string(number);

@@ -21,6 +21,7 @@
 #include <vtkImageData.h>
 #include <vtkLogger.h>
 
+#include <sstream>
 #include <utility>
 
 namespace {
@@ -210,8 +211,14 @@ void vtkINRWriter::KeepResult(const inr::Model& model, vtkIdType fileSize)
   if (ControllerGroup(this->Internal->Controller).rank() > 0) {
     return; // the first one says so
   }
+  std::ostringstream training;
+  if (this->Steps > 0) {
+    training << this->Steps << " steps in " << this->TrainingSeconds << " s by "
+             << this->BackendInUse << TimesOfGroup(*model.training);
+  } else {
+    training << "no training, as all values are equal";
+  }
   vtkLog(INFO, << this->Internal->Target << ": PSNR " << this->PSNR << " dB, SSIM " << this->SSIM
                << ", largest error " << this->MaximumError << ", ratio " << this->Ratio << ", "
-               << this->Steps << " steps in " << this->TrainingSeconds << " s by "
-               << this->BackendInUse << TimesOfGroup(*model.training));
+               << training.str());
 }

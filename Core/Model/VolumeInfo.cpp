@@ -76,8 +76,12 @@ void RequireValidVolume(const VolumeInfo& volume, ErrorCode code)
   if (!std::isfinite(determinant) || determinant == 0) {
     throw Error(code, "the direction matrix must be finite and invertible");
   }
-  if (!(volume.low <= volume.high) || !std::isfinite(volume.high - volume.low)) {
+  if (!(volume.low <= volume.high) || !std::isfinite(volume.low) || !std::isfinite(volume.high)) {
     throw Error(code, "the value range must be finite, its low end not above its high end");
+  }
+  if (!std::isfinite(volume.high - volume.low)) {
+    throw Error(code, "the values range over more than a double can tell, 1.8e308; divide them by "
+                      "some number");
   }
   if (volume.time && !std::isfinite(*volume.time)) {
     throw Error(code, "the time must be finite");

@@ -20,6 +20,8 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <string>
+#include <utility>
 
 namespace inr {
 
@@ -76,6 +78,13 @@ void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options)
 {
   if (dims.x < 1 || dims.y < 1 || dims.z < 1) {
     throw Error(ErrorCode::InvalidArgument, "there are no voxels to train on");
+  }
+  for (const auto& [name, value] : {std::pair("TargetPSNR", options.targetPsnr),
+                                    {"TargetRatio", options.targetRatio},
+                                    {"TimeLimit", options.timeLimit}}) {
+    if (std::isnan(value)) {
+      throw Error(ErrorCode::InvalidArgument, std::string(name) + " is not a number");
+    }
   }
   constexpr int largestEdge = 1 << 29; // so that a single layer's spacing can be told in a file
   const int edge = options.macroCellSize;

@@ -11,6 +11,7 @@
 #include "vtkTextProperty.h"
 #include "vtkViewport.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <iomanip>
@@ -23,6 +24,8 @@ vtkStandardNewMacro(vtkINRStatusActor);
 namespace {
 
 constexpr double Margin = 8; // pixels
+constexpr int LargestFont = 14;
+constexpr int SmallestFont = 7; ///< that can be read
 
 std::string LevelsOf(const inr::FrameStatus& status)
 {
@@ -53,7 +56,7 @@ vtkINRStatusActor::vtkINRStatusActor()
 {
   vtkTextProperty* style = this->GetTextProperty();
   style->SetFontFamilyToCourier();
-  style->SetFontSize(14);
+  style->SetFontSize(LargestFont);
   style->SetColor(1, 1, 1);
   style->SetBackgroundColor(0, 0, 0); // legible whatever is behind it
   style->SetBackgroundOpacity(0.5);
@@ -126,6 +129,20 @@ double vtkINRStatusActor::TopIn(vtkViewport* viewport)
   return top;
 }
 
+void vtkINRStatusActor::FitInto(vtkViewport* viewport)
+{
+  double size[2];
+  this->GetSize(viewport, size);
+  const int now = this->GetTextProperty()->GetFontSize();
+  const double room = viewport->GetSize()[0] - 2 * Margin;
+  const double fitting = std::floor(now * room / std::max(size[0], 1.0));
+  const int wanted = static_cast<int>(std::clamp<double>(fitting, SmallestFont, LargestFont));
+  // Widths are rounded by the letter: a step up is left for where there is room for two.
+  if (wanted < now || wanted > now + 1 || wanted == LargestFont) {
+    this->GetTextProperty()->SetFontSize(wanted);
+  }
+}
+
 int vtkINRStatusActor::RenderOverlay(vtkViewport* viewport)
 {
   const std::string text = this->TextIn(viewport);
@@ -134,6 +151,7 @@ int vtkINRStatusActor::RenderOverlay(vtkViewport* viewport)
     return 0;
   }
   this->SetInput(text.c_str());
+  this->FitInto(viewport);
   this->SetPosition(Margin, this->TopIn(viewport));
   double size[2];
   this->GetSize(viewport, size);

@@ -57,6 +57,8 @@ private:
   std::string TextOf(const inr::FrameStatus& status);
   std::string TextIn(vtkViewport* viewport);
   double TopIn(vtkViewport* viewport);
+  /// Makes letters as large as the view is wide enough for.
+  void FitInto(vtkViewport* viewport);
 
   vtkINRVolumeMapper* StatusMapper = nullptr;
   vtkMultiProcessController* Processes = nullptr;

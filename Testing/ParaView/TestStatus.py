@@ -103,3 +103,17 @@ hidden = picture(view, "status-hidden")
 other.ShowStatus = 0
 check(len(rows_of_text(hidden, picture(view, "status-none"))) == 1, "a hidden volume's text stays")
 check(not actors(), "a text stays")
+
+# Small views have smaller letters, down to those that can just be read.
+simple.Show(reader, view)
+simple.Hide(second, view)
+display.RenderMode = "Path Tracing"
+for width in 260, 400:
+    view.ViewSize = [width, 300]
+    display.ShowStatus = 0
+    without = picture(view, f"status-{width}-off")
+    display.ShowStatus = 1
+    with_text = picture(view, f"status-{width}-on")
+    columns = np.flatnonzero(np.any(with_text[-60:] != without[-60:], axis=(0, 2)))
+    check(columns[-1] < width - 4, "the text leaves a view of", width, "pixels at", columns[-1])
+    check(columns[-1] > 0.7 * width, "the text ends at", columns[-1], "of", width)

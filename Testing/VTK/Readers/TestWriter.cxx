@@ -310,6 +310,14 @@ TEST_F(Writer, RefusesSettingsThatMakeNoSense)
   this->Algorithm->SetTimeLimit(0);
   this->Algorithm->SetMaximumSteps(0);
   this->expectRefusal(image, "never end");
+  this->Algorithm->SetMaximumSteps(5);
+  this->Algorithm->SetTargetRatio(std::nan(""));
+  this->expectRefusal(image, "TargetRatio is not a number");
+  this->Algorithm->SetTargetRatio(0);
+  const auto vast = MakeImage({4, 4, 4}, VTK_DOUBLE, 0, 1);
+  vast->GetPointData()->GetArray("field")->SetTuple1(0, -1.7e308);
+  vast->GetPointData()->GetArray("field")->SetTuple1(1, 1.7e308);
+  this->expectRefusal(vast, "more than a double can tell");
   this->Algorithm->SetFileName(nullptr);
   this->expectRefusal(image, "no FileName");
 }
