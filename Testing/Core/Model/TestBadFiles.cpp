@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace {
 
@@ -163,11 +164,13 @@ std::string Nested(int depth)
   std::string inner("\x05\0\0\0\0", 5);
   for (int k = 0; k < depth; ++k) {
     const auto length = static_cast<std::int32_t>(inner.size() + 8);
-    std::string outer(8, '\0');
+    std::string outer("\0\0\0\0\x03"
+                      "a\0",
+                      7);
     std::memcpy(outer.data(), &length, 4);
-    outer[4] = '\x03';
-    outer.replace(5, 2, std::string("a\0", 2));
-    inner = outer.substr(0, 7) + inner + std::string(1, '\0');
+    outer += inner;
+    outer += '\0';
+    inner = std::move(outer);
   }
   return inner;
 }
