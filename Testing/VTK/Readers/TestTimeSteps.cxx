@@ -245,7 +245,7 @@ TEST_F(WriterOfSteps, RefusesStepsAndSuffixesThatMakeNoSense)
     const MessageCapture messages;
     this->Algorithm->SetFileNameSuffix(suffix);
     EXPECT_EQ(this->Algorithm->Write(), 0);
-    EXPECT_TRUE(messages.onlyError("FileNameSuffix")) << suffix << messages.text();
+    EXPECT_TRUE(messages.onlyError("must have one %d")) << suffix << messages.text();
   }
   this->Algorithm->SetFileNameSuffix("%3d");
   this->Algorithm->SetMinTimeStep(4);
