@@ -5,7 +5,6 @@
 
 #include "CUDA/Render/DeviceColors.h"
 #include "CUDA/Render/Kernels/RenderScene.h"
-#include "Core/Error.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/Marching/PreIntegratedColors.h"
 
@@ -30,19 +29,18 @@ RayView RaysOn(Machine& machine, const RayView& given, const LayersView& layers,
 
 /// What a frame's rays look for. `colors`: there already.
 template <class Machine>
-MarchSettings SettingsOn(Machine& machine, const MarchSettings& given, const ColorLookup& colors,
-                         Belongings<Machine>& arrays)
+MarchSettings SettingsOn(Machine& machine, const MarchSettings& given,
+                         const DeviceColors<Machine>& colors, Belongings<Machine>& arrays)
 {
-  if (given.cellSampling != nullptr) { // it would be read from the host's memory
-    throw Error(ErrorCode::InvalidArgument, "an accelerator draws nothing by a tolerance");
-  }
   MarchSettings settings = given;
+  settings.cellSampling =
+      arrays.put(machine, given.cellSampling, colors.majorants().grid(0).count());
   SurfaceLookup& surfaces = settings.projector.surfaces;
   surfaces.values = arrays.put(machine, surfaces.values, surfaces.count);
   if (given.preIntegrated != nullptr) {
     const PreIntegratedLookup& lookup = *given.preIntegrated;
     const PreIntegratedLookup copy =
-        lookup.with(colors, arrays.put(machine, lookup.nodes(), lookup.nodeCount()));
+        lookup.with(colors.lookup(), arrays.put(machine, lookup.nodes(), lookup.nodeCount()));
     settings.preIntegrated = arrays.put(machine, &copy, 1);
   }
   return settings;
@@ -59,7 +57,7 @@ RenderScene SceneOn(Machine& machine, const MarchJob& job, const DeviceColors<Ma
   scene.streams = StreamsOf(frame);
   scene.majorants = colors.majorants();
   scene.colors = colors.lookup();
-  scene.settings = SettingsOn(machine, job.settings, scene.colors, arrays);
+  scene.settings = SettingsOn(machine, job.settings, colors, arrays);
   scene.levelOfDetailScale = frame.levelOfDetailScale;
   scene.lit = job.shading != nullptr;
   if (scene.lit) {

@@ -16,7 +16,7 @@ struct MarchJob
 {
   const Frame& frame;
   const RayGeometry& geometry;
-  const MarchSettings& settings; ///< none by a tolerance: `cellSampling` is null
+  const MarchSettings& settings; ///< `cellSampling`: of the cells of the majorants that were set
   const ColorLookup& colors;     ///< those that were set
   const Shading* shading;        ///< null: colours as the transfer function gives them
 };

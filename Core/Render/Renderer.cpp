@@ -205,15 +205,19 @@ bool Renderer::Implementation::choosesLevels(const Frame& frame,
 {
   // Values that leave their cell's range are moved into that of all cells that are walked through
   // together, and these are others where there are fewer samples.
-  return frame.errorTolerance.value_or(0) > 0 && this->Cells.rangesHold() &&
+  return this->Cached && frame.errorTolerance.value_or(0) > 0 && this->Cells.rangesHold() &&
          frame.blending.mode == BlendMode::Composite && !frame.shading && !settings.crops &&
          settings.step <= LevelChooser::LongestStep;
 }
 
-bool Renderer::Implementation::chooseLevels(const Frame& frame, const WorkLimit& limit,
-                                            const std::function<bool()>& keepGoing,
-                                            MarchSettings& settings)
+LevelChoice Renderer::Implementation::chooseLevels(const Frame& frame, const WorkLimit& limit,
+                                                   const std::function<bool()>& keepGoing,
+                                                   MarchSettings& settings)
 {
+  LevelChoice choice{frame};
+  if (!this->choosesLevels(frame, settings)) {
+    return choice;
+  }
   if (!this->Levels) {
     this->Levels.emplace(this->Field, this->Volume.dims, this->Cells,
                          this->Cached->store().cache().hierarchy().levels(),
@@ -225,12 +229,16 @@ bool Renderer::Implementation::chooseLevels(const Frame& frame, const WorkLimit&
   const RayGeometry geometry(whole, this->Volume.dims);
   const LevelChooser::Wish wish{*frame.errorTolerance, settings.step,
                                 settings.step * settings.unitsPerT};
-  if (!this->Levels->choose(wish, {geometry, frame.width, frame.height}, this->Cells,
-                            this->Colors->lookup(), this->Threads, limit, keepGoing)) {
-    return false;
+  const std::int64_t before = this->Levels->measuredPoints();
+  choice.final = this->Levels->choose(wish, {geometry, frame.width, frame.height}, this->Cells,
+                                      this->Colors->lookup(), this->Threads, limit, keepGoing);
+  choice.points = this->Levels->measuredPoints() - before;
+  if (choice.final) {
+    settings.cellSampling = this->Levels->sampling();
+  } else {
+    choice.frame.levelOfDetailScale = 1.0;
   }
-  settings.cellSampling = this->Levels->sampling();
-  return true;
+  return choice;
 }
 
 FrameStatistics Renderer::render(const Frame& wanted, Image& rgba, Image* depth,

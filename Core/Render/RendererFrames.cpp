@@ -50,17 +50,12 @@ FrameStatistics Renderer::Implementation::marchCached(const Frame& frame, MarchW
                                                       const std::function<bool()>& keepGoing)
 {
   const BrickStore::Call call = this->Cached->call();
-  const std::int64_t measured = this->measuredPoints();
-  const bool final = !this->choosesLevels(frame, way.settings) ||
-                     this->chooseLevels(frame, limit, keepGoing, way.settings);
-  Frame meanwhile = frame; // until all is measured, the picture is as by distance
-  meanwhile.levelOfDetailScale = final ? frame.levelOfDetailScale : 1.0;
+  const LevelChoice choice = this->chooseLevels(frame, limit, keepGoing, way.settings);
   FrameStatistics statistics =
-      this->Cached->render(meanwhile, way.geometry, this->Cells, *this->Colors, way.settings,
+      this->Cached->render(choice.frame, way.geometry, this->Cells, *this->Colors, way.settings,
                            way.lit(), limit, output, keepGoing);
-  statistics.complete = statistics.complete && final;
   statistics.work.bricks = call.done();
-  statistics.work.networkSamples += this->measuredPoints() - measured;
+  choice.addTo(statistics);
   return statistics;
 }
 
@@ -78,12 +73,18 @@ FrameStatistics Renderer::Implementation::marchHere(const Frame& frame, MarchWay
 }
 
 std::optional<FrameStatistics>
-Renderer::Implementation::marchElsewhere(const Frame& frame, const MarchWay& way,
-                                         const WorkLimit& limit, const PassOutput& output,
+Renderer::Implementation::marchElsewhere(const Frame& frame, MarchWay& way, const WorkLimit& limit,
+                                         const PassOutput& output,
                                          const std::function<bool()>& keepGoing)
 {
-  return this->Drawn->march({frame, way.geometry, way.settings, this->Colors->lookup(), way.lit()},
-                            limit, output, keepGoing);
+  const LevelChoice choice = this->chooseLevels(frame, limit, keepGoing, way.settings);
+  std::optional<FrameStatistics> statistics = this->Drawn->march(
+      {choice.frame, way.geometry, way.settings, this->Colors->lookup(), way.lit()}, limit, output,
+      keepGoing);
+  if (statistics) {
+    choice.addTo(*statistics);
+  }
+  return statistics;
 }
 
 FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
@@ -92,8 +93,7 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
   this->Paths.reset();
   MarchWay way = this->wayOf(frame);
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
-  const bool chooses = this->Cached && this->choosesLevels(frame, way.settings);
-  if (!chooses && this->isDrawnElsewhere(frame, keepGoing)) {
+  if (this->isDrawnElsewhere(frame, keepGoing)) {
     if (const std::optional<FrameStatistics> statistics =
             this->marchElsewhere(frame, way, limit, output, keepGoing)) {
       return *statistics;
@@ -132,7 +132,8 @@ void Renderer::Implementation::proveElsewhere(const Frame& small, const PassOutp
 {
   const WorkLimit none(0, this->Options.deterministic);
   if (small.mode == RenderMode::RayMarching) {
-    this->marchElsewhere(small, this->wayOf(small), none, output, keepGoing);
+    MarchWay way = this->wayOf(small);
+    this->marchElsewhere(small, way, none, output, keepGoing);
     return;
   }
   this->traceAlone(small, none, output, [&](const PathRound& round) {

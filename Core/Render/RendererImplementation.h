@@ -27,6 +27,20 @@ struct MarchWay
   const Shading* lit() const { return this->shading ? &*this->shading : nullptr; }
 };
 
+/// A frame as it is drawn with levels that its tolerance has chosen, if it has one.
+struct LevelChoice
+{
+  Frame frame;
+  bool final = true;       ///< else not all is measured yet, and levels are by distance meanwhile
+  std::int64_t points = 0; ///< that the network was asked for
+
+  void addTo(FrameStatistics& statistics) const
+  {
+    statistics.complete = statistics.complete && this->final;
+    statistics.work.networkSamples += this->points;
+  }
+};
+
 /// What a renderer consists of.
 struct Renderer::Implementation
 {
@@ -53,18 +67,17 @@ struct Renderer::Implementation
   void build();
   /// Finds what matters to pictures blended like this, unless that is known.
   void buildFor(const Blending& blending);
-  std::int64_t measuredPoints() const { return this->Levels ? this->Levels->measuredPoints() : 0; }
-  /// Whether what comes from coarser levels can be chosen for such a frame.
+  /// Whether what comes from coarser levels is chosen by such a frame's tolerance.
   bool choosesLevels(const Frame& frame, const MarchSettings& settings) const;
-  /// Puts the choice into `settings`; whether it is final.
-  bool chooseLevels(const Frame& frame, const WorkLimit& limit,
-                    const std::function<bool()>& keepGoing, MarchSettings& settings);
+  /// Puts such a choice into `settings`.
+  LevelChoice chooseLevels(const Frame& frame, const WorkLimit& limit,
+                           const std::function<bool()>& keepGoing, MarchSettings& settings);
 
   MarchWay wayOf(const Frame& frame);
   FrameStatistics march(const Frame& frame, const PassOutput& output,
                         const std::function<bool()>& keepGoing);
   /// By the accelerator, if that does not fail.
-  std::optional<FrameStatistics> marchElsewhere(const Frame& frame, const MarchWay& way,
+  std::optional<FrameStatistics> marchElsewhere(const Frame& frame, MarchWay& way,
                                                 const WorkLimit& limit, const PassOutput& output,
                                                 const std::function<bool()>& keepGoing);
   /// By the CPU; without a cache, with samples that `field` infers.
