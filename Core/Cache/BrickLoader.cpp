@@ -93,7 +93,7 @@ void BrickLoader::work()
   LowerPriority();
   std::unique_lock<std::mutex> lock(this->Mutex);
   while (!this->Ended) {
-    if (this->Paused || !this->tryToInferOne(lock)) {
+    if ((this->Paused && !this->Awaited) || !this->tryToInferOne(lock)) {
       this->Wake.wait(lock);
     }
   }
@@ -294,20 +294,36 @@ void BrickLoader::pause()
   this->Paused = true;
 }
 
+namespace {
+
+/// Says that somebody waits.
+class Waiting
+{
+public:
+  explicit Waiting(bool& flag) : Flag(flag) { this->Flag = true; }
+  ~Waiting() { this->Flag = false; }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+
+private:
+  bool& Flag;
+};
+
+} // namespace
+
 void BrickLoader::loadFor(double seconds)
 {
   constexpr double longest = 1e6; // what a clock can be set forward by has an end
   const std::chrono::duration<double> time(std::min(seconds, longest));
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
   std::unique_lock<std::mutex> lock(this->Mutex);
-  const bool wasPaused = std::exchange(this->Paused, false);
+  const Waiting waiting(this->Awaited);
   this->Wake.notify_all();
   if (this->Threads.empty()) {
     this->workFor(deadline, lock);
   } else {
     this->waitFor(deadline, lock);
   }
-  this->Paused = wasPaused;
 }
 
 void BrickLoader::workFor(Clock::time_point deadline, std::unique_lock<std::mutex>& lock)

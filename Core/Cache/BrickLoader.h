@@ -22,7 +22,7 @@ namespace inr {
 /// priority, and not at all while it is paused: so pausing and ending it take the time of one layer
 /// at most. Bricks of a source that infers several at once are begun together, and one call of that
 /// source takes the place of the layer. It is made paused. Its functions are for one thread at a
-/// time.
+/// time, but for pause, resume and requests of nothing.
 class BrickLoader
 {
 public:
@@ -95,6 +95,7 @@ private:
   std::condition_variable Wake;  ///< for the threads: there may be something to do
   std::condition_variable Ready; ///< a layer is begun, or a brick finished
   bool Paused = true;
+  bool Awaited = false; ///< by loadFor, paused or not
   bool Ended = false;
   std::int64_t LayersBegun = 0;
   std::int64_t Room;

@@ -101,9 +101,7 @@ BrickStore::Loaded BrickStore::load(std::vector<BrickPart> parts, const Arena& a
                                     const std::function<bool()>& keepGoing)
 {
   this->completeKnown(parts);
-  if (this->Loader) {
-    this->Loader->request({});
-  }
+  this->forgetRequests();
   const std::int64_t voxels = this->Cache.hierarchy().voxelsPerBrick();
   const auto count = static_cast<std::int64_t>(parts.size());
   const std::int64_t atOnce = BricksAtOnce(*this->Source);
@@ -150,6 +148,20 @@ void BrickStore::loadFor(double seconds, std::vector<BrickPart> parts, const Are
   if (!parts.empty()) {
     this->Loader->loadFor(seconds);
     this->mapLoaded();
+  }
+}
+
+void BrickStore::forgetRequests()
+{
+  if (this->Loader) {
+    this->Loader->request({});
+  }
+}
+
+void BrickStore::setPaused(bool paused)
+{
+  if (this->Loader) {
+    paused ? this->Loader->pause() : this->Loader->resume();
   }
 }
 
@@ -312,6 +324,7 @@ BrickStore::Call::Turn::Turn(BrickStore& store) : Store(store)
                                 std::none_of(budget.Stores.begin(), budget.Stores.end(), isInUse));
   });
   store.User = self;
+  budget.beginCall();
   this->Before = store.Done;
 }
 
@@ -321,6 +334,7 @@ BrickStore::Call::Turn::~Turn()
   {
     const std::lock_guard<std::mutex> lock(budget.Mutex);
     this->Store.User = {};
+    budget.endCall();
     budget.settle();
   }
   budget.TurnEnded.notify_all();
@@ -329,7 +343,6 @@ BrickStore::Call::Turn::~Turn()
 BrickStore::Call::Call(BrickStore& store, const Arena& arena) : Mine(store)
 {
   if (store.Loader) {
-    store.Loader->pause();
     try {
       store.mapLoaded();
     } catch (const std::bad_alloc&) { // between two pictures: this one asks for the same again
@@ -339,13 +352,6 @@ BrickStore::Call::Call(BrickStore& store, const Arena& arena) : Mine(store)
   if (store.Cache.find(coarsest) == PageTable::Unmapped) {
     store.load({coarsest}, arena, {});
     store.Cache.pin(coarsest);
-  }
-}
-
-BrickStore::Call::~Call()
-{
-  if (this->Mine.Store.Loader) {
-    this->Mine.Store.Loader->resume();
   }
 }
 

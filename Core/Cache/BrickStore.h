@@ -64,9 +64,12 @@ public:
   /// them when it is not paused.
   void loadFor(double seconds, std::vector<BrickPart> parts, const Arena& arena);
 
-  /// The time of one call that renders: others wait, the loader is paused, so that a frame has the
-  /// machine to itself, and what it has finished is mapped, in place of nothing that the last frame
-  /// used. The coarsest level is there.
+  /// Nobody needs for now what the loader was asked for, on any thread.
+  void forgetRequests();
+
+  /// The time of one call that renders: others wait, the loaders of all stores are paused, so that
+  /// a frame has the machine to itself, and what this one's has finished is mapped, in place of
+  /// nothing that the last frame used. The coarsest level is there.
   class Call
   {
   public:
@@ -74,7 +77,6 @@ public:
     /// use, in the middle of rendering on the same thread or for one that is Awaited. And what
     /// inferring throws.
     Call(BrickStore& store, const Arena& arena);
-    ~Call();
     Call(const Call&) = delete;
     Call& operator=(const Call&) = delete;
 
@@ -121,6 +123,7 @@ private:
   std::int64_t least() const;      ///< that it may need at any time
   std::int64_t kept() const;       ///< in use, and at least that
   std::int64_t cannotGive() const; ///< of what is kept
+  void setPaused(bool paused);
   bool isInUse() const { return this->User != std::thread::id(); }
   /// When what it would give back next was last used, BrickCache::Pinned where it has nothing.
   std::uint64_t oldestUse();

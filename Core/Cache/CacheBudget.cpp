@@ -3,9 +3,11 @@
 
 #include "Core/Cache/BrickStore.h"
 #include "Core/Cache/KeptBricks.h"
+#include "Core/Model/MacroCells.h"
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <tuple>
 #include <type_traits>
 
@@ -23,6 +25,14 @@ bool IsSame(const std::weak_ptr<const void>& a, const std::weak_ptr<const void>&
   return !a.owner_before(b) && !b.owner_before(a); // also true of no two that were never the same
 }
 
+/// Of two that somebody has, or none.
+bool AreAlike(const std::weak_ptr<const MacroCells>& a, const std::weak_ptr<const MacroCells>& b)
+{
+  const std::shared_ptr<const MacroCells> one = a.lock();
+  const std::shared_ptr<const MacroCells> other = b.lock();
+  return one == other || (one && other && *one == *other);
+}
+
 } // namespace
 
 bool StoreKey::operator==(const StoreKey& other) const
@@ -32,7 +42,7 @@ bool StoreKey::operator==(const StoreKey& other) const
                     key.bytes, key.background);
   };
   return IsSame(this->field, other.field) && IsSame(this->accelerator, other.accelerator) &&
-         rest(*this) == rest(other);
+         rest(*this) == rest(other) && AreAlike(this->cells, other.cells);
 }
 
 std::shared_ptr<CacheBudget> CacheBudget::ofProcess()
@@ -79,18 +89,40 @@ CacheBudget::storeFor(const StoreKey& key, const std::function<std::shared_ptr<B
 void CacheBudget::dropKept()
 {
   constexpr std::int64_t share = 4;
-  const auto idle = [](const KeptBricks* kept) { return kept->Store.use_count() == 1; };
   const auto tooMuch = [&] {
     const std::lock_guard<std::mutex> lock(this->Mutex);
-    std::int64_t least = 0;
-    for (const KeptBricks* kept : this->Kept) {
-      least += idle(kept) ? kept->Store->least() : 0;
-    }
-    return least > this->largest() / share;
+    return this->leastOfIdle() > this->largest() / share;
   };
   while (tooMuch()) {
-    (*std::find_if(this->Kept.begin(), this->Kept.end(), idle))->Store.reset();
+    const auto earliest =
+        std::find_if(this->Kept.begin(), this->Kept.end(),
+                     [&](const KeptBricks* kept) { return this->isIdle(kept->Store); });
+    const BrickStore* const store = (*earliest)->Store.get();
+    for (KeptBricks* kept : this->Kept) { // several may keep the same
+      if (kept->Store.get() == store) {
+        kept->Store.reset();
+      }
+    }
   }
+}
+
+bool CacheBudget::isIdle(const std::shared_ptr<BrickStore>& store) const
+{
+  const auto keepers = std::count_if(this->Kept.begin(), this->Kept.end(),
+                                     [&](const KeptBricks* kept) { return kept->Store == store; });
+  return store && store.use_count() == keepers;
+}
+
+std::int64_t CacheBudget::leastOfIdle() const
+{
+  std::set<const BrickStore*> idle;
+  std::int64_t least = 0;
+  for (const KeptBricks* kept : this->Kept) {
+    if (this->isIdle(kept->Store) && idle.insert(kept->Store.get()).second) {
+      least += kept->Store->least();
+    }
+  }
+  return least;
 }
 
 std::int64_t CacheBudget::total() const
@@ -167,6 +199,24 @@ void CacheBudget::settle()
       return; // all the rest is in use; who uses it will settle
     }
     store->giveOldest();
+  }
+}
+
+void CacheBudget::beginCall()
+{
+  if (this->Calls++ == 0) {
+    for (BrickStore* store : this->Stores) {
+      store->setPaused(true);
+    }
+  }
+}
+
+void CacheBudget::endCall()
+{
+  if (--this->Calls == 0) {
+    for (BrickStore* store : this->Stores) {
+      store->setPaused(false);
+    }
   }
 }
 

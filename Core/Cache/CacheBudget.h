@@ -18,12 +18,14 @@ namespace inr {
 
 class BrickStore;
 class KeptBricks;
+struct MacroCells;
 
 /// What a store's bricks depend on, and how much memory it may take: stores of the same are one.
 struct StoreKey
 {
-  std::weak_ptr<const void> field; ///< a model, or whatever else has the values
-  std::string kernel;              ///< that infers them
+  std::weak_ptr<const void> field;       ///< a model, or whatever else has the values
+  std::weak_ptr<const MacroCells> cells; ///< over whose ranges these are rounded; none for the unit
+  std::string kernel;                    ///< that infers them
   glm::i64vec3 dims;
   int brickSize;
   CachePrecision precision;
@@ -65,7 +67,12 @@ private:
   friend class BrickStore;
   friend class KeptBricks;
 
-  void dropKept(); ///< for who is making
+  // For who is making.
+  void dropKept();
+  /// Whether nobody but who keeps its bricks has a store.
+  bool isIdle(const std::shared_ptr<BrickStore>& store) const;
+  /// That idle stores need at least, together.
+  std::int64_t leastOfIdle() const;
 
   // All that follows is for who holds the mutex.
   std::int64_t largest() const; ///< limit of a store
@@ -77,11 +84,15 @@ private:
   BrickStore* oldest(const BrickStore* asking) const;
   /// Takes memory until the limit is kept again.
   void settle();
+  /// Pauses the loaders of all stores while there are calls, whichever store these are of.
+  void beginCall();
+  void endCall();
 
   mutable std::mutex Mutex;
   std::condition_variable TurnEnded;
   std::uint64_t Clock = 1; ///< frames begun by all stores
   std::vector<BrickStore*> Stores;
+  int Calls = 0; ///< in progress
 
   std::mutex Making; ///< guards the next two; taken before the other
   std::vector<std::pair<StoreKey, std::weak_ptr<BrickStore>>> Shared;

@@ -19,6 +19,10 @@ struct ValueRange
   float high = -1.0f;
 
   INR_HOST_DEVICE bool empty() const { return this->low > this->high; }
+  bool operator==(const ValueRange& other) const
+  {
+    return this->low == other.low && this->high == other.high;
+  }
   INR_HOST_DEVICE void extend(float value)
   {
     const bool first = this->empty();
@@ -53,6 +57,12 @@ struct MacroCells
   std::vector<ValueRange> ranges; ///< x fastest
 
   bool empty() const { return this->ranges.empty(); }
+  bool operator==(const MacroCells& other) const
+  {
+    return this->dims == other.dims && this->spacing == other.spacing &&
+           this->apron == other.apron && this->provenance == other.provenance &&
+           this->ranges == other.ranges;
+  }
   /// Whether nothing of the field lies outside its cell's range, as far as this program knows: of
   /// others' files that is only hoped.
   bool rangesHold() const { return this->empty() || this->provenance != MacroCellProvenance::File; }

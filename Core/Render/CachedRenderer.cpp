@@ -32,8 +32,8 @@ StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<co
 {
   const std::int64_t bytes = options.bytes > 0 ? options.bytes : DefaultCacheBytes();
   const std::shared_ptr<CacheBudget> budget = CacheBudget::ofProcess();
-  const StoreKey key{identity, field->kernel(),    dims,       options.brickSize, options.precision,
-                     bytes,    options.background, accelerator};
+  const StoreKey key{identity,          cells, field->kernel(),    dims,       options.brickSize,
+                     options.precision, bytes, options.background, accelerator};
   return budget->storeFor(key, [&] {
     std::shared_ptr<const BrickSource> source = MakeBrickSource(
         field, Hierarchy(dims, options.brickSize, field->resolution()), std::move(cells));
@@ -64,6 +64,11 @@ CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field,
       Store(StoreFor(this->Field, identity, dims, std::move(cells), options, arena, accelerator,
                      model))
 {}
+
+CachedRenderer::~CachedRenderer()
+{
+  this->Store->forgetRequests(); // who else draws the field asks again
+}
 
 void CachedRenderer::beginFrame() { this->Latest = this->Store->beginFrame(); }
 

@@ -65,6 +65,10 @@ public:
                  const BrickKernel& kernel, const Arena& arena,
                  const std::shared_ptr<const Accelerator>& accelerator = nullptr,
                  const ModelPointer& model = nullptr);
+  /// Nothing more is loaded for its pictures, even where somebody keeps the bricks.
+  ~CachedRenderer();
+  CachedRenderer(const CachedRenderer&) = delete;
+  CachedRenderer& operator=(const CachedRenderer&) = delete;
 
   /// Within a call; see Renderer::render. The references are for this only.
   FrameStatistics render(const Frame& frame, const RayGeometry& geometry,

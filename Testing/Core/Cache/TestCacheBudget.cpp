@@ -2,6 +2,7 @@
 //
 // Several stores in one budget, against a model that is nothing but bricks and when they were used.
 #include "Core/Cache/BrickStore.h"
+#include "Core/Cache/KeptBricks.h"
 #include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Core/Random.h"
@@ -9,7 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <thread>
 
@@ -19,10 +22,13 @@ namespace {
 class Source : public inr::BrickSource
 {
 public:
-  explicit Source(int brickSize) : BrickSource(inr::Hierarchy({4000, 2, 2}, brickSize)) {}
+  explicit Source(int brickSize, std::chrono::milliseconds forALayer = {})
+      : BrickSource(inr::Hierarchy({4000, 2, 2}, brickSize)), ForALayer(forALayer)
+  {}
 
   void inferLayer(inr::BrickKey key, std::int64_t, float* values) const override
   {
+    std::this_thread::sleep_for(this->ForALayer);
     const std::int64_t voxels = this->hierarchy().voxelsPerBrick() / 2;
     std::fill_n(values, voxels, ValueOf(key));
     ++this->Layers;
@@ -31,6 +37,7 @@ public:
   std::int64_t bricks() const { return this->Layers / 2; }
 
 private:
+  const std::chrono::milliseconds ForALayer;
   mutable std::atomic<std::int64_t> Layers{0};
 };
 
@@ -330,8 +337,8 @@ TEST_F(CacheBudgetTest, StoresOfTheSameAreOne)
   const auto field = std::make_shared<int>(0);
   const auto other = std::make_shared<int>(0);
   const auto storeFor = [&](const std::shared_ptr<int>& of, int brickSize, std::int64_t bytes) {
-    const inr::StoreKey key{of,    "kernel", {4000, 2, 2}, brickSize, inr::CachePrecision::Float32,
-                            bytes, false};
+    const inr::StoreKey key{
+        of, {}, "kernel", {4000, 2, 2}, brickSize, inr::CachePrecision::Float32, bytes, false};
     return this->Budget->storeFor(key, [&] {
       return std::shared_ptr<inr::BrickStore>(MakeStore(this->Budget, brickSize, bytes));
     });
@@ -343,6 +350,87 @@ TEST_F(CacheBudgetTest, StoresOfTheSameAreOne)
   EXPECT_NE(storeFor(field, 8, 60000), store);
   EXPECT_THROW(storeFor(field, 8, 100), inr::Error);
   EXPECT_EQ(storeFor(field, 8, 50000), store);
+}
+
+TEST_F(CacheBudgetTest, StoresWhoseVoxelsAreRoundedOverOtherRangesAreNotOne)
+{
+  const auto field = std::make_shared<int>(0);
+  const auto cellsUpTo = [](float high) {
+    auto cells = std::make_shared<inr::MacroCells>(inr::MakeMacroCells({4000, 2, 2}, 16));
+    std::fill(cells->ranges.begin(), cells->ranges.end(), inr::ValueRange{0.0f, high});
+    return cells;
+  };
+  const auto storeFor = [&](const std::shared_ptr<inr::MacroCells>& cells) {
+    const inr::StoreKey key{field, cells, "kernel", {4000, 2, 2}, 8, inr::CachePrecision::Float32,
+                            50000, false};
+    return this->Budget->storeFor(
+        key, [&] { return std::shared_ptr<inr::BrickStore>(MakeStore(this->Budget, 8, 50000)); });
+  };
+  const auto half = cellsUpTo(0.5f);
+  const auto store = storeFor(half);
+  EXPECT_EQ(storeFor(half), store);
+  EXPECT_EQ(storeFor(cellsUpTo(0.5f)), store);
+  EXPECT_NE(storeFor(cellsUpTo(0.6f)), store);
+  EXPECT_NE(storeFor(nullptr), store);
+}
+
+/// Of what idle stores need at least, a quarter of the budget has room for one, however many keep
+/// it.
+TEST_F(CacheBudgetTest, KeptStoresCountOnceAndGoAsAWhole)
+{
+  const std::int64_t least = MakeStore(this->Budget, 8, 50000)->cache().bytesFor(Least);
+  const auto field = std::make_shared<int>(0);
+  const auto storeFor = [&](int brickSize) {
+    const inr::StoreKey key{field,        {},        "kernel",
+                            {4000, 2, 2}, brickSize, inr::CachePrecision::Float32,
+                            6 * least,    false};
+    return this->Budget->storeFor(key, [&] {
+      return std::shared_ptr<inr::BrickStore>(MakeStore(this->Budget, brickSize, 6 * least));
+    });
+  };
+  const inr::KeptBricks kept(storeFor(8));
+  const inr::KeptBricks keptToo(storeFor(8));
+  const std::weak_ptr<inr::BrickStore> first = storeFor(8);
+  const inr::KeptBricks last(storeFor(7));
+  EXPECT_FALSE(first.expired());
+  storeFor(6);
+  EXPECT_TRUE(first.expired());
+  EXPECT_EQ(this->Budget->bytes(), storeFor(7)->cache().bytes());
+}
+
+/// A frame has the machine to itself, whosever bricks are still to come.
+TEST_F(CacheBudgetTest, LoadersRestWhileThereIsACallOfAnyStore)
+{
+  using std::chrono::milliseconds;
+  const auto slow = std::make_shared<Source>(8, milliseconds(1));
+  inr::BrickStore a(this->Budget, slow, inr::CachePrecision::Float32, 60000, true, 1);
+  const StorePointer b = MakeStore(this->Budget, 8, 60000);
+  {
+    const inr::BrickStore::Call call(a, this->Threads);
+    a.beginFrame();
+    a.loadFor(0, Whole(this->bricks(0, 40)), this->Threads);
+  }
+  const auto madeIn = [&](milliseconds time) {
+    const std::int64_t before = slow->bricks();
+    std::this_thread::sleep_for(time);
+    return slow->bricks() - before;
+  };
+  std::int64_t during;
+  {
+    const inr::BrickStore::Call call(*b, this->Threads);
+    madeIn(milliseconds(10)); // what is begun comes to its end
+    during = madeIn(milliseconds(30));
+    const inr::BrickStore::Call another(a, this->Threads);
+    a.beginFrame();
+    const std::int64_t before = slow->bricks();
+    a.loadFor(0.02, Whole(this->bricks(0, 40)), this->Threads); // for which somebody waits
+    EXPECT_GT(slow->bricks(), before);
+  }
+  EXPECT_EQ(during, 0);
+  for (int tries = 0; tries < 1000 && madeIn(milliseconds(5)) == 0; ++tries) {
+  }
+  EXPECT_LT(slow->bricks(), 40) << "nothing was left to load";
+  EXPECT_GT(madeIn(milliseconds(50)), 0);
 }
 
 TEST_F(CacheBudgetTest, RenderingFromAStoreInTheMiddleOfRenderingFromItIsRefused)

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -118,6 +119,32 @@ TEST(Sharing, BricksOutliveARendererThatIsReplaced)
   EXPECT_EQ(renderer.cachedBricks(), bricks);
   Render(renderer, View(false));
   EXPECT_EQ(field.asked(), asked);
+}
+
+/// Voxels of few bits are rounded over the ranges of the cells.
+TEST(Sharing, OfOneFieldButNotOfTwoSetsOfRanges)
+{
+  const auto field =
+      std::make_shared<FieldEvaluator>([](const glm::vec3& u) { return 0.5f + 0.004f * Waves(u); });
+  inr::MacroCells wide = inr::MakeMacroCells(Dims, 16);
+  wide.provenance = inr::MacroCellProvenance::Training;
+  std::fill(wide.ranges.begin(), wide.ranges.end(), inr::ValueRange{0.0f, 1.0f});
+  inr::RendererOptions options;
+  options.threads = 1;
+  options.cache = Cache(Enough, false);
+  options.cache.precision = inr::CachePrecision::Bits8;
+  const auto drawn = [&](const inr::MacroCells& cells) {
+    inr::Renderer renderer(field, VolumeOf(Dims), cells, options);
+    inr::TransferFunction colours = Colours();
+    colours.low = 0.495;
+    colours.high = 0.505;
+    renderer.setTransferFunction(colours);
+    return Render(renderer, View(false)).pixels;
+  };
+  const std::vector<float> alone = drawn({});
+  const inr::Renderer other(field, VolumeOf(Dims), wide, options);
+  EXPECT_EQ(drawn({}), alone);
+  EXPECT_NE(drawn(wide), alone);
 }
 
 TEST(Sharing, OfOneModelButNotOfTwo)
@@ -444,6 +471,55 @@ TEST(Sharing, KeptBricksGoWithWhoKeepsThem)
   const std::int64_t asked = player.asked();
   player.show(0);
   EXPECT_GT(player.asked(), asked);
+}
+
+TEST(Sharing, BricksThatTwoKeepGoTogether)
+{
+  std::vector<std::shared_ptr<const inr::KeptBricks>> kept;
+  for (int k = 0; k < 9; ++k) {
+    const Field field(1 + 0.25f * static_cast<float>(k));
+    inr::Renderer renderer = field.renderer(Cache(HalfOfAView));
+    kept.push_back(renderer.keepBricks());
+    kept.push_back(renderer.keepBricks());
+    Render(renderer, View(false));
+    EXPECT_LE(renderer.cacheBytes(), HalfOfAView) << k;
+  }
+}
+
+/// What was still to come for it does not take the machine from who draws next.
+TEST(Sharing, NothingIsLoadedForARendererThatHasGone)
+{
+  using std::chrono::milliseconds;
+  const auto asked = std::make_shared<std::atomic<std::int64_t>>(0);
+  const auto field = std::make_shared<FieldEvaluator>([asked](const glm::vec3& u) {
+    if (++*asked % 64 == 0) {
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+    return Waves(u);
+  });
+  inr::RendererOptions options;
+  options.threads = 1;
+  options.cache = Cache(Enough);
+  std::optional<inr::Renderer> renderer;
+  renderer.emplace(field, VolumeOf(Dims), inr::MacroCells(), options);
+  renderer->setTransferFunction(Colours());
+  const auto kept = renderer->keepBricks();
+  inr::Frame frame = View(false);
+  frame.timeLimit = 0.01;
+  inr::Image image;
+  ASSERT_FALSE(renderer->render(frame, image).complete);
+  const auto askedIn = [&](milliseconds time) {
+    const std::int64_t before = *asked;
+    std::this_thread::sleep_for(time);
+    return *asked - before;
+  };
+  ASSERT_GT(askedIn(milliseconds(20)), 0);
+  const std::int64_t before = *asked;
+  renderer.reset();
+  while (askedIn(milliseconds(100)) > 0) {
+  }
+  constexpr std::int64_t brick = 16 * 16 * 16 * 8; // points, of a coarse one
+  EXPECT_LE(*asked - before, brick);               // what was begun comes to its end
 }
 
 TEST(Sharing, KeptBricksMakeRoomWhereTheBudgetIsSmall)
