@@ -57,9 +57,9 @@ void WholeExtent(const glm::ivec3& dims, int extent[6])
   }
 }
 
-/// The part of the requested extent that this process is to produce. The pipeline would do it too,
-/// but for ghost levels it then makes a ghost array as large as the grid.
-void RequestedExtent(vtkInformation* outInfo, int extent[6])
+/// The part of the requested extent that this process is to produce, with so many layers of ghost
+/// cells around it.
+void PieceExtent(vtkInformation* outInfo, int ghostLevels, int extent[6])
 {
   int requested[6];
   outInfo->Get(Pipeline::UPDATE_EXTENT(), requested);
@@ -70,8 +70,8 @@ void RequestedExtent(vtkInformation* outInfo, int extent[6])
   }
   vtkNew<vtkExtentTranslator> translator;
   translator->PieceToExtentThreadSafe(outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces,
-                                      outInfo->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()),
-                                      requested, extent, vtkExtentTranslator::BLOCK_MODE, 0);
+                                      ghostLevels, requested, extent,
+                                      vtkExtentTranslator::BLOCK_MODE, 0);
 }
 
 bool IsEmpty(const int extent[6])
@@ -319,7 +319,7 @@ void vtkINRReader::ReadData(vtkInformation* outInfo)
   vtkImageData* output = vtkImageData::GetData(outInfo);
   output->Initialize();
   int extent[6];
-  RequestedExtent(outInfo, extent);
+  PieceExtent(outInfo, outInfo->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()), extent);
   if (IsEmpty(extent)) { // more processes than cells
     return;
   }
@@ -338,6 +338,11 @@ void vtkINRReader::ReadData(vtkInformation* outInfo)
   output->SetSpacing(&this->Internal->Grid.spacing.x);
   output->SetDirectionMatrix(direction);
   output->GetPointData()->SetScalars(array);
+  // Whoever counts or adds up afterwards, of pieces that somebody else wanted with ghost cells, has
+  // to know these. The pipeline marks them for those only who leave it to cut the pieces.
+  int own[6];
+  PieceExtent(outInfo, 0, own);
+  output->GenerateGhostArray(own); // none where there are no such cells
   this->AddFieldData(output);
 }
 

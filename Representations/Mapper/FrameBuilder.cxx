@@ -4,6 +4,7 @@
 #include <vtkActor2D.h>
 #include <vtkCamera.h>
 #include <vtkContourValues.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
 #include <vtkMatrix4x4.h>
@@ -12,6 +13,7 @@
 #include <vtkPropCollection.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkVolume.h>
 #include <vtkVolumeMapper.h>
 #include <vtkVolumeProperty.h>
@@ -19,6 +21,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_access.hpp>
 #include <glm/matrix.hpp>
+
+#include <algorithm>
 
 namespace inr {
 namespace {
@@ -46,6 +50,23 @@ glm::dmat4 IndexToPhysical(vtkImageData* image)
     result[3][row] = image->GetOrigin()[row];
   }
   return result;
+}
+
+/// The box of an extent's cells of which the first and the last one have these numbers.
+std::array<int, 6> CellBox(const std::array<int, 6>& extent, vtkIdType first, vtkIdType last)
+{
+  std::array<int, 6> box = extent;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int low = extent[2 * axis];
+    const int cells = extent[2 * axis + 1] - low;
+    if (cells > 0) { // not flat
+      box[2 * axis] = low + static_cast<int>(first % cells);
+      box[2 * axis + 1] = low + static_cast<int>(last % cells) + 1;
+      first /= cells;
+      last /= cells;
+    }
+  }
+  return box;
 }
 
 bool DrawsOpaque(vtkProp* prop)
@@ -106,11 +127,37 @@ std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes)
   return result;
 }
 
+std::array<int, 6> OwnExtent(vtkImageData* image)
+{
+  std::array<int, 6> extent;
+  image->GetExtent(extent.data());
+  vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
+  const vtkIdType count = ghosts ? image->GetNumberOfCells() : 0;
+  if (count == 0 || ghosts->GetNumberOfTuples() != count) {
+    return extent;
+  }
+  const auto isOwn = [&](vtkIdType cell) {
+    return (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL) == 0;
+  };
+  vtkIdType first = 0;
+  while (first < count && !isOwn(first)) {
+    ++first;
+  }
+  if (first == count) {
+    return {extent[0], extent[0], extent[2], extent[2], extent[4], extent[4]};
+  }
+  vtkIdType last = count - 1;
+  while (!isOwn(last)) {
+    --last;
+  }
+  return CellBox(extent, first, last); // the pipeline cuts images into boxes
+}
+
 std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4& worldToIndex)
 {
   std::vector<glm::dvec4> result;
   const glm::dmat4 toNative = PresentedToNative(grid);
-  const int* extent = grid.image->GetExtent();
+  const std::array<int, 6> extent = OwnExtent(grid.image);
   for (int axis = 0; axis < 3; ++axis) {
     // A plane maps by the transpose of the matrix that maps points the other way.
     const glm::dvec4 along = glm::row(worldToIndex, axis);
@@ -181,7 +228,7 @@ std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* m
 
 bool IsPiece(const PresentedGrid& grid)
 {
-  const int* extent = grid.image->GetExtent();
+  const std::array<int, 6> extent = OwnExtent(grid.image);
   for (int axis = 0; axis < 3; ++axis) {
     if (extent[2 * axis] > 0 || extent[2 * axis + 1] < grid.presented[axis] - 1) {
       return true;

@@ -8,6 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -56,8 +57,11 @@ glm::dmat3 WorldToVolume(vtkMatrix4x4* volumeToWorld);
 /// Half spaces (see Frame::clippingPlanes) of a mapper's planes; null means none.
 std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes);
 
-/// Half spaces (see Frame::piece) that bound the image's piece, none when it holds the whole grid:
-/// ranks that hold neighbouring pieces then draw neighbouring parts.
+/// The part of an image's extent that no other process has, too: all but its ghost cells.
+std::array<int, 6> OwnExtent(vtkImageData* image);
+
+/// Half spaces (see Frame::piece) that bound the image's own part, none when that is the whole
+/// grid: ranks that hold neighbouring pieces then draw neighbouring parts.
 std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4& worldToIndex);
 
 /// How a mapper blends, and which isosurfaces; its mode must be one that BlendMode has.
@@ -67,7 +71,7 @@ Blending BlendingOf(vtkVolumeMapper* mapper, vtkVolumeProperty* property);
 /// direction matrix.
 std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* mapper);
 
-/// Whether the image holds less than the whole grid.
+/// Whether less than the whole grid is the image's own.
 bool IsPiece(const PresentedGrid& grid);
 
 /// Whether the depth buffer can hold anything: a visible prop with opaque geometry (volumes and

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneCheck.h"
 
+#include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkPiecewiseFunction.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkVolumeMapper.h>
 #include <vtkVolumeProperty.h>
 
@@ -24,6 +26,19 @@ bool UsesGradientOpacity(vtkVolumeProperty* property)
     }
   }
   return false;
+}
+
+/// Whether one of an image's points or cells has this flag. Asked in every picture: the bytes in
+/// one go take no time that shows, while VTK asks for each value.
+bool AnyHas(vtkUnsignedCharArray* flags, int flag)
+{
+  const vtkIdType count = flags ? flags->GetNumberOfValues() : 0;
+  const unsigned char* const values = count > 0 ? flags->GetPointer(0) : nullptr;
+  int all = 0;
+  for (vtkIdType k = 0; k < count; ++k) {
+    all |= values[k];
+  }
+  return (all & flag) != 0;
 }
 
 std::string WhyNotBlended(vtkVolumeMapper* mapper, const PresentedGrid& grid, RenderMode mode,
@@ -74,7 +89,8 @@ std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
     return "An INR cannot be drawn with a label mask; remove the label functions from the volume "
            "property.";
   }
-  if (image->HasAnyBlankPoints() || image->HasAnyBlankCells()) {
+  if (AnyHas(image->GetPointGhostArray(), vtkDataSetAttributes::HIDDENPOINT) ||
+      AnyHas(image->GetCellGhostArray(), vtkDataSetAttributes::HIDDENCELL)) {
     return "An INR cannot be drawn with blanked points or cells (a mask); remove the blanking.";
   }
   return {};

@@ -21,6 +21,7 @@
 #include <vtkWeakPointer.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <exception>
@@ -40,6 +41,17 @@ std::optional<inr::InferencePrecision> InferenceFor(double tolerance, int wanted
     return inr::InferencePrecision::BFloat16;
   }
   return std::nullopt;
+}
+
+/// Point bounds of these points of an image's grid.
+void BoundsOf(vtkImageData* image, const std::array<int, 6>& extent, double bounds[6])
+{
+  vtkNew<vtkImageData> box; // CopyStructure would look at all ghost cells
+  box->SetOrigin(image->GetOrigin());
+  box->SetSpacing(image->GetSpacing());
+  box->SetDirectionMatrix(image->GetDirectionMatrix());
+  box->SetExtent(extent[0], extent[1], extent[2], extent[3], extent[4], extent[5]);
+  box->GetBounds(bounds);
 }
 
 } // namespace
@@ -287,22 +299,27 @@ void vtkINRVolumeMapper::GetWholeBounds(double bounds[6])
   if (!input.array) {
     return;
   }
-  vtkNew<vtkImageData> whole;
-  whole->CopyStructure(input.grid.image);
-  const glm::ivec3& dims = input.grid.presented;
-  whole->SetExtent(0, dims.x - 1, 0, dims.y - 1, 0, dims.z - 1);
-  whole->GetBounds(bounds);
+  const glm::ivec3 last = input.grid.presented - 1;
+  BoundsOf(input.grid.image, {0, last.x, 0, last.y, 0, last.z}, bounds);
+}
+
+void vtkINRVolumeMapper::GetPieceBounds(double bounds[6])
+{
+  const inr::MapperInput input = inr::FindInput(this);
+  if (input.array) {
+    BoundsOf(input.grid.image, inr::OwnExtent(input.grid.image), bounds);
+  }
 }
 
 void vtkINRVolumeMapper::GetPartOfWhole(double part[6])
 {
   const inr::MapperInput input = inr::FindInput(this);
+  const std::array<int, 6> own =
+      input.array ? inr::OwnExtent(input.grid.image) : std::array<int, 6>{};
   for (int axis = 0; axis < 3; ++axis) {
     const int last = input.array ? input.grid.presented[axis] - 1 : 0;
     for (int end = 0; end < 2; ++end) {
-      part[2 * axis + end] =
-          last > 0 ? static_cast<double>(input.grid.image->GetExtent()[2 * axis + end]) / last
-                   : end;
+      part[2 * axis + end] = last > 0 ? static_cast<double>(own[2 * axis + end]) / last : end;
     }
   }
 }

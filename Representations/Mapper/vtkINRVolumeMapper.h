@@ -489,7 +489,12 @@ public:
 
   /** Point bounds of the whole grid that the input has a piece of; left as they are without one. */
   void GetWholeBounds(double bounds[6]);
-  /** Where in the whole grid the input's piece begins and ends along each of its axes, 0 to 1. */
+  /**
+   * Point bounds of the piece that the input has of it, without its ghost cells; left as they are
+   * without one.
+   */
+  void GetPieceBounds(double bounds[6]);
+  /** Where in the whole grid that piece begins and ends along each axis, 0 to 1. */
   void GetPartOfWhole(double part[6]);
   /** Whether the input is a piece of a grid that other processes have the rest of. */
   bool GetHasPiece();

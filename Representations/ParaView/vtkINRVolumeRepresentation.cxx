@@ -176,7 +176,10 @@ void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out
   const auto shown =
       inr::ShownVolumes(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
   const bool leads = !shown.empty() && shown.front() == this->Actor;
-  if (this->Placement->update(*this->GetMapper(), this->DataBounds, *this->Actor->GetMatrix())) {
+  double piece[6];
+  std::copy_n(this->DataBounds, 6, piece);
+  this->GetMapper()->GetPieceBounds(piece);
+  if (this->Placement->update(*this->GetMapper(), piece, *this->Actor->GetMatrix())) {
     std::swap(this->OutlinePort, this->BoundsPort);
   }
   double* const bounds = this->Placement->bounds();

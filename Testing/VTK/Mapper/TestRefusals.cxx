@@ -5,9 +5,12 @@
 #include "vtkINRVolumeMapper.h"
 
 #include <vtkColorTransferFunction.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkPiecewiseFunction.h>
+#include <vtkPointData.h>
 #include <vtkRectilinearGrid.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkVolumeProperty.h>
 
 #include <gtest/gtest.h>
@@ -108,6 +111,29 @@ TEST_F(Refusals, LabelMasks)
 {
   this->property->SetLabelScalarOpacity(1, Ramp(0, 1));
   this->expectRefused("mask");
+}
+
+TEST_F(Refusals, WhatIsHidden)
+{
+  this->mapper->Update();
+  const auto show = [this](int type, int flag) {
+    vtkNew<vtkImageData> image;
+    image->ShallowCopy(this->mapper->GetDataSetInput());
+    vtkUnsignedCharArray* flags = type == vtkDataObject::POINT ? image->AllocatePointGhostArray()
+                                                               : image->AllocateCellGhostArray();
+    flags->SetValue(7, static_cast<unsigned char>(flag));
+    this->messages.errors = 0;
+    this->mapper->SetInputData(image);
+  };
+  show(vtkDataObject::POINT, vtkDataSetAttributes::DUPLICATEPOINT);
+  EXPECT_TRUE(this->draws());
+  show(vtkDataObject::POINT, vtkDataSetAttributes::HIDDENPOINT);
+  this->expectRefused("blanked");
+  this->mapper->GetDataSetInput()->GetPointData()->RemoveArray("vtkGhostType");
+  show(vtkDataObject::CELL, vtkDataSetAttributes::DUPLICATECELL);
+  EXPECT_TRUE(this->draws());
+  show(vtkDataObject::CELL, vtkDataSetAttributes::HIDDENCELL);
+  this->expectRefused("blanked");
 }
 
 TEST_F(Refusals, OtherBlendModes)

@@ -4,8 +4,10 @@
 #include "ReaderFixture.h"
 #include "vtkINRDataArray.h"
 
+#include <vtkCellData.h>
 #include <vtkFieldData.h>
 #include <vtkMatrix3x3.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <filesystem>
 
@@ -205,12 +207,36 @@ TEST_F(Reader, ServesEachProcessItsPiece)
     this->expectTruth(model);
   }
   EXPECT_EQ(cells, 39 * 29 * 19);
+}
 
-  const auto points = [&](int ghosts) {
-    this->Algorithm->UpdatePiece(0, 4, ghosts);
-    return this->Algorithm->GetOutput()->GetNumberOfPoints();
-  };
-  const vtkIdType alone = points(0);
-  EXPECT_LT(alone, points(1));
-  EXPECT_EQ(this->Algorithm->GetOutput()->GetPointData()->GetNumberOfArrays(), 1);
+TEST_F(Reader, MarksWhatOtherProcessesHaveToo)
+{
+  const auto model = MakeModel({40, 30, 20});
+  this->Algorithm->SetFileName(this->write(*model).c_str());
+  vtkImageData* image = this->Algorithm->GetOutput();
+  vtkIdType cells = 0;
+  vtkIdType own = 0;
+  for (int piece = 0; piece < 4; ++piece) {
+    this->Algorithm->UpdatePiece(piece, 4, 2);
+    this->expectTruth(model);
+    cells += image->GetNumberOfCells();
+    ASSERT_NE(image->GetCellGhostArray(), nullptr);
+    ASSERT_NE(image->GetPointGhostArray(), nullptr);
+    for (vtkIdType cell = 0; cell < image->GetNumberOfCells(); ++cell) {
+      own += image->GetCellGhostArray()->GetValue(cell) == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(cells, own);
+  EXPECT_EQ(own, 39 * 29 * 19);
+}
+
+TEST_F(Reader, HasNoGhostArrayWithoutGhostCells)
+{
+  this->Algorithm->SetFileName(this->write(*MakeModel(Dims)).c_str());
+  for (const int ghosts : {1, 0}) { // of one process, and of several
+    this->Algorithm->UpdatePiece(0, 2 - ghosts, ghosts);
+    vtkImageData* image = this->Algorithm->GetOutput();
+    EXPECT_EQ(image->GetPointData()->GetNumberOfArrays(), 1);
+    EXPECT_EQ(image->GetCellData()->GetNumberOfArrays(), 0);
+  }
 }
