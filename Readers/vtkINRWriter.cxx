@@ -123,8 +123,9 @@ int vtkINRWriter::Write()
   this->BeginFile();
   self.IsWriting = false;
   this->Modified(); // so that the steps are planned anew
-  this->UpdateInformation();
-  if (!this->CheckFiles(self.Steps.numbers())) {
+  const bool isKnown = this->GetExecutive()->UpdateInformation() != 0;
+  this->Attempt([&] { this->RequireOfAll(isKnown); });
+  if (this->GetErrorCode() != vtkErrorCode::NoError || !this->CheckFiles(self.Steps.numbers())) {
     return 0;
   }
   self.IsWriting = true;
@@ -154,10 +155,19 @@ void vtkINRWriter::WriteStep()
     this->Superclass::Write();
   }
   if (!self.IsReached) {
-    this->Attempt([] {
-      throw inr::Error(inr::ErrorCode::CannotRead, "the source failed; what it reported says why");
-    });
+    this->Attempt([&] { this->RequireOfAll(false); });
   }
+}
+
+/// That the source did what it was asked for. Where it failed in one process, the others would go
+/// on and wait for that one for ever; so all make this call, one way or another.
+void vtkINRWriter::RequireOfAll(bool succeeded)
+{
+  ControllerGroup(this->Internal->Controller).together([&] {
+    if (!succeeded) {
+      throw inr::Error(inr::ErrorCode::CannotRead, "the source failed; what it reported says why");
+    }
+  });
 }
 
 /// Before the pipeline asks for these time steps, or for the present state: there are readers that
@@ -201,6 +211,7 @@ void vtkINRWriter::WriteData()
 
 void vtkINRWriter::WriteInput(const StopSignals& signals)
 {
+  this->RequireOfAll(true);
   ReadingPlan& reading = this->Internal->Reading;
   auto errors = reading.takeErrors();
   std::string& fileName = this->Internal->Target;

@@ -286,6 +286,7 @@ private:
   class Internals;
 
   void WriteStep();
+  void RequireOfAll(bool succeeded);
   void Attempt(const std::function<void()>& act);
   bool CheckFiles(const std::vector<int>& steps);
   void PlanSteps(vtkInformation* input);

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A source that fails in one process of several that write a model of it: all say so, none waits for
+ever, and there is no file. The first argument is "write" in processes that each run all of this, "check"
+in one."""
+import os
+import sys
+
+from pvtest import Messages, check, load_plugin, output_file
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+EXTENT = (-12, 13, -11, 12, -9, 10)
+FAILED = "process 1: the source failed"
+# What the first process says where the second one fails.
+TOLD = {"nothing": None, "information": FAILED, "extent": "leave gaps", "data": FAILED}
+
+
+def path_of(request):
+    return output_file(f"parallel-failure-{request}.inr")
+
+
+class Source(VTKPythonAlgorithmBase):
+    """Fails when the second process makes the request."""
+
+    def __init__(self, request):
+        super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkImageData")
+        self.request = request if rank == 1 else ""
+
+    def RequestInformation(self, request, inputs, outputs):
+        if self.request != "extent":
+            info = outputs.GetInformationObject(0)
+            info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), EXTENT, 6)
+            info.Set(self.CAN_PRODUCE_SUB_EXTENT(), 1)
+        return int(self.request != "information")
+
+    def RequestData(self, request, inputs, outputs):
+        info = outputs.GetInformationObject(0)
+        wavelet = vtkRTAnalyticSource()
+        wavelet.SetWholeExtent(*EXTENT)
+        wavelet.UpdateExtent(info.Get(vtkStreamingDemandDrivenPipeline.UPDATE_EXTENT()))
+        vtkImageData.GetData(outputs).ShallowCopy(wavelet.GetOutput())
+        return int(self.request != "data")
+
+
+load_plugin()
+from inrvolume import vtkINRWriter  # noqa: E402  ParaView's Python then knows the writer
+
+if sys.argv[1] == "write":
+    controller = vtkMultiProcessController.GetGlobalController()
+    rank = controller.GetLocalProcessId()
+    for request, told in TOLD.items():
+        path = path_of(request)
+        if rank == 0 and os.path.exists(path):
+            os.remove(path)
+        controller.Barrier()
+        source = Source(request)
+        writer = vtkINRWriter()
+        writer.SetInputConnection(source.GetOutputPort())
+        writer.SetFileName(path)
+        writer.SetMaximumSteps(5)
+        with Messages() as messages:
+            wrote = writer.Write()
+        check(wrote == int(told is None), rank, "returned", wrote, "for", request)
+        if rank == 0:
+            check(messages.errors() == 1 - wrote, "told of", request, messages.text)
+            check(wrote or told in messages.text, "told of", request, messages.text)
+else:
+    for request, told in TOLD.items():
+        check(os.path.exists(path_of(request)) == (told is None), "the file of", request)
