@@ -57,7 +57,9 @@ std::optional<NativeGrid> FindNativeGrid(vtkDataObject* data)
   NativeGrid grid;
   grid.model = source.GetModel();
   grid.arrayName = array->GetName() ? array->GetName() : "";
-  image->GetOrigin(&grid.origin.x);
+  int first[3];
+  source.GetShift(image, first);
+  image->TransformIndexToPhysicalPoint(first, &grid.origin.x);
   grid.spacing = SpacingOf(image, source);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {

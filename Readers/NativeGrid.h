@@ -14,7 +14,8 @@ class vtkDataObject;
 class vtkInformation;
 
 /// The native grid behind an image that presents an INR, placed as the image is now: a filter may
-/// have changed spacing and origin. Voxel i of N stands at origin + direction * (i * spacing).
+/// have changed spacing, origin and extent. Voxel i of N stands at
+/// origin + direction * (i * spacing).
 struct NativeGrid
 {
   inr::ModelPointer model;

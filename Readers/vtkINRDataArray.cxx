@@ -4,6 +4,8 @@
 #include "Core/Error.h"
 #include "vtkINRTypedArray.h"
 
+#include <vtkImageData.h>
+
 #include <string>
 
 namespace {
@@ -31,6 +33,16 @@ GridPart PartOf(const int presentedDims[3], const int extent[6])
 vtkINRDataArray* vtkINRDataArray::SafeDownCast(vtkAbstractArray* array)
 {
   return dynamic_cast<vtkINRDataArray*>(array);
+}
+
+void vtkINRDataArray::GetShift(vtkImageData* image, int shift[3]) const
+{
+  int held[6];
+  this->GetPresentedExtent(held);
+  const int* const extent = image->GetExtent();
+  for (int axis = 0; axis < 3; ++axis) {
+    shift[axis] = extent[2 * axis] - held[2 * axis];
+  }
 }
 
 vtkSmartPointer<vtkDataArray> vtkINRDataArray::Create(inr::ModelPointer model,

@@ -19,6 +19,7 @@
 
 class vtkAbstractArray;
 class vtkDataArray;
+class vtkImageData;
 
 class VTKINRREADERS_EXPORT vtkINRDataArray
 {
@@ -49,6 +50,13 @@ public:
 
   /// Points per axis of the whole presented grid, whatever part of it this array holds.
   virtual void GetPresentedDimensions(int dims[3]) const = 0;
+
+  /// The points of that grid which this array holds, inclusive limits.
+  virtual void GetPresentedExtent(int extent[6]) const = 0;
+
+  /// The index that the presented grid's first point has in `image`, whose array this is: other
+  /// than 0 where a filter has moved the image's extent.
+  void GetShift(vtkImageData* image, int shift[3]) const;
 
   /// Values computed so far, over all arrays that share this one's cache.
   virtual vtkIdType GetNumberOfEvaluations() const = 0;

@@ -54,6 +54,14 @@ public:
       dims[axis] = this->Decoder().GetPresentedDimensions()[axis];
     }
   }
+  void GetPresentedExtent(int extent[6]) const override
+  {
+    const GridPart& part = this->Values->Cache.GetPart();
+    for (int axis = 0; axis < 3; ++axis) {
+      extent[2 * axis] = static_cast<int>(part.first[axis]);
+      extent[2 * axis + 1] = static_cast<int>(part.first[axis] + part.size[axis] - 1);
+    }
+  }
   vtkIdType GetNumberOfEvaluations() const override
   {
     return this->Decoder().GetNumberOfEvaluations();

@@ -20,6 +20,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_access.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
   return result;
 }
 
-/// Continuous indices of the presented grid to the image's physical space.
+/// Continuous indices of the image to the image's physical space.
 glm::dmat4 IndexToPhysical(vtkImageData* image)
 {
   glm::dmat4 result(1.0);
@@ -107,7 +108,8 @@ glm::dmat4 PresentedToNative(const PresentedGrid& grid)
 glm::dmat4 WorldToIndex(const PresentedGrid& grid, vtkMatrix4x4* volumeToWorld)
 {
   const glm::dmat4 indexToWorld = ToGlm(volumeToWorld) * IndexToPhysical(grid.image);
-  return PresentedToNative(grid) * glm::inverse(indexToWorld);
+  const glm::dmat4 toPresented = glm::translate(glm::dmat4(1.0), -glm::dvec3(grid.shift));
+  return PresentedToNative(grid) * toPresented * glm::inverse(indexToWorld);
 }
 
 glm::dmat3 WorldToVolume(vtkMatrix4x4* volumeToWorld)
@@ -127,12 +129,14 @@ std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes)
   return result;
 }
 
-std::array<int, 6> OwnExtent(vtkImageData* image)
+std::array<int, 6> OwnExtent(const PresentedGrid& grid)
 {
   std::array<int, 6> extent;
-  image->GetExtent(extent.data());
-  vtkUnsignedCharArray* ghosts = image->GetCellGhostArray();
-  const vtkIdType count = ghosts ? image->GetNumberOfCells() : 0;
+  for (int k = 0; k < 6; ++k) {
+    extent[k] = grid.image->GetExtent()[k] - grid.shift[k / 2];
+  }
+  vtkUnsignedCharArray* ghosts = grid.image->GetCellGhostArray();
+  const vtkIdType count = ghosts ? grid.image->GetNumberOfCells() : 0;
   if (count == 0 || ghosts->GetNumberOfTuples() != count) {
     return extent;
   }
@@ -157,7 +161,7 @@ std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4&
 {
   std::vector<glm::dvec4> result;
   const glm::dmat4 toNative = PresentedToNative(grid);
-  const std::array<int, 6> extent = OwnExtent(grid.image);
+  const std::array<int, 6> extent = OwnExtent(grid);
   for (int axis = 0; axis < 3; ++axis) {
     // A plane maps by the transpose of the matrix that maps points the other way.
     const glm::dvec4 along = glm::row(worldToIndex, axis);
@@ -214,7 +218,7 @@ std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* m
   const double* planes = mapper->GetCroppingRegionPlanes();
   const auto indexOf = [&](int axis, double plane) {
     const double presented =
-        (plane - grid.image->GetOrigin()[axis]) / grid.image->GetSpacing()[axis];
+        (plane - grid.image->GetOrigin()[axis]) / grid.image->GetSpacing()[axis] - grid.shift[axis];
     return presented * toNative[axis][axis];
   };
   Cropping cropping;
@@ -228,7 +232,7 @@ std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* m
 
 bool IsPiece(const PresentedGrid& grid)
 {
-  const std::array<int, 6> extent = OwnExtent(grid.image);
+  const std::array<int, 6> extent = OwnExtent(grid);
   for (int axis = 0; axis < 3; ++axis) {
     if (extent[2 * axis] > 0 || extent[2 * axis + 1] < grid.presented[axis] - 1) {
       return true;

@@ -38,6 +38,7 @@ struct PresentedGrid
 {
   vtkImageData* image = nullptr;
   glm::ivec3 presented{1};
+  glm::ivec3 shift{0}; ///< see vtkINRDataArray::GetShift
   glm::i64vec3 native{1};
 };
 
@@ -57,8 +58,8 @@ glm::dmat3 WorldToVolume(vtkMatrix4x4* volumeToWorld);
 /// Half spaces (see Frame::clippingPlanes) of a mapper's planes; null means none.
 std::vector<glm::dvec4> ClippingPlanes(vtkPlaneCollection* planes);
 
-/// The part of an image's extent that no other process has, too: all but its ghost cells.
-std::array<int, 6> OwnExtent(vtkImageData* image);
+/// Of the presented grid what the image holds and no other process, too: all but its ghost cells.
+std::array<int, 6> OwnExtent(const PresentedGrid& grid);
 
 /// Half spaces (see Frame::piece) that bound the image's own part, none when that is the whole
 /// grid: ranks that hold neighbouring pieces then draw neighbouring parts.

@@ -50,6 +50,9 @@ MapperInput FindInput(vtkVolumeMapper* mapper)
   int presented[3];
   result.array->GetPresentedDimensions(presented);
   result.grid.presented = glm::ivec3(presented[0], presented[1], presented[2]);
+  int shift[3];
+  result.array->GetShift(result.grid.image, shift);
+  result.grid.shift = glm::ivec3(shift[0], shift[1], shift[2]);
   result.grid.native = result.array->GetModel()->volume.dims;
   return result;
 }

@@ -59,8 +59,8 @@ PickedCells::PickedCells(const Image& rgba, const Image& depth, const glm::dmat4
 {
   const int* extent = grid.image->GetExtent();
   for (int axis = 0; axis < 3; ++axis) {
-    this->Low[axis] = extent[2 * axis];
-    this->High[axis] = extent[2 * axis + 1];
+    this->Low[axis] = extent[2 * axis] - grid.shift[axis];
+    this->High[axis] = extent[2 * axis + 1] - grid.shift[axis];
     this->Cells[axis] = std::max(1, extent[2 * axis + 1] - extent[2 * axis]);
   }
   this->ClipToIndex = glm::inverse(PresentedToNative(grid)) * worldToIndex * clipToWorld;

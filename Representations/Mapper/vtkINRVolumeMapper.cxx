@@ -43,14 +43,19 @@ std::optional<inr::InferencePrecision> InferenceFor(double tolerance, int wanted
   return std::nullopt;
 }
 
-/// Point bounds of these points of an image's grid.
-void BoundsOf(vtkImageData* image, const std::array<int, 6>& extent, double bounds[6])
+/// Where these points of the presented grid are.
+void BoundsOf(const inr::PresentedGrid& grid, const std::array<int, 6>& extent, double bounds[6])
 {
+  vtkImageData* image = grid.image;
+  std::array<int, 6> shifted;
+  for (int k = 0; k < 6; ++k) {
+    shifted[k] = extent[k] + grid.shift[k / 2];
+  }
   vtkNew<vtkImageData> box; // CopyStructure would look at all ghost cells
   box->SetOrigin(image->GetOrigin());
   box->SetSpacing(image->GetSpacing());
   box->SetDirectionMatrix(image->GetDirectionMatrix());
-  box->SetExtent(extent[0], extent[1], extent[2], extent[3], extent[4], extent[5]);
+  box->SetExtent(shifted.data());
   box->GetBounds(bounds);
 }
 
@@ -300,22 +305,21 @@ void vtkINRVolumeMapper::GetWholeBounds(double bounds[6])
     return;
   }
   const glm::ivec3 last = input.grid.presented - 1;
-  BoundsOf(input.grid.image, {0, last.x, 0, last.y, 0, last.z}, bounds);
+  BoundsOf(input.grid, {0, last.x, 0, last.y, 0, last.z}, bounds);
 }
 
 void vtkINRVolumeMapper::GetPieceBounds(double bounds[6])
 {
   const inr::MapperInput input = inr::FindInput(this);
   if (input.array) {
-    BoundsOf(input.grid.image, inr::OwnExtent(input.grid.image), bounds);
+    BoundsOf(input.grid, inr::OwnExtent(input.grid), bounds);
   }
 }
 
 void vtkINRVolumeMapper::GetPartOfWhole(double part[6])
 {
   const inr::MapperInput input = inr::FindInput(this);
-  const std::array<int, 6> own =
-      input.array ? inr::OwnExtent(input.grid.image) : std::array<int, 6>{};
+  const std::array<int, 6> own = input.array ? inr::OwnExtent(input.grid) : std::array<int, 6>{};
   for (int axis = 0; axis < 3; ++axis) {
     const int last = input.array ? input.grid.presented[axis] - 1 : 0;
     for (int end = 0; end < 2; ++end) {

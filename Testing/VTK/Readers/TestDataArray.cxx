@@ -15,6 +15,7 @@
 #include <vtkPolyData.h>
 #include <vtkProbeFilter.h>
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
@@ -138,6 +139,15 @@ TEST(DataArray, HoldsAPartOfAGrid)
     ASSERT_NEAR(part->GetTuple1(index), whole->GetTuple1(x + 40 * (3 + 30 * z)),
                 70 * PositionTolerance);
   }
+  const auto* handle = vtkINRDataArray::SafeDownCast(part);
+  int held[6];
+  handle->GetPresentedExtent(held);
+  EXPECT_TRUE(std::equal(held, held + 6, extent));
+  vtkNew<vtkImageData> moved;
+  moved->SetExtent(20, 41, 1, 1, 5, 19);
+  int shift[3];
+  handle->GetShift(moved, shift);
+  EXPECT_EQ(glm::ivec3(shift[0], shift[1], shift[2]), glm::ivec3(3, -2, 0));
   const int outside[6] = {0, 40, 0, 0, 0, 0};
   EXPECT_THROW(vtkINRDataArray::Create(model, dims, outside), inr::Error);
 }

@@ -134,6 +134,28 @@ TEST_F(Decode, CutsOutAVolumeOfInterest)
   EXPECT_EQ(std::vector<int>(extent, extent + 6), (std::vector<int>{3, 7, 0, 10, 6, 7}));
 }
 
+TEST_F(Decode, FollowsAnExtentThatAFilterHasMoved)
+{
+  const auto model = MakeModel({15, 11, 8});
+  const Truth truth(model);
+  this->connect(*model, 200);
+  this->Reader->Update();
+  vtkNew<vtkImageData> moved;
+  moved->ShallowCopy(this->Reader->GetOutput());
+  int extent[6];
+  moved->GetExtent(extent);
+  moved->SetExtent(extent[0] + 20, extent[1] + 20, extent[2] - 3, extent[3] - 3, extent[4],
+                   extent[5]);
+  inr::VolumeInfo volume = model->volume;
+  this->Reader->GetOutput()->TransformIndexToPhysicalPoint(20, -3, 0, &volume.origin.x);
+  this->Filter->SetInputData(moved);
+  this->forEachVoxel(volume, [&](vtkIdType index, const glm::dvec3& u, double value) {
+    const glm::dvec3 voxel(index % 15, index / 15 % 11, index / (15 * 11));
+    ASSERT_LT(glm::length(u - (voxel + 0.5) / glm::dvec3(15, 11, 8)), 1e-12);
+    ASSERT_NEAR(value, truth(u), Tolerance);
+  });
+}
+
 TEST_F(Decode, ServesEachProcessItsPiece)
 {
   const auto model = MakeModel({15, 11, 8});
