@@ -63,6 +63,16 @@ public:
     }
   }
 
+  /// Forgets the bricks.
+  void Clear()
+  {
+    for (Shard& shard : this->ShardTable) {
+      const std::lock_guard<std::mutex> lock(shard.Mutex);
+      shard.Index.clear();
+      shard.Recent.clear();
+    }
+  }
+
   std::size_t MemorySize() const
   {
     std::size_t values = 0;

@@ -17,10 +17,12 @@
 #include <vtkGenericDataArray.h>
 #include <vtkObjectFactory.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <vector>
 
 template <class T>
@@ -112,6 +114,22 @@ public:
     return copy ? const_cast<T*>(copy) + index : nullptr;
   }
   bool HasStandardMemoryLayout() const override { return false; }
+
+  /// Into memory of the caller's, however many they are. The base class copies what GetVoidPointer
+  /// returns, also where that is null.
+  void ExportToVoidPointer(void* values) override
+  {
+    auto* const out = static_cast<T*>(values);
+    if (const T* copy = this->Values->Copy.load(std::memory_order_acquire)) {
+      std::copy_n(copy, this->INR_VTK_ARRAY_CAPACITY, out);
+      return;
+    }
+    try {
+      this->Values->Cache.DecodeAll(out);
+    } catch (const std::bad_alloc&) {
+      vtkErrorMacro("Not enough memory to compute " << this->INR_VTK_ARRAY_CAPACITY << " values.");
+    }
+  }
 
   /// KiB that the values take now, not what all of them would.
   unsigned long GetActualMemorySize() const override
@@ -253,6 +271,7 @@ template <class T> const T* vtkINRTypedArray<T>::MakeCopy()
       return nullptr;
     }
     shared.Copy.store(shared.CopyStore.data(), std::memory_order_release);
+    shared.Cache.Clear(); // nobody asks it any more
   }
   return shared.Copy;
 }

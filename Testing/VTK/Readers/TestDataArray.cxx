@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <atomic>
 #include <thread>
+#include <vector>
 
 namespace {
 
@@ -218,6 +219,35 @@ TEST(DataArray, HandsOutACopyForThoseWhoWantAPointer)
   for (vtkIdType index = 0; index < array->GetNumberOfTuples(); ++index) {
     ASSERT_NEAR(values[index], other->GetTuple1(index), 70 * PositionTolerance);
   }
+}
+
+TEST(DataArray, KeepsNoBricksBesideACopy)
+{
+  const auto array = WholeArray(MakeModel({64, 64, 64}));
+  for (vtkIdType index = 0; index < array->GetNumberOfTuples(); index += 8) {
+    array->GetTuple1(index);
+  }
+  const double before = array->GetTuple1(7);
+  array->GetVoidPointer(0);
+  EXPECT_EQ(array->GetActualMemorySize(), 64U * 64U * 64U * 4U / 1024U + 1U);
+  EXPECT_EQ(array->GetTuple1(7), before);
+}
+
+TEST(DataArray, ExportsItsValuesWithoutACopyToKeep)
+{
+  const auto array = WholeArray(MakeModel({33, 20, 18}));
+  std::vector<float> values(33 * 20 * 18);
+  array->ExportToVoidPointer(values.data());
+  EXPECT_EQ(array->GetActualMemorySize(), 1U);
+  for (vtkIdType index = 0; index < array->GetNumberOfTuples(); ++index) {
+    ASSERT_NEAR(values[static_cast<std::size_t>(index)], array->GetTuple1(index),
+                70 * PositionTolerance);
+  }
+  const auto* copy = static_cast<const float*>(array->GetVoidPointer(0));
+  const vtkIdType evaluations = Evaluations(array);
+  array->ExportToVoidPointer(values.data());
+  EXPECT_TRUE(std::equal(values.begin(), values.end(), copy));
+  EXPECT_EQ(Evaluations(array), evaluations);
 }
 
 TEST(DataArray, RefusesACopyThatIsTooLarge)
