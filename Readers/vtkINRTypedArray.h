@@ -81,6 +81,18 @@ public:
   void SetTypedTuple(vtkIdType, const ValueType*) { this->Refuse(Change::Values); }
   void SetTypedComponent(vtkIdType, int, ValueType) { this->Refuse(Change::Values); }
 
+  /// Where there is no such tuple, the base class would count it nevertheless.
+  void InsertComponent(vtkIdType tuple, int, double) override
+  {
+    this->Refuse(tuple > this->MaxId ? Change::Size : Change::Values);
+  }
+  void SetNumberOfComponents(int components) override
+  {
+    if (components != 1) {
+      this->Refuse(Change::Size);
+    }
+  }
+
   // The base class ends the process when it cannot get memory.
   vtkTypeBool Allocate(vtkIdType, vtkIdType) override { return this->Refuse(Change::Size); }
   vtkTypeBool Resize(vtkIdType tuples) override

@@ -14,9 +14,11 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkProbeFilter.h>
+#include <vtkVariant.h>
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <thread>
 #include <vector>
 
@@ -298,6 +300,26 @@ TEST(DataArray, CannotBeChanged)
   EXPECT_EQ(array->Allocate(2), 0);
   EXPECT_EQ(messages.errors().size(), 2u) << messages.text();
   EXPECT_EQ(array->GetNumberOfTuples(), 6 * 5 * 4);
+}
+
+TEST(DataArray, CannotGrow)
+{
+  const std::function<void(vtkDataArray*)> changes[] = {
+      [](vtkDataArray* array) { array->SetNumberOfComponents(3); },
+      [](vtkDataArray* array) { array->InsertComponent(1000, 0, 1.0); },
+      [](vtkDataArray* array) { array->InsertTuple1(1000, 1.0); },
+      [](vtkDataArray* array) { array->InsertNextTuple1(1.0); },
+      [](vtkDataArray* array) { array->InsertVariantValue(1000, vtkVariant(1.0)); },
+      [](vtkDataArray* array) { array->SetNumberOfValues(1000); }};
+  for (const auto& change : changes) {
+    const auto array = WholeArray(MakeModel({6, 5, 4}));
+    const MessageCapture messages;
+    change(array);
+    ASSERT_FALSE(messages.errors().empty());
+    EXPECT_NE(messages.errors()[0].find("The number of values"), std::string::npos);
+    EXPECT_EQ(array->GetNumberOfComponents(), 1);
+    EXPECT_EQ(array->GetNumberOfTuples(), 6 * 5 * 4);
+  }
 }
 
 TEST(DataArray, SaysOnceThatItCannotBeChanged)
