@@ -32,7 +32,6 @@ public:
   /// Goes with Model(): another one for another model.
   const std::shared_ptr<vtkINRDataArray::Keepsake>& Keepsake();
 
-  const std::string& GetPath() const { return this->Path; }
   std::int64_t FileSize() const { return this->File.size; }
 
   /// Bytes of the models in memory.

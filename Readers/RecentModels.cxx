@@ -1,30 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RecentModels.h"
 
-#include <algorithm>
+#include <iterator>
+#include <utility>
 
 ModelSource& RecentModels::Select(const std::string& path, const inr::ModelOverrides& overrides)
 {
-  const ModelSource* const source = &this->Find(path, overrides);
-  const auto found = std::find_if(this->Sources.begin(), this->Sources.end(),
-                                  [&](const ModelSource& other) { return &other == source; });
-  this->Sources.splice(this->Sources.begin(), this->Sources, found);
+  this->Find(path, overrides);
+  this->Sources.splice(this->Sources.begin(), this->Sources, this->Places.at(path));
   this->Trim();
   return this->Sources.front();
 }
 
 ModelSource& RecentModels::Find(const std::string& path, const inr::ModelOverrides& overrides)
 {
-  const auto found =
-      std::find_if(this->Sources.begin(), this->Sources.end(),
-                   [&](const ModelSource& other) { return other.GetPath() == path; });
-  if (found != this->Sources.end()) {
-    found->Select(path, overrides);
-    return *found;
+  const auto known = this->Places.find(path);
+  if (known != this->Places.end()) {
+    known->second->Select(path, overrides);
+    return *known->second;
   }
   ModelSource source;
   source.Select(path, overrides);
   this->Sources.push_back(std::move(source));
+  this->Places[path] = std::prev(this->Sources.end());
   return this->Sources.back();
 }
 

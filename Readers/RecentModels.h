@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <list>
 #include <string>
+#include <unordered_map>
 
 /// The model files that a reader has opened, one for each time step: going back to one loads
 /// nothing as long as the file is the same. Of those not shown at present, models stay in memory
@@ -27,4 +28,6 @@ private:
 
   std::int64_t Most;
   std::list<ModelSource> Sources; ///< the latest first
+  /// By path: a series of thousands of files looks for each of them whenever it is asked about.
+  std::unordered_map<std::string, std::list<ModelSource>::iterator> Places;
 };
