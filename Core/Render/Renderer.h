@@ -109,7 +109,8 @@ public:
   /// the window-space depth where accumulated opacity first reaches one half, 1 where it never
   /// does; of the largest or smallest value where its opacity does; 1 for averages and sums; of
   /// path tracing, the mean depth of the first collisions where at least half of the paths had one.
-  /// A picture that a time limit cut short goes on when the same frame is asked for again.
+  /// A picture that a time limit cut short goes on when the same frame is asked for again; paths
+  /// do so for several views by turns, see Frame::view.
   /// `samples`, when given, receives two channels: the samples that each pixel took and the mean of
   /// the levels of the cache that they came from, -1 where there were none; it is left empty when
   /// paths are traced or there is no cache. `keepGoing` is asked between tiles, from any thread;

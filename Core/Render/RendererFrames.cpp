@@ -198,22 +198,19 @@ TracedTiles Renderer::Implementation::traceRound(const PathRound& round, const W
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
                                                      const std::function<bool()>& keepGoing)
 {
-  if (!this->Paths) {
-    this->Paths.emplace();
-  }
+  PathPicture& picture = this->Paths.of(frame.view);
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
-  if (!this->Paths->continues(
-          frame)) { // in its midst another picture would take the device's place
+  if (!picture.continues(frame)) { // in its midst another would take the device's place
     this->isDrawnElsewhere(frame, keepGoing);
   }
   const TraceTiles trace = [&](const PathRound& round) {
     return this->traceRound(round, limit, keepGoing);
   };
   if (!this->Cached) {
-    return this->Paths->advance(frame, this->medium(), trace, limit, output);
+    return picture.advance(frame, this->medium(), trace, limit, output);
   }
   const BrickStore::Call call = this->Cached->call();
-  FrameStatistics statistics = this->Paths->advance(frame, this->medium(), trace, limit, output);
+  FrameStatistics statistics = picture.advance(frame, this->medium(), trace, limit, output);
   statistics.work.bricks = call.done();
   return statistics;
 }

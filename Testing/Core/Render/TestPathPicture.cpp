@@ -2,10 +2,12 @@
 //
 // Path tracing through the Renderer: with and without a cache, in parts, against what is known.
 #include "Core/Error.h"
+#include "Core/Render/Paths/PathPictures.h"
 #include "Testing/Core/Render/PathScene.h"
 
 #include <atomic>
 #include <memory>
+#include <set>
 
 namespace {
 
@@ -322,6 +324,66 @@ TEST(PathPicture, GoesOnOnlyWithTheSamePicture)
     inr::Renderer fresh = MakeRenderer(false);
     EXPECT_EQ(Render(renderer, frame).pixels, Render(fresh, frame).pixels) << k;
   }
+}
+
+/// Calls for one view after the other until all pictures are complete; how many for each of them.
+int RenderByTurns(inr::Renderer& renderer, std::vector<inr::Frame> frames,
+                  std::vector<inr::Image>& images)
+{
+  images.resize(frames.size());
+  for (int calls = 1; calls < 300; ++calls) {
+    bool complete = true;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      frames[k].timeLimit = 1e-9;
+      frames[k].view = static_cast<int>(k);
+      complete = renderer.render(frames[k], images[k]).complete && complete;
+    }
+    if (complete) {
+      return calls;
+    }
+  }
+  return 300;
+}
+
+/// As many pictures from different sides.
+std::vector<inr::Frame> Sides(std::size_t count)
+{
+  std::vector<inr::Frame> frames(count, LitFrame());
+  for (std::size_t k = 0; k < count; ++k) {
+    frames[k].clipToWorld[3].x += 0.1 * static_cast<double>(k);
+  }
+  return frames;
+}
+
+TEST(PathPicture, GoesOnForEachViewByTurns)
+{
+  const std::vector<inr::Frame> frames = Sides(inr::PathPictures::Most);
+  for (const bool cached : {false, true}) {
+    inr::Renderer renderer = MakeRenderer(cached);
+    std::vector<inr::Image> images;
+    EXPECT_LT(RenderByTurns(renderer, frames, images), 100);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      inr::Renderer alone = MakeRenderer(cached);
+      EXPECT_EQ(images[k].pixels, Render(alone, frames[k]).pixels) << k;
+    }
+  }
+}
+
+TEST(PathPictures, KeepThoseOfTheViewsThatWereDrawnLast)
+{
+  inr::PathPictures pictures;
+  const int most = inr::PathPictures::Most;
+  std::vector<const inr::PathPicture*> first;
+  for (int view = 0; view < most; ++view) {
+    first.push_back(&pictures.of(view));
+  }
+  EXPECT_EQ(std::set<const inr::PathPicture*>(first.begin(), first.end()).size(), first.size());
+  EXPECT_EQ(&pictures.of(0), first[0]);
+  pictures.of(most); // in place of 1
+  for (int view = 2; view < most; ++view) {
+    EXPECT_EQ(&pictures.of(view), first[static_cast<std::size_t>(view)]);
+  }
+  EXPECT_EQ(&pictures.of(0), first[0]);
 }
 
 TEST(PathPicture, StartsAnewWithAnotherTransferFunction)
