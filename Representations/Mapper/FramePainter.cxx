@@ -87,25 +87,37 @@ bool IsFinal(const FrameStatistics& statistics)
 
 } // namespace
 
+FramePainter::FramePainter(const std::function<bool()>& mayRefine)
+    : Refine([this, mayRefine] {
+        const bool refines = mayRefine();
+        if (refines) { // each view that is drawn asks for itself again
+          this->Pictures.clearRequests();
+        }
+        return refines;
+      })
+{}
+
 std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                                 const PaintSettings& settings)
 {
   const auto start = Clock::now();
-  this->Before = std::exchange(this->Last, {});
   this->Group = settings.group;
+  ViewPicture& picture = this->Pictures.of(renderer, volume);
+  picture.begin();
   Frame frame;
   std::string problem;
   this->Group.together([&] { problem = this->prepare(mapper, renderer, volume, settings, frame); });
   if (!this->Group.all(problem.empty())) {
     return problem;
   }
-  vtkRenderWindow* window = renderer->GetRenderWindow();
-  if (!this->draw(frame, renderer)) {
+  frame.view = picture.number();
+  const Job job{frame, renderer, picture};
+  if (!this->draw(job)) {
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
               "float textures.";
   }
-  this->Last.seconds = SecondsSince(start);
-  this->refineLater(window, settings.mode);
+  picture.last().seconds = SecondsSince(start);
+  this->refineLater(job);
   return problem;
 }
 
@@ -113,14 +125,14 @@ void FramePainter::mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolum
 {
   vtkHardwareSelector* selector = renderer->GetSelector();
   const Viewport viewport = GetViewport(renderer);
-  const Image& rgba = this->Last.rgba;
+  const Image& rgba = this->last().rgba;
   const MapperInput input = FindInput(mapper);
   // Nobody sees a point of the volume.
   if (rgba.pixels.empty() || viewport.width <= 0 || viewport.height <= 0 || !input.array ||
       selector->GetFieldAssociation() == vtkDataObject::FIELD_ASSOCIATION_POINTS) {
     return;
   }
-  const PickedCells cells(rgba, this->Last.depth, ClipToWorld(renderer), input.grid,
+  const PickedCells cells(rgba, this->last().depth, ClipToWorld(renderer), input.grid,
                           WorldToIndex(input.grid, volume->GetMatrix()));
   switch (selector->GetCurrentPass()) {
   case vtkHardwareSelector::ACTOR_PASS: {
@@ -180,7 +192,7 @@ void FramePainter::makeRenderer(const vtkINRDataArray& array, RendererOptions op
   if (this->Caster && this->CasterModel == model && this->CasterOptions == options) {
     return;
   }
-  this->Key.reset();
+  this->Pictures.outdate();
   this->Caster = std::make_unique<Renderer>(model, options);
   if (options.deterministic != this->CasterOptions.deterministic) {
     this->Rays = ImageReduction(!options.deterministic);
@@ -207,8 +219,9 @@ double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) c
   return this->Refine.isPending() ? std::min(limit, piece) : limit;
 }
 
-void FramePainter::refineLater(vtkRenderWindow* window, RenderMode mode)
+void FramePainter::refineLater(const Job& job)
 {
+  vtkRenderWindow* window = job.renderer->GetRenderWindow();
   if (IsInteractive(window)) {
     this->Refine.postpone(); // what follows an interactive picture is the application's business
     return;
@@ -216,18 +229,22 @@ void FramePainter::refineLater(vtkRenderWindow* window, RenderMode mode)
   if (!RefinementTimer::canRefine(window)) {
     return; // captured; what is on the screen goes on afterwards
   }
-  const bool unfinished = !this->Last.rgba.pixels.empty() && !this->Last.statistics.complete;
-  if (!unfinished) {
+  const PaintedFrame& last = job.picture.last();
+  job.picture.requested = !last.rgba.pixels.empty() && !last.statistics.complete;
+  if (!this->Pictures.anyRequested()) {
     this->Refine.cancel();
+  }
+  if (!job.picture.requested) {
     return;
   }
   // Bricks are decoded in the pause, too; paths are traced within pictures only.
-  const double share = mode == RenderMode::PathTracing ? 0.25 : 1;
-  this->Refine.request(window, std::clamp(share * this->Last.seconds, 0.02, 0.5));
+  const double share = job.scene.mode == RenderMode::PathTracing ? 0.25 : 1;
+  this->Refine.request(window, std::clamp(share * last.seconds, 0.02, 0.5));
 }
 
-bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
+bool FramePainter::draw(const Job& job)
 {
+  vtkRenderer* renderer = job.renderer;
   const Viewport viewport = GetViewport(renderer);
   const std::int64_t pixels = static_cast<std::int64_t>(viewport.width) * viewport.height;
   if (!this->Group.agree(viewport.width) || !this->Group.agree(viewport.height)) {
@@ -236,15 +253,14 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
   if (pixels <= 0) {
     return true;
   }
-  TranslucentPeeler* const peeler = scene.blending.projects() ? nullptr : &this->Peeler;
+  TranslucentPeeler* const peeler = job.scene.blending.projects() ? nullptr : &this->Peeler;
   const Surroundings around = LookAround(renderer, viewport, this->Group, peeler);
-  this->Last.depthRead = around.depthRead;
-  vtkRenderWindow* window = renderer->GetRenderWindow();
-  const double rate = window->GetDesiredUpdateRate();
-  int reduction = this->Group.largest(this->resolution(scene.mode).factor(rate, pixels));
+  job.picture.last().depthRead = around.depthRead;
+  const double rate = renderer->GetRenderWindow()->GetDesiredUpdateRate();
+  int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
   Clock::time_point deadline = this->deadline(rate, reduction);
   Surroundings here = this->reduced(around, viewport, reduction);
-  while (!this->renderTogether(scene, here, reduction, deadline, window)) {
+  while (!this->renderTogether(job, here, reduction, deadline)) {
     if (this->Group.all(Clock::now() < deadline)) {
       return true; // aborted
     }
@@ -252,10 +268,11 @@ bool FramePainter::draw(const Frame& scene, vtkRenderer* renderer)
     here = this->reduced(around, viewport, reduction);
     deadline = this->deadline(rate, reduction);
   }
-  if (!this->blend(renderer, here)) {
+  if (!this->blend(job, here)) {
     return false;
   }
-  this->Last.converged = this->Group.all(this->Last.statistics.complete);
+  PaintedFrame& last = job.picture.last();
+  last.converged = this->Group.all(last.statistics.complete);
   return true;
 }
 
@@ -272,22 +289,24 @@ Surroundings FramePainter::reduced(const Surroundings& around, const Viewport& v
   return here;
 }
 
-bool FramePainter::renderTogether(const Frame& scene, const Surroundings& around, int reduction,
-                                  Clock::time_point deadline, vtkRenderWindow* window)
+bool FramePainter::renderTogether(const Job& job, const Surroundings& around, int reduction,
+                                  Clock::time_point deadline)
 {
+  const auto keepGoing = Unless(job.renderer->GetRenderWindow(), deadline);
   bool done = false;
-  this->Group.together(
-      [&] { done = this->render(scene, around, reduction, Unless(window, deadline)); });
+  this->Group.together([&] { done = this->render(job, around, reduction, keepGoing); });
   return this->Group.all(done);
 }
 
-bool FramePainter::blend(vtkRenderer* renderer, const Surroundings& around)
+bool FramePainter::blend(const Job& job, const Surroundings& around)
 {
+  vtkRenderer* renderer = job.renderer;
   const Viewport viewport = GetViewport(renderer);
+  const Image& rgba = job.picture.last().rgba;
   if (this->Group.isAlone()) {
-    return this->Blender.blend(renderer, viewport, this->Last.rgba);
+    return this->Blender.blend(renderer, viewport, rgba);
   }
-  Image picture = this->Group.whole(this->Last.rgba);
+  Image picture = this->Group.whole(rgba);
   LimitLight(picture, around, this->Group, renderer, viewport);
   const bool done = !this->Group.draws() || this->Blender.blend(renderer, viewport, picture);
   return this->Group.all(done);
@@ -306,10 +325,10 @@ FramePainter::Clock::time_point FramePainter::deadline(double rate, int reductio
 
 /// Renders among what is `around` the picture's pixels; false, and there is no picture, when it was
 /// stopped.
-bool FramePainter::render(const Frame& scene, const Surroundings& around, int reduction,
+bool FramePainter::render(const Job& job, const Surroundings& around, int reduction,
                           const std::function<bool()>& keepGoing)
 {
-  Frame frame = scene;
+  Frame frame = job.scene;
   frame.width = around.width;
   frame.height = around.height;
   std::vector<float> ownDepth;
@@ -322,10 +341,10 @@ bool FramePainter::render(const Frame& scene, const Surroundings& around, int re
   const std::vector<float>& depth = ownDepth.empty() ? around.depth : ownDepth;
   frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
   frame.layers = around.layers;
-  if (this->showAgain(frame)) {
+  if (job.picture.showAgain(frame, this->CountSamples, this->Caster->majorantBuilds())) {
     return true;
   }
-  PaintedFrame& last = this->Last;
+  PaintedFrame& last = job.picture.last();
   const bool depthRead = last.depthRead;
   try {
     last.statistics = this->Caster->render(frame, last.rgba, &last.depth, keepGoing,
@@ -341,48 +360,34 @@ bool FramePainter::render(const Frame& scene, const Surroundings& around, int re
     last = {};
     throw;
   }
-  this->noteBackend();
+  this->noteBackend(last);
   last.reduction = reduction;
   this->resolution(frame.mode)
       .record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
   if (IsFinal(last.statistics)) {
-    this->Key.emplace(frame, this->CountSamples, this->Caster->majorantBuilds());
+    job.picture.finish(frame, this->CountSamples, this->Caster->majorantBuilds());
   }
   return true;
 }
 
-void FramePainter::noteBackend()
+void FramePainter::noteBackend(PaintedFrame& frame)
 {
   const int threads = this->Caster->threads();
   const std::string cpu = "CPU " + this->Caster->kernel() + ", " + std::to_string(threads) +
                           (threads == 1 ? " thread" : " threads");
   const std::string accelerator = this->Caster->accelerator();
-  std::string& backend = this->Last.backend;
   if (accelerator.empty()) {
-    backend = cpu;
-  } else if (this->Last.statistics.accelerated) {
-    backend = accelerator + "; beside it " + cpu;
+    frame.backend = cpu;
+  } else if (frame.statistics.accelerated) {
+    frame.backend = accelerator + "; beside it " + cpu;
   } else {
-    backend = cpu + (this->CasterOptions.cached ? "; bricks by " : "; samples by ") + accelerator;
+    frame.backend =
+        cpu + (this->CasterOptions.cached ? "; bricks by " : "; samples by ") + accelerator;
   }
   const auto failure = this->acceleratorFailure();
   if (failure && failure->atWork) {
     this->GivenUp = this->CasterOptions.accelerator;
   }
-}
-
-bool FramePainter::showAgain(const Frame& frame)
-{
-  const bool isThere = this->Key && !this->Before.rgba.pixels.empty();
-  if (!isThere || !this->Key->matches(frame, this->CountSamples, this->Caster->majorantBuilds())) {
-    this->Key.reset();
-    this->Before = {};
-    return false;
-  }
-  this->Before.depthRead = this->Last.depthRead;
-  this->Before.statistics.work = {};
-  this->Last = std::exchange(this->Before, {});
-  return true;
 }
 
 } // namespace inr

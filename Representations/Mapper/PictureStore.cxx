@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PictureStore.h"
+
+#include <vtkCamera.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+
+#include <algorithm>
+
+namespace inr {
+
+ViewPicture& PictureStore::of(vtkRenderer* renderer, vtkVolume* volume)
+{
+  const bool leftEye = renderer->GetActiveCamera()->GetLeftEye() != 0;
+  const auto found = std::find_if(this->Views.begin(), this->Views.end(), [&](const View& view) {
+    return view.renderer == renderer && view.volume == volume && view.leftEye == leftEye;
+  });
+  if (found != this->Views.end()) {
+    this->Views.splice(this->Views.begin(), this->Views, found);
+  } else {
+    View& view = this->Views.emplace_front(this->freeNumber());
+    view.renderer = renderer;
+    view.volume = volume;
+    view.leftEye = leftEye;
+  }
+  this->Views.remove_if([](const View& view) { return !view.renderer || !view.volume; });
+  if (this->Views.size() > Most) {
+    this->Views.pop_back();
+  }
+  return this->Views.front().picture;
+}
+
+int PictureStore::freeNumber() const
+{
+  int number = 0;
+  const auto isTaken = [&](const View& view) { return view.picture.number() == number; };
+  while (std::any_of(this->Views.begin(), this->Views.end(), isTaken)) {
+    ++number;
+  }
+  return number;
+}
+
+void PictureStore::outdate()
+{
+  for (View& view : this->Views) {
+    view.picture.outdate();
+  }
+}
+
+bool PictureStore::anyRequested() const
+{
+  return std::any_of(this->Views.begin(), this->Views.end(),
+                     [](const View& view) { return view.picture.requested; });
+}
+
+void PictureStore::clearRequests()
+{
+  for (View& view : this->Views) {
+    view.picture.requested = false;
+  }
+}
+
+} // namespace inr

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ViewPicture.h"
+
+#include <utility>
+
+namespace inr {
+
+void ViewPicture::begin() { this->Before = std::exchange(this->Last, {}); }
+
+bool ViewPicture::showAgain(const Frame& frame, bool countsSamples, std::int64_t colors)
+{
+  const bool isThere = this->Key && !this->Before.rgba.pixels.empty();
+  if (!isThere || !this->Key->matches(frame, countsSamples, colors)) {
+    this->Key.reset();
+    this->Before = {};
+    return false;
+  }
+  this->Before.depthRead = this->Last.depthRead;
+  this->Before.statistics.work = {};
+  this->Last = std::exchange(this->Before, {});
+  return true;
+}
+
+void ViewPicture::finish(const Frame& frame, bool countsSamples, std::int64_t colors)
+{
+  this->Key.emplace(frame, countsSamples, colors);
+}
+
+} // namespace inr

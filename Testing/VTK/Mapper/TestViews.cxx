@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One volume in several views at once: viewports of a window, and the eyes of one in stereo.
+#include "OneVolume.h"
+
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkRenderWindowInteractor.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+namespace {
+
+using test::OneVolume;
+
+/// Whether the mapper has converged, for each picture that the latest window consists of.
+class Watch
+{
+public:
+  explicit Watch(OneVolume& one) : Mapper(one.mapper)
+  {
+    this->Command->SetClientData(this);
+    this->Command->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+      auto* watch = static_cast<Watch*>(data);
+      if (vtkRenderWindow::SafeDownCast(caller)) {
+        watch->Pictures.clear();
+      } else {
+        watch->Pictures.push_back(watch->Mapper->GetConverged());
+      }
+    });
+    one.scene.window->AddObserver(vtkCommand::StartEvent, this->Command);
+  }
+  void watch(vtkRenderer* renderer) { renderer->AddObserver(vtkCommand::EndEvent, this->Command); }
+
+  std::size_t pictures() const { return this->Pictures.size(); }
+  bool allConverged() const
+  {
+    return std::all_of(this->Pictures.begin(), this->Pictures.end(), [](bool one) { return one; });
+  }
+
+private:
+  vtkINRVolumeMapper* Mapper;
+  vtkNew<vtkCallbackCommand> Command;
+  std::vector<bool> Pictures;
+};
+
+/// Traced, a path through each pixel at a time.
+void TraceInParts(OneVolume& one)
+{
+  one.mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+  one.mapper->SetSamplesPerPixel(3);
+  one.mapper->DeterministicOn();
+  one.scene.window->SetDesiredUpdateRate(5);
+}
+
+void AddViewports(OneVolume& one, Watch& watch, int count)
+{
+  one.renderer->SetViewport(0, 0, 1. / count, 1);
+  watch.watch(one.renderer);
+  for (int k = 1; k < count; ++k) {
+    vtkRenderer* other = one.scene.addRenderer(double(k) / count, double(k + 1) / count);
+    other->AddVolume(one.volume);
+    test::Scene::look(other);
+    other->GetActiveCamera()->Azimuth(40 * k);
+    watch.watch(other);
+  }
+}
+
+void LookWithBothEyes(OneVolume& one, Watch& watch)
+{
+  one.renderer->GetActiveCamera()->SetEyeAngle(10);
+  one.scene.window->SetStereoTypeToAnaglyph();
+  one.scene.window->StereoRenderOn();
+  watch.watch(one.renderer);
+}
+
+/// Renders until all pictures have converged; how often.
+int RenderUntilConverged(OneVolume& one, const Watch& watch)
+{
+  constexpr int most = 40;
+  int renders = 0;
+  do {
+    one.scene.window->Render();
+    ++renders;
+  } while (!watch.allConverged() && renders < most);
+  return renders;
+}
+
+TEST(Views, OfAWindowConvergeEachWithPathsOfItsOwn)
+{
+  for (const int count : {1, 2, 4}) {
+    OneVolume one;
+    Watch watch(one);
+    TraceInParts(one);
+    AddViewports(one, watch, count);
+    const int renders = RenderUntilConverged(one, watch);
+    EXPECT_EQ(watch.pictures(), count);
+    EXPECT_GE(renders, 3);
+    EXPECT_LE(renders, 10) << count;
+    one.scene.window->Render();
+    EXPECT_TRUE(watch.allConverged());
+    EXPECT_EQ(one.mapper->GetNumberOfPaths(), 3);
+  }
+}
+
+TEST(Views, InStereoConvergeForBothEyes)
+{
+  OneVolume one;
+  Watch watch(one);
+  TraceInParts(one);
+  LookWithBothEyes(one, watch);
+  EXPECT_LE(RenderUntilConverged(one, watch), 10);
+  EXPECT_EQ(watch.pictures(), 2);
+}
+
+TEST(Views, ShowTheSamePicturesAsOneByOne)
+{
+  OneVolume both;
+  Watch watch(both);
+  TraceInParts(both);
+  AddViewports(both, watch, 2);
+  RenderUntilConverged(both, watch);
+  EXPECT_TRUE(watch.allConverged());
+  const inr::Image together = both.scene.capture();
+  OneVolume alone;
+  Watch other(alone);
+  TraceInParts(alone);
+  AddViewports(alone, other, 2);
+  alone.renderer->DrawOff();
+  RenderUntilConverged(alone, other);
+  alone.renderer->DrawOn();
+  RenderUntilConverged(alone, other);
+  EXPECT_EQ(alone.scene.capture().pixels, together.pixels);
+}
+
+TEST(Views, ThatHaveConvergedAreNotMadeAgain)
+{
+  for (const int mode : {vtkINRVolumeMapper::RAY_MARCHING, vtkINRVolumeMapper::PATH_TRACING}) {
+    OneVolume one;
+    Watch watch(one);
+    one.mapper->SetRenderMode(mode);
+    one.mapper->SetSamplesPerPixel(2);
+    AddViewports(one, watch, 2);
+    const inr::Image first = one.scene.capture();
+    EXPECT_TRUE(watch.allConverged());
+    EXPECT_GT(one.mapper->GetNumberOfVisitedCells(), 0);
+    EXPECT_EQ(one.scene.capture().pixels, first.pixels);
+    EXPECT_EQ(one.mapper->GetNumberOfVisitedCells(), 0);
+  }
+}
+
+/// The window's event loop, until nobody has rendered for a moment, and `atRest` is done then;
+/// whether that came.
+bool RunUntilIdle(vtkRenderWindow* window, vtkRenderWindowInteractor* interactor,
+                  const std::function<void()>& atRest)
+{
+  struct Idleness
+  {
+    const std::function<void()>& atRest;
+    int ticks = 0; // since a picture, of 20 ms; pictures ask for the next one within half a second
+    int all = 0;
+  } idleness{atRest};
+  vtkNew<vtkCallbackCommand> look;
+  look->SetClientData(&idleness);
+  look->SetCallback([](vtkObject* caller, unsigned long event, void* data, void*) {
+    auto* seen = static_cast<Idleness*>(data);
+    if (event != vtkCommand::TimerEvent) {
+      seen->ticks = 0;
+    } else if (++seen->ticks > 60 || ++seen->all > 500) {
+      seen->atRest();
+      static_cast<vtkRenderWindowInteractor*>(caller)->TerminateApp();
+    }
+  });
+  interactor->AddObserver(vtkCommand::TimerEvent, look);
+  const unsigned long tag = window->AddObserver(vtkCommand::EndEvent, look);
+  interactor->CreateRepeatingTimer(20);
+  interactor->Start();
+  interactor->RemoveObserver(look);
+  window->RemoveObserver(tag);
+  return idleness.all <= 500;
+}
+
+/// One that is in its event loop, where a picture gains a sample, or what there is of one.
+struct IdleWindow
+{
+  IdleWindow() : watch(one)
+  {
+    this->one.mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+    this->one.mapper->SetSamplesPerPixel(4);
+    this->one.mapper->SetStillTimeLimit(1e-3);
+    this->one.scene.window->SetOffScreenRendering(0);
+    this->interactor->SetRenderWindow(this->one.scene.window);
+    this->interactor->Initialize();
+  }
+  /// Whether it comes to rest with everything converged.
+  bool clearsUp(const std::function<void()>& atRest = [] {})
+  {
+    this->one.scene.window->Render();
+    EXPECT_FALSE(this->watch.allConverged());
+    return RunUntilIdle(this->one.scene.window, this->interactor, atRest) &&
+           this->watch.allConverged();
+  }
+
+  OneVolume one;
+  Watch watch;
+  vtkNew<vtkRenderWindowInteractor> interactor;
+};
+
+TEST(Views, OfIdleWindowsClearUpAndThenRest)
+{
+  IdleWindow viewports;
+  AddViewports(viewports.one, viewports.watch, 2);
+  EXPECT_TRUE(viewports.clearsUp());
+  EXPECT_EQ(viewports.watch.pictures(), 2);
+  IdleWindow stereo;
+  LookWithBothEyes(stereo.one, stereo.watch);
+  EXPECT_TRUE(stereo.clearsUp());
+  EXPECT_EQ(stereo.watch.pictures(), 2);
+}
+
+TEST(Views, ClearUpWhateverOthersDo)
+{
+  IdleWindow idle;
+  AddViewports(idle.one, idle.watch, 2);
+  idle.one.scene.window->Render();
+  idle.one.renderer->DrawOff(); // with its picture unfinished
+  EXPECT_TRUE(idle.clearsUp());
+  idle.one.renderer->DrawOn(); // before the other one, which is finished
+  EXPECT_TRUE(idle.clearsUp());
+}
+
+TEST(Views, ThatAreHiddenAskForNothing)
+{
+  IdleWindow idle;
+  AddViewports(idle.one, idle.watch, 2);
+  idle.one.scene.window->Render();
+  idle.one.renderer->DrawOff(); // with its picture unfinished
+  EXPECT_TRUE(idle.clearsUp([&] {
+    idle.one.mapper->SetSamplesPerPixel(60); // more than there is time for while one is asked for
+    idle.one.mapper->SetStillTimeLimit(60);
+    idle.one.scene.window->Render();
+  }));
+}
+
+} // namespace
