@@ -10,9 +10,9 @@
 #include "PickedCells.h"
 #include "SceneCheck.h"
 #include "SceneLights.h"
+#include "SelectionPass.h"
 #include "vtkINRDataArray.h"
 
-#include <vtkDataObject.h>
 #include <vtkHardwareSelector.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -116,41 +116,72 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
               "float textures.";
   }
+  picture.depict(this->depicted(frame, renderer, volume));
   picture.last().seconds = SecondsSince(start);
   this->refineLater(job);
   return problem;
 }
 
-void FramePainter::mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume)
+std::string FramePainter::mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                               const PaintSettings& settings)
 {
-  vtkHardwareSelector* selector = renderer->GetSelector();
-  const Viewport viewport = GetViewport(renderer);
-  const Image& rgba = this->last().rgba;
-  const MapperInput input = FindInput(mapper);
-  // Nobody sees a point of the volume.
-  if (rgba.pixels.empty() || viewport.width <= 0 || viewport.height <= 0 || !input.array ||
-      selector->GetFieldAssociation() == vtkDataObject::FIELD_ASSOCIATION_POINTS) {
-    return;
+  if (!MayBeSelected(renderer)) {
+    return {};
   }
-  const PickedCells cells(rgba, this->last().depth, ClipToWorld(renderer), input.grid,
-                          WorldToIndex(input.grid, volume->GetMatrix()));
-  switch (selector->GetCurrentPass()) {
-  case vtkHardwareSelector::ACTOR_PASS: {
-    glm::vec3 color;
-    selector->GetPropColorValue(&color.x);
-    selector->UpdateMaximumCellId(cells.last());
-    this->Blender.mark(renderer, viewport, PaintedWith(color, rgba));
-    break;
+  this->Group = settings.group;
+  Frame scene;
+  std::string problem = this->prepare(mapper, renderer, volume, settings, scene);
+  if (!problem.empty()) {
+    return problem;
   }
-  case vtkHardwareSelector::CELL_ID_LOW24:
-    this->Blender.mark(renderer, viewport, cells.numbers(0));
-    break;
-  case vtkHardwareSelector::CELL_ID_HIGH24:
-    this->Blender.mark(renderer, viewport, cells.numbers(24));
-    break;
-  default:
-    break;
+  const PaintedFrame& seen = this->look(scene, renderer, volume).last();
+  if (!seen.rgba.pixels.empty()) {
+    const PickedCells cells(seen.rgba, seen.depth, scene.clipToWorld, FindInput(mapper).grid,
+                            scene.worldToIndex);
+    MarkForSelection(renderer, seen.rgba, cells, this->Blender);
   }
+  return {};
+}
+
+const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume)
+{
+  const ViewPicture* shown = this->Pictures.find(renderer, volume);
+  if (shown != nullptr && shown->depicts(this->depicted(scene, renderer, volume))) {
+    return *shown;
+  }
+  Frame rays = scene; // paths are long, and end where rays do
+  rays.mode = RenderMode::RayMarching;
+  rays.shading.reset();
+  if (!this->Selected.depicts(this->depicted(rays, renderer, volume))) {
+    this->Selected.begin();
+    // In a group, not all may be asked; what was drawn has a part of each.
+    if (this->Group.isAlone() && this->drawUnseen({rays, renderer, this->Selected})) {
+      this->Selected.depict(this->depicted(rays, renderer, volume));
+    }
+  }
+  return this->Selected;
+}
+
+bool FramePainter::drawUnseen(const Job& job)
+{
+  const Viewport viewport = GetViewport(job.renderer);
+  const std::int64_t pixels = static_cast<std::int64_t>(viewport.width) * viewport.height;
+  if (pixels <= 0) {
+    return false;
+  }
+  vtkRenderWindow* window = job.renderer->GetRenderWindow();
+  const int reduction = this->Rays.factor(window->GetDesiredUpdateRate(), pixels);
+  const Surroundings around = LookAround(job.renderer, viewport, this->Group, nullptr);
+  return this->render(job, this->reduced(around, viewport, reduction), reduction,
+                      Unless(window, Clock::time_point::max()));
+}
+
+DepictedScene FramePainter::depicted(const Frame& scene, vtkRenderer* renderer,
+                                     vtkVolume* volume) const
+{
+  // A group's processes have to agree, and do not tell each other when something changed.
+  return {scene, this->Caster->majorantBuilds(),
+          this->Group.isAlone() ? TimeOfChange(renderer, volume) : 0};
 }
 
 std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
@@ -193,6 +224,7 @@ void FramePainter::makeRenderer(const vtkINRDataArray& array, RendererOptions op
     return;
   }
   this->Pictures.outdate();
+  this->Selected.outdate();
   this->Caster = std::make_unique<Renderer>(model, options);
   if (options.deterministic != this->CasterOptions.deterministic) {
     this->Rays = ImageReduction(!options.deterministic);

@@ -41,9 +41,11 @@ public:
   /// each process keeps its own part and what that took.
   std::string paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                     const PaintSettings& settings);
-  /// Marks what the last picture shows of the volume, and which cells, in a selection buffer. A
-  /// group's processes each mark their part.
-  void mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume);
+  /// Marks where the volume is seen, and which cells, in a selection buffer: in the picture that
+  /// the view shows or, where that is not of the present scene, in another one, which nobody sees.
+  /// A group's processes each mark their part. Returns and throws as above.
+  std::string mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                   const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Pictures.latest().last(); }
   /// See Renderer.
   std::int64_t cacheBytes() const { return this->Caster ? this->Caster->cacheBytes() : 0; }
@@ -87,6 +89,11 @@ private:
   bool renderTogether(const Job& job, const Surroundings& around, int reduction,
                       Clock::time_point deadline);
   bool blend(const Job& job, const Surroundings& around);
+  /// The picture for a selection.
+  const ViewPicture& look(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume);
+  /// A picture that is not shown; whether it was made.
+  bool drawUnseen(const Job& job);
+  DepictedScene depicted(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume) const;
   double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;
   /// Sees to it that an unfinished still picture goes on.
   void refineLater(const Job& job);
@@ -105,6 +112,7 @@ private:
   TranslucentPeeler Peeler;
   RefinementTimer Refine;
   PictureStore Pictures;
+  ViewPicture Selected{0}; ///< for the latest selection, where no view shows what it is of
 };
 
 } // namespace inr

@@ -9,25 +9,41 @@
 
 namespace inr {
 
+namespace {
+
+bool LooksLeft(vtkRenderer* renderer) { return renderer->GetActiveCamera()->GetLeftEye() != 0; }
+
+} // namespace
+
+bool PictureStore::View::isOf(vtkRenderer* shownIn, vtkVolume* shown) const
+{
+  return this->renderer == shownIn && this->volume == shown && this->leftEye == LooksLeft(shownIn);
+}
+
 ViewPicture& PictureStore::of(vtkRenderer* renderer, vtkVolume* volume)
 {
-  const bool leftEye = renderer->GetActiveCamera()->GetLeftEye() != 0;
-  const auto found = std::find_if(this->Views.begin(), this->Views.end(), [&](const View& view) {
-    return view.renderer == renderer && view.volume == volume && view.leftEye == leftEye;
-  });
+  const auto found = std::find_if(this->Views.begin(), this->Views.end(),
+                                  [&](const View& view) { return view.isOf(renderer, volume); });
   if (found != this->Views.end()) {
     this->Views.splice(this->Views.begin(), this->Views, found);
   } else {
     View& view = this->Views.emplace_front(this->freeNumber());
     view.renderer = renderer;
     view.volume = volume;
-    view.leftEye = leftEye;
+    view.leftEye = LooksLeft(renderer);
   }
   this->Views.remove_if([](const View& view) { return !view.renderer || !view.volume; });
   if (this->Views.size() > Most) {
     this->Views.pop_back();
   }
   return this->Views.front().picture;
+}
+
+const ViewPicture* PictureStore::find(vtkRenderer* renderer, vtkVolume* volume) const
+{
+  const auto found = std::find_if(this->Views.begin(), this->Views.end(),
+                                  [&](const View& view) { return view.isOf(renderer, volume); });
+  return found != this->Views.end() ? &found->picture : nullptr;
 }
 
 int PictureStore::freeNumber() const

@@ -26,6 +26,8 @@ public:
   /// That of a volume as a renderer shows it to the eye for which its camera looks; from now on the
   /// latest. Of more than Most, that of the view that was not drawn for longest makes room.
   ViewPicture& of(vtkRenderer* renderer, vtkVolume* volume);
+  /// The same, null where there is none; it does not become the latest.
+  const ViewPicture* find(vtkRenderer* renderer, vtkVolume* volume) const;
   /// An empty one before the first.
   const ViewPicture& latest() const { return this->Views.front().picture; }
   /// None is to be shown again.
@@ -40,6 +42,7 @@ private:
   struct View
   {
     explicit View(int number) : picture(number) {}
+    bool isOf(vtkRenderer* renderer, vtkVolume* volume) const;
 
     vtkWeakPointer<vtkRenderer> renderer;
     vtkWeakPointer<vtkVolume> volume;

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Surroundings.h"
 
+#include <vtkPropCollection.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+
+#include <algorithm>
 #include <cstddef>
 
 namespace inr {
@@ -42,6 +47,20 @@ Surroundings LookAround(vtkRenderer* renderer, const Viewport& viewport, const P
     });
   }
   return around;
+}
+
+vtkMTimeType TimeOfChange(vtkRenderer* renderer, vtkVolume* volume)
+{
+  vtkPropCollection* props = renderer->GetViewProps();
+  vtkMTimeType time = props->GetMTime(); // of what has come or gone
+  vtkCollectionSimpleIterator cookie;
+  props->InitTraversal(cookie);
+  while (vtkProp* prop = props->GetNextProp(cookie)) {
+    if (prop != volume) {
+      time = std::max(time, prop->GetRedrawMTime());
+    }
+  }
+  return time;
 }
 
 } // namespace inr

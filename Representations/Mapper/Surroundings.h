@@ -6,10 +6,13 @@
 #include "PictureGroup.h"
 #include "TranslucentPeeler.h"
 
+#include <vtkType.h>
+
 #include <memory>
 #include <vector>
 
 class vtkRenderer;
+class vtkVolume;
 
 namespace inr {
 
@@ -30,5 +33,9 @@ struct Surroundings
 /// and nearest; and what is translucent in this one, which only `peeler` looks for.
 Surroundings LookAround(vtkRenderer* renderer, const Viewport& viewport, const PictureGroup& group,
                         TranslucentPeeler* peeler);
+
+/// When anything of the scene but `volume` changed last. The same at two times: nothing has between
+/// them.
+vtkMTimeType TimeOfChange(vtkRenderer* renderer, vtkVolume* volume);
 
 } // namespace inr

@@ -5,7 +5,11 @@
 
 namespace inr {
 
-void ViewPicture::begin() { this->Before = std::exchange(this->Last, {}); }
+void ViewPicture::begin()
+{
+  this->Before = std::exchange(this->Last, {});
+  this->Scene.reset();
+}
 
 bool ViewPicture::showAgain(const Frame& frame, bool countsSamples, std::int64_t colors)
 {
@@ -24,6 +28,24 @@ bool ViewPicture::showAgain(const Frame& frame, bool countsSamples, std::int64_t
 void ViewPicture::finish(const Frame& frame, bool countsSamples, std::int64_t colors)
 {
   this->Key.emplace(frame, countsSamples, colors);
+}
+
+void ViewPicture::depict(const DepictedScene& scene)
+{
+  this->Scene.emplace(scene.frame, false, scene.colors);
+  this->Surroundings = scene.surroundings;
+}
+
+bool ViewPicture::depicts(const DepictedScene& scene) const
+{
+  return !this->Last.rgba.pixels.empty() && this->Surroundings == scene.surroundings &&
+         this->Scene && this->Scene->matches(scene.frame, false, scene.colors);
+}
+
+void ViewPicture::outdate()
+{
+  this->Key.reset();
+  this->Scene.reset();
 }
 
 } // namespace inr

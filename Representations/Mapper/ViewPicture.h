@@ -25,6 +25,14 @@ struct PaintedFrame
   bool converged = false; ///< shown, and complete
 };
 
+/// What to tell a picture by, without the pixels of what else there is.
+struct DepictedScene
+{
+  const Frame& frame; ///< without size and surroundings
+  std::int64_t colors;
+  std::uint64_t surroundings; ///< when they changed last
+};
+
 /// What a view shows of a volume. A picture that is complete is not made again while everything
 /// stays as it is: windows are drawn anew for many reasons.
 class ViewPicture
@@ -46,8 +54,12 @@ public:
   bool showAgain(const Frame& frame, bool countsSamples, std::int64_t colors);
   /// That the picture is the one `frame` asks for, and can become no better.
   void finish(const Frame& frame, bool countsSamples, std::int64_t colors);
-  /// For when everything has changed: it is not to be shown again.
-  void outdate() { this->Key.reset(); }
+  /// What the picture is of.
+  void depict(const DepictedScene& scene);
+  /// Whether there is a picture, of just that.
+  bool depicts(const DepictedScene& scene) const;
+  /// For when everything has changed: it is a picture of nothing that there is.
+  void outdate();
 
   bool requested = false; ///< that the window be drawn again, to go on with this picture
 
@@ -56,6 +68,8 @@ private:
   PaintedFrame Last;
   PaintedFrame Before;           ///< until there is another
   std::optional<PictureKey> Key; ///< of what was drawn last, if it is complete
+  std::optional<PictureKey> Scene;
+  std::uint64_t Surroundings = 0;
 };
 
 } // namespace inr

@@ -59,6 +59,18 @@ void BoundsOf(const inr::PresentedGrid& grid, const std::array<int, 6>& extent, 
   box->GetBounds(bounds);
 }
 
+/** What `call` returns or throws: nothing may cross VTK. Empty where nothing goes wrong. */
+template <class Call> std::string ProblemOf(const Call& call)
+{
+  try {
+    return call();
+  } catch (const std::bad_alloc&) {
+    return "There is not enough memory to draw the volume; make the picture or CacheSize smaller.";
+  } catch (const std::exception& exception) {
+    return exception.what();
+  }
+}
+
 } // namespace
 
 struct vtkINRVolumeMapper::Internals
@@ -369,12 +381,20 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   return settings;
 }
 
+inr::PaintSettings vtkINRVolumeMapper::PresentSettings()
+{
+  inr::PaintSettings settings = this->Settings();
+  settings.renderer.accelerator = this->WantedAccelerator();
+  if (this->GetDrawsTogether() && !this->ProcessOrder.empty()) {
+    settings.group = inr::PictureGroup(this->Self->Controller, this->ProcessOrder);
+  }
+  return settings;
+}
+
 void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 {
-  if (vtkHardwareSelector* selector = renderer->GetSelector()) {
-    selector->BeginRenderProp();
-    this->Self->Painter.mark(this, renderer, volume);
-    selector->EndRenderProp();
+  if (renderer->GetSelector()) {
+    this->RenderForSelection(renderer, volume);
     return;
   }
   if (inr::DeferredDrawing::isDue(volume)) {
@@ -385,26 +405,26 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     return;
   }
   this->DrawVolumesBehind(renderer, volume);
-  std::string problem;
-  try {
-    inr::PaintSettings settings = this->Settings();
-    settings.renderer.accelerator = this->WantedAccelerator();
-    if (this->GetDrawsTogether() && !this->ProcessOrder.empty()) {
-      settings.group = inr::PictureGroup(this->Self->Controller, this->ProcessOrder);
-    }
-    problem = this->Self->Painter.paint(this, renderer, volume, settings);
-  } catch (const std::bad_alloc&) {
-    problem =
-        "There is not enough memory to draw the volume; make the picture or CacheSize smaller.";
-  } catch (const std::exception& exception) {
-    problem = exception.what();
-  }
+  const std::string problem = ProblemOf(
+      [&] { return this->Self->Painter.paint(this, renderer, volume, this->PresentSettings()); });
   this->TimeToDraw = this->Self->Painter.last().seconds;
   if (!this->Self->Painter.last().rgba.pixels.empty()) {
     this->Self->Drawn.Modified();
   }
   this->ReportOnce(problem);
   this->ReportBackend();
+}
+
+void vtkINRVolumeMapper::RenderForSelection(vtkRenderer* renderer, vtkVolume* volume)
+{
+  vtkHardwareSelector* selector = renderer->GetSelector();
+  selector->BeginRenderProp();
+  const std::string problem = ProblemOf(
+      [&] { return this->Self->Painter.mark(this, renderer, volume, this->PresentSettings()); });
+  selector->EndRenderProp();
+  if (!problem.empty()) { // else what was reported of the frame stays reported
+    this->ReportOnce(problem);
+  }
 }
 
 void vtkINRVolumeMapper::DrawVolumesBehind(vtkRenderer* renderer, vtkVolume* volume)

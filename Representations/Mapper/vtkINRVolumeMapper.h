@@ -43,8 +43,11 @@
  * there; it is the same whatever the size of the cache. When the render window asks for more than
  * 0.1 frames per second, a frame takes what the cache has, coarser levels where the wanted ones are
  * missing, and decodes more in the time that is left; and if even that is too slow, the picture is
- * computed at a half to a sixteenth of the window's resolution and stretched. Hardware
- * selection does not see the volume.
+ * computed at a half to a sixteenth of the window's resolution and stretched.
+ *
+ * Hardware selection finds the cells of the input where the opacity along a ray reaches one half
+ * or, where it never does, half way through; no points. It looks at the picture that was drawn or,
+ * where the scene has changed since, at one that it makes by ray marching.
  *
  * Drawn by path tracing, the same medium scatters light: that of the renderer's lights
  * (directional, positional, spots, headlights and camera lights, with colour, intensity and
@@ -517,9 +520,11 @@ private:
   std::shared_ptr<const inr::Accelerator> WantedAccelerator();
   std::string WhyNotAccelerated() const;
   void ReportBackend();
+  void RenderForSelection(vtkRenderer* renderer, vtkVolume* volume);
   void DrawVolumesBehind(vtkRenderer* renderer, vtkVolume* volume);
 
   inr::PaintSettings Settings() const;
+  inr::PaintSettings PresentSettings();
 
   int RenderMode = RAY_MARCHING;
   int Backend = AUTO;

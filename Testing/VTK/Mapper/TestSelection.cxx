@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a hardware selector finds of a volume, whether or not the scene was drawn since it changed.
+#include "OneVolume.h"
+
+#include <vtkCamera.h>
+#include <vtkDataArray.h>
+#include <vtkDataObject.h>
+#include <vtkHardwareSelector.h>
+#include <vtkInformation.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkSelection.h>
+#include <vtkSelectionNode.h>
+#include <vtkVolumeProperty.h>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Cells = std::set<vtkIdType>;
+
+/// One that no picture was made of yet, in a window that was drawn: VTK's selector wants that.
+struct OneVolume : test::OneVolume
+{
+  OneVolume()
+  {
+    this->volume->VisibilityOff();
+    this->scene.window->Render();
+    this->volume->VisibilityOn();
+  }
+};
+
+/// Of the volume, in the pixels that `renderer` covers.
+Cells Select(vtkRenderer* renderer, vtkVolume* volume)
+{
+  const int* origin = renderer->GetOrigin();
+  const int* size = renderer->GetSize();
+  vtkNew<vtkHardwareSelector> selector;
+  selector->SetRenderer(renderer);
+  selector->SetFieldAssociation(vtkDataObject::FIELD_ASSOCIATION_CELLS);
+  selector->SetArea(origin[0], origin[1], origin[0] + size[0] - 1, origin[1] + size[1] - 1);
+  const auto selection = vtkSmartPointer<vtkSelection>::Take(selector->Select());
+  Cells cells;
+  for (unsigned int k = 0; k < selection->GetNumberOfNodes(); ++k) {
+    vtkSelectionNode* node = selection->GetNode(k);
+    if (node->GetProperties()->Get(vtkSelectionNode::PROP()) != volume) {
+      continue;
+    }
+    auto* list = vtkDataArray::SafeDownCast(node->GetSelectionList());
+    for (vtkIdType i = 0; i < list->GetNumberOfTuples(); ++i) {
+      cells.insert(static_cast<vtkIdType>(list->GetTuple1(i)));
+    }
+  }
+  return cells;
+}
+
+Cells Select(OneVolume& one) { return Select(one.renderer, one.volume); }
+
+struct Change
+{
+  std::string name;
+  std::function<void(OneVolume&)> make;
+};
+
+/// A cube that hides part of the volume.
+void AddBefore(OneVolume& one)
+{
+  const double* center = one.volume->GetCenter();
+  const double* eye = one.renderer->GetActiveCamera()->GetPosition();
+  one.addCube()->SetPosition(0.5 * (eye[0] - center[0]), 0.5 * (eye[1] - center[1]),
+                             0.5 * (eye[2] - center[2]));
+}
+
+std::vector<Change> Changes()
+{
+  using One = OneVolume&;
+  return {{"nothing", [](One) {}},
+          {"camera",
+           [](One one) {
+             one.renderer->GetActiveCamera()->Azimuth(120);
+             one.renderer->GetActiveCamera()->Zoom(0.4);
+           }},
+          {"place", [](One one) { one.volume->AddPosition(9, -3, 5); }},
+          {"surface before it", [](One one) { AddBefore(one); }},
+          {"opacity",
+           [](One one) { one.volume->GetProperty()->GetScalarOpacity()->AddPoint(-20, 0.6); }},
+          {"size", [](One one) { one.scene.window->SetSize(160, 170); }},
+          {"out of sight", [](One one) { one.volume->AddPosition(1e5, 0, 0); }}};
+}
+
+TEST(Selection, IsOfTheSceneAsItIs)
+{
+  for (const bool drawnBefore : {false, true}) {
+    OneVolume asked;
+    OneVolume drawn;
+    Cells before;
+    for (const Change& change : Changes()) {
+      SCOPED_TRACE(change.name);
+      if (drawnBefore) {
+        asked.scene.window->Render();
+      }
+      change.make(asked);
+      change.make(drawn);
+      drawn.scene.window->Render();
+      const Cells cells = Select(drawn);
+      EXPECT_EQ(Select(asked), cells);
+      EXPECT_EQ(cells.empty(), change.name == "out of sight");
+      EXPECT_NE(cells, before);
+      before = cells;
+    }
+  }
+}
+
+TEST(Selection, IsOfEachViewport)
+{
+  for (const bool drawn : {false, true}) {
+    OneVolume one;
+    one.renderer->SetViewport(0, 0, 0.5, 1);
+    vtkRenderer* other = one.scene.addRenderer(0.5, 1);
+    other->AddVolume(one.volume);
+    test::Scene::look(other);
+    other->GetActiveCamera()->Azimuth(180);
+    if (drawn) {
+      one.scene.window->Render();
+    }
+    const Cells front = Select(one);
+    const Cells back = Select(other, one.volume);
+    one.renderer->GetActiveCamera()->DeepCopy(other->GetActiveCamera());
+    EXPECT_EQ(Select(one), back);
+    EXPECT_NE(front, back);
+  }
+}
+
+TEST(Selection, OfTracedPathsWaitsForNone)
+{
+  OneVolume one;
+  one.mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+  one.mapper->SetSamplesPerPixel(VTK_INT_MAX);
+  OneVolume marched;
+  EXPECT_EQ(Select(one), Select(marched));
+}
+
+TEST(Selection, LooksAtThePictureThatIsThere)
+{
+  OneVolume one;
+  one.mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+  one.scene.window->SetDesiredUpdateRate(5);
+  one.scene.window->Render();
+  int size[2];
+  one.mapper->GetFrameSize(size); // smaller than a first one of rays
+  const std::size_t cells = Select(one).size();
+  EXPECT_GT(cells, 0);
+  EXPECT_LE(cells, size[0] * size[1]);
+}
+
+TEST(Selection, LeavesTheFrameAsItIs)
+{
+  OneVolume one;
+  const inr::Image drawn = one.scene.capture();
+  const vtkMTimeType time = one.mapper->GetFrameMTime();
+  const vtkIdType samples = one.mapper->GetNumberOfSamples();
+  one.renderer->GetActiveCamera()->Zoom(0.5);
+  EXPECT_FALSE(Select(one).empty());
+  EXPECT_EQ(one.mapper->GetFrameMTime(), time);
+  EXPECT_EQ(one.mapper->GetNumberOfSamples(), samples);
+  one.renderer->GetActiveCamera()->Zoom(2);
+  EXPECT_EQ(one.scene.capture().pixels, drawn.pixels);
+}
+
+TEST(Selection, SaysWhatIsWrong)
+{
+  OneVolume one;
+  test::Messages messages(one.mapper);
+  one.mapper->SetCacheSize(1);
+  one.mapper->SetBrickSize(256);
+  EXPECT_TRUE(Select(one).empty());
+  EXPECT_EQ(messages.errors, 1);
+  EXPECT_NE(messages.last.find("cache"), std::string::npos) << messages.last;
+  one.mapper->SetBrickSize(40);
+  EXPECT_FALSE(Select(one).empty());
+}
+
+} // namespace
