@@ -212,28 +212,19 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
   return {};
 }
 
-void FramePainter::makeRenderer(const vtkINRDataArray& array, RendererOptions options)
+void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOptions& options)
 {
-  const ModelPointer& model = array.GetModel();
-  // What has failed stays where bricks are that it brought, and is not tried with every time step.
-  const bool isElsewhere = this->CasterModel != model || !this->CasterOptions.accelerator;
-  if (options.accelerator == this->GivenUp && isElsewhere) {
-    options.accelerator = nullptr;
-  }
-  if (this->Caster && this->CasterModel == model && this->CasterOptions == options) {
+  const bool measured = !this->Caster.options().deterministic;
+  if (!this->Caster.update(array, options)) {
     return;
   }
   this->Pictures.outdate();
   this->Selected.outdate();
-  this->Caster = std::make_unique<Renderer>(model, options);
-  if (options.deterministic != this->CasterOptions.deterministic) {
-    this->Rays = ImageReduction(!options.deterministic);
-    this->Paths =
-        options.deterministic ? this->Rays : ImageReduction(true, ImageReduction::UnmeasuredPaths);
+  const bool measures = !options.deterministic;
+  if (measures != measured) {
+    this->Rays = ImageReduction(measures);
+    this->Paths = measures ? ImageReduction(true, ImageReduction::UnmeasuredPaths) : this->Rays;
   }
-  this->CasterModel = model;
-  this->CasterOptions = options;
-  array.GetKeepsake()->Content = this->Caster->keepBricks();
 }
 
 double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) const
@@ -348,7 +339,7 @@ bool FramePainter::blend(const Job& job, const Surroundings& around)
 /// picture costs.
 FramePainter::Clock::time_point FramePainter::deadline(double rate, int reduction) const
 {
-  const bool waits = rate < ImageReduction::StillRate || this->CasterOptions.deterministic ||
+  const bool waits = rate < ImageReduction::StillRate || this->Caster.options().deterministic ||
                      reduction >= ImageReduction::Largest;
   const std::chrono::duration<double> seconds(1 / rate);
   return waits ? Clock::time_point::max()
@@ -366,7 +357,7 @@ bool FramePainter::render(const Job& job, const Surroundings& around, int reduct
   std::vector<float> ownDepth;
   if (!this->Group.isAlone()) {
     ownDepth = around.depth;
-    const PixelBox seen = PixelsOf(frame, this->CasterModel->volume.dims);
+    const PixelBox seen = PixelsOf(frame, this->Caster.model().volume.dims);
     KeepOnly(PartOf(seen, this->Group.process(), this->Group.processes()),
              {frame.width, frame.height}, ownDepth);
   }
@@ -392,7 +383,8 @@ bool FramePainter::render(const Job& job, const Surroundings& around, int reduct
     last = {};
     throw;
   }
-  this->noteBackend(last);
+  last.backend = this->Caster.backendOf(last.statistics);
+  this->Caster.noteFailure();
   last.reduction = reduction;
   this->resolution(frame.mode)
       .record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
@@ -400,26 +392,6 @@ bool FramePainter::render(const Job& job, const Surroundings& around, int reduct
     job.picture.finish(frame, this->CountSamples, this->Caster->majorantBuilds());
   }
   return true;
-}
-
-void FramePainter::noteBackend(PaintedFrame& frame)
-{
-  const int threads = this->Caster->threads();
-  const std::string cpu = "CPU " + this->Caster->kernel() + ", " + std::to_string(threads) +
-                          (threads == 1 ? " thread" : " threads");
-  const std::string accelerator = this->Caster->accelerator();
-  if (accelerator.empty()) {
-    frame.backend = cpu;
-  } else if (frame.statistics.accelerated) {
-    frame.backend = accelerator + "; beside it " + cpu;
-  } else {
-    frame.backend =
-        cpu + (this->CasterOptions.cached ? "; bricks by " : "; samples by ") + accelerator;
-  }
-  const auto failure = this->acceleratorFailure();
-  if (failure && failure->atWork) {
-    this->GivenUp = this->CasterOptions.accelerator;
-  }
 }
 
 } // namespace inr

@@ -3,6 +3,7 @@
 
 #include "Core/Render/Renderer.h"
 #include "Core/Render/Scene/Frame.h"
+#include "CurrentRenderer.h"
 #include "FrameBuilder.h"
 #include "ImageBlender.h"
 #include "ImageReduction.h"
@@ -17,7 +18,6 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -48,10 +48,10 @@ public:
                    const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Pictures.latest().last(); }
   /// See Renderer.
-  std::int64_t cacheBytes() const { return this->Caster ? this->Caster->cacheBytes() : 0; }
+  std::int64_t cacheBytes() const { return this->Caster.cacheBytes(); }
   std::optional<AcceleratedField::Failure> acceleratorFailure() const
   {
-    return this->Caster ? this->Caster->acceleratorFailure() : std::nullopt;
+    return this->Caster.acceleratorFailure();
   }
   void release(vtkWindow* window)
   {
@@ -72,8 +72,7 @@ private:
   /// What to draw, or why nothing is.
   std::string prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                       const PaintSettings& settings, Frame& frame);
-  void makeRenderer(const vtkINRDataArray& array, RendererOptions options);
-  void noteBackend(PaintedFrame& frame);
+  void makeRenderer(const vtkINRDataArray& array, const RendererOptions& options);
   using Clock = std::chrono::steady_clock;
 
   bool draw(const Job& job);
@@ -98,10 +97,7 @@ private:
   /// Sees to it that an unfinished still picture goes on.
   void refineLater(const Job& job);
 
-  std::unique_ptr<Renderer> Caster;
-  ModelPointer CasterModel;
-  RendererOptions CasterOptions;
-  std::shared_ptr<const Accelerator> GivenUp; ///< it has failed
+  CurrentRenderer Caster;
   bool CountSamples = false;
   PictureGroup Group;
   TransferFunctionCache TransferFunctions;
