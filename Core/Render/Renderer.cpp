@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Render/RendererImplementation.h"
+#include "Core/Render/Scene/DrawnFrame.h"
 #include "Core/Render/Scene/FrameCheck.h"
 #include "Core/Render/Tiles/Timer.h"
 
@@ -17,19 +18,6 @@ RendererOptions Consistent(RendererOptions options)
 {
   options.cache.background = options.cache.background && !options.deterministic;
   return options;
-}
-
-/// Without what such a frame is not for.
-Frame AsItIsDrawn(Frame frame, bool cached)
-{
-  frame.preIntegration = frame.preIntegration && frame.mode == RenderMode::RayMarching &&
-                         frame.blending.mode == BlendMode::Composite;
-  if (frame.errorTolerance && cached) { // that chooses levels and distances of samples
-    frame.levelOfDetailScale = 0;
-    frame.adaptiveSampling = false;
-    frame.preIntegration = false;
-  }
-  return frame;
 }
 
 InferencePrecision PrecisionOf(const NetworkDescription& network, const RendererOptions& options)
@@ -246,11 +234,11 @@ FrameStatistics Renderer::render(const Frame& wanted, Image& rgba, Image* depth,
 {
   const Timer timer;
   Implementation& self = *this->Self;
-  const Frame frame = AsItIsDrawn(wanted, self.Cached.has_value());
   if (!self.Colors) {
     throw Error(ErrorCode::InvalidArgument, "set a transfer function before rendering");
   }
-  RequireValid(frame);
+  RequireValid(wanted);
+  const Frame frame = AsItIsDrawn(wanted, self.Cached.has_value());
   RayGeometry(frame, self.Volume.dims); // throws for matrices that are of no use
   self.buildFor(frame.blending);
   rgba = Image(frame.width, frame.height, 4);

@@ -4,6 +4,7 @@
 #include "ComposedLight.h"
 #include "Core/Error.h"
 #include "Core/Render/PictureParts.h"
+#include "Core/Render/Scene/DrawnFrame.h"
 #include "Core/Render/Tolerance/StoragePrecision.h"
 #include "LayerExchange.h"
 #include "MapperInput.h"
@@ -24,6 +25,7 @@
 #include <chrono>
 #include <cstddef>
 #include <thread>
+#include <utility>
 
 namespace inr {
 namespace {
@@ -110,6 +112,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   if (!this->Group.all(problem.empty())) {
     return problem;
   }
+  frame = AsItIsDrawn(std::move(frame), settings.renderer.cached);
   frame.view = picture.number();
   const Job job{frame, renderer, picture};
   if (!this->draw(job)) {
@@ -145,13 +148,16 @@ std::string FramePainter::mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, v
 
 const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume)
 {
+  const bool cached = this->Caster.options().cached;
+  const Frame drawn = AsItIsDrawn(scene, cached);
   const ViewPicture* shown = this->Pictures.find(renderer, volume);
-  if (shown != nullptr && shown->depicts(this->depicted(scene, renderer, volume))) {
+  if (shown != nullptr && shown->depicts(this->depicted(drawn, renderer, volume))) {
     return *shown;
   }
   Frame rays = scene; // paths are long, and end where rays do
   rays.mode = RenderMode::RayMarching;
   rays.shading.reset();
+  rays = AsItIsDrawn(std::move(rays), cached);
   if (!this->Selected.depicts(this->depicted(rays, renderer, volume))) {
     this->Selected.begin();
     // In a group, not all may be asked; what was drawn has a part of each.
@@ -200,7 +206,9 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
   frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
   const TransferFunction& colors = this->TransferFunctions.get(property);
   RendererOptions options = settings.renderer;
-  if (frame.errorTolerance) {
+  if (!options.cached) {
+    options.cache = {}; // nor is there another renderer for another one
+  } else if (frame.errorTolerance) {
     options.cache.precision = PrecisionWithin(frame, colors, input.array->GetModel()->volume);
   }
   this->makeRenderer(*input.array, options);

@@ -4,6 +4,7 @@
 // field that is added does not compile here before it is thought of: it needs a name in FieldsOf
 // and a line in a table.
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/DrawnFrame.h"
 #include "Testing/Core/FakeAccelerator.h"
 
 #include <gtest/gtest.h>
@@ -171,6 +172,68 @@ TEST(Frame, MakesAnotherPictureWithAnotherValueOfAnyFieldThatCounts)
       {"opaqueDepth", [copy = Depth](Frame& frame) { frame.opaqueDepth = copy.data(); }, false},
       {"layers", [](Frame& frame) { frame.layers = Layers(0.5f); }, false}};
   ExpectDifferent(Full(), table, inr::IsSamePicture);
+}
+
+/// Which fields of a frame of a kind make another picture.
+std::set<std::string> FieldsThatCount(const inr::Frame& kind, bool cached)
+{
+  const Table<inr::Frame> table = {
+      {"shading", [](inr::Frame& frame) { frame.shading->diffuse = 0.25f; }},
+      {"lights", [](inr::Frame& frame) { frame.lights[0].color.x = 0.5f; }},
+      {"paths", [](inr::Frame& frame) { frame.paths.anisotropy = 0.5; }},
+      {"unitDistance", [](inr::Frame& frame) { frame.unitDistance = 2; }},
+      {"sampleDistance", [](inr::Frame& frame) { frame.sampleDistance = 2; }},
+      {"adaptiveSampling", [](inr::Frame& frame) { frame.adaptiveSampling = false; }},
+      {"preIntegration", [](inr::Frame& frame) { frame.preIntegration = true; }},
+      {"levelOfDetailScale", [](inr::Frame& frame) { frame.levelOfDetailScale = 2; }},
+      {"errorTolerance", [](inr::Frame& frame) { frame.errorTolerance = 2; }},
+      {"seed", [](inr::Frame& frame) { frame.seed = 1; }}};
+  std::set<std::string> fields;
+  for (const Change<inr::Frame>& change : table) {
+    inr::Frame other = kind;
+    change.make(other);
+    if (!IsSamePicture(AsItIsDrawn(kind, cached), AsItIsDrawn(other, cached))) {
+      fields.insert(change.field);
+    }
+  }
+  return fields;
+}
+
+TEST(DrawnFrame, DependsOnNothingThatItsPictureDoesNot)
+{
+  using Fields = std::set<std::string>;
+  inr::Frame frame = Full();
+  frame.errorTolerance.reset();
+  EXPECT_EQ(FieldsThatCount(frame, true),
+            Fields({"shading", "lights", "unitDistance", "sampleDistance", "adaptiveSampling",
+                    "preIntegration", "levelOfDetailScale", "errorTolerance", "seed"}));
+  EXPECT_EQ(FieldsThatCount(frame, false),
+            Fields({"shading", "lights", "unitDistance", "sampleDistance", "adaptiveSampling",
+                    "preIntegration", "seed"}));
+  const Fields always{"sampleDistance", "levelOfDetailScale", "errorTolerance", "seed"};
+  Fields fields = always;
+  for (const auto mode : {inr::BlendMode::MaximumIntensity, inr::BlendMode::MinimumIntensity}) {
+    frame.blending.mode = mode;
+    EXPECT_EQ(FieldsThatCount(frame, true), always);
+  }
+  fields.insert("unitDistance");
+  for (const auto mode : {inr::BlendMode::AverageIntensity, inr::BlendMode::Additive}) {
+    frame.blending.mode = mode;
+    EXPECT_EQ(FieldsThatCount(frame, true), fields);
+  }
+  fields = always;
+  fields.insert({"shading", "lights"});
+  frame.blending.mode = inr::BlendMode::Isosurface;
+  EXPECT_EQ(FieldsThatCount(frame, true), fields);
+  frame.blending = {};
+  frame.mode = inr::RenderMode::PathTracing;
+  EXPECT_EQ(FieldsThatCount(frame, true), Fields({"lights", "paths", "unitDistance",
+                                                  "levelOfDetailScale", "errorTolerance", "seed"}));
+  frame.mode = inr::RenderMode::RayMarching;
+  frame.shading.reset();
+  inr::Frame dark = frame;
+  dark.lights.clear();
+  EXPECT_TRUE(IsSamePicture(AsItIsDrawn(frame, true), AsItIsDrawn(dark, true)));
 }
 
 TEST(Frame, CanBeAsItWasWithoutAnyOfWhatIsOptional) { EXPECT_TRUE(inr::IsSamePicture({}, {})); }
