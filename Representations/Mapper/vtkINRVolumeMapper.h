@@ -43,7 +43,7 @@
  * there; it is the same whatever the size of the cache. When the render window asks for more than
  * 0.1 frames per second, a frame takes what the cache has, coarser levels where the wanted ones are
  * missing, and decodes more in the time that is left; and if even that is too slow, the picture is
- * computed at a half to a sixteenth of the window's resolution and stretched.
+ * computed at a half to a 64th of the window's width and height and stretched.
  *
  * Hardware selection finds the cells of the input where the opacity along a ray reaches one half
  * or, where it never does, half way through; no points. It looks at the picture that was drawn or,
@@ -195,7 +195,8 @@ public:
   ///@{
   /**
    * Distance between samples in voxels, along the axis in which the voxels are densest. Smaller is
-   * slower and closer to the integral. Interactive pictures have twice that. Default 0.5.
+   * slower and closer to the integral. Interactive pictures have twice that. Path tracing has no
+   * such samples. Default 0.5.
    */
   vtkSetClampMacro(SampleDistance, double, 0.01, 100.0);
   vtkGetMacro(SampleDistance, double);
@@ -203,7 +204,8 @@ public:
 
   ///@{
   /**
-   * Whether samples where little can be seen stand for up to four sample distances. Default on.
+   * Whether samples where little can be seen stand for up to four sample distances, in composited,
+   * ray-marched pictures. Default on.
    */
   vtkSetMacro(AdaptiveSampling, bool);
   vtkGetMacro(AdaptiveSampling, bool);
@@ -385,7 +387,11 @@ public:
   ///@}
 
   ///@{
-  /** Seed of the samples' random offsets along their rays, and of paths. Default 0. */
+  /**
+   * Seed of the samples' random offsets along their rays, and of paths. Where samples have none
+   * (maxima, minima, isosurfaces and PreIntegration), it chooses between two levels of resolution
+   * where one passes into the next. Default 0.
+   */
   vtkSetClampMacro(Seed, int, 0, VTK_INT_MAX);
   vtkGetMacro(Seed, int);
   ///@}
@@ -406,9 +412,10 @@ public:
 
   ///@{
   /**
-   * About the last frame drawn; 0 before the first: seconds from the call to the drawn picture,
-   * samples looked up or inferred, samples that lay outside their macro-cell's range and were moved
-   * into it, and how many times smaller than the viewport the picture's width and height were.
+   * About the last frame drawn, of several views the one that came last; 0 before the first:
+   * seconds from the call to the drawn picture, samples looked up or inferred, samples that lay
+   * outside their macro-cell's range and were moved into it, and how many times smaller than the
+   * viewport the picture's width and height were.
    */
   double GetFrameTime() const;
   vtkIdType GetNumberOfSamples() const;
