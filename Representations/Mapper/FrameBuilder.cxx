@@ -76,6 +76,19 @@ bool DrawsOpaque(vtkProp* prop)
          !vtkActor2D::SafeDownCast(prop) && prop->HasOpaqueGeometry();
 }
 
+template <class Test> bool AnyProp(vtkRenderer* renderer, const Test& test)
+{
+  vtkCollectionSimpleIterator iterator;
+  vtkPropCollection* props = renderer->GetViewProps();
+  props->InitTraversal(iterator);
+  while (vtkProp* prop = props->GetNextProp(iterator)) {
+    if (test(prop)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 } // namespace
 
 Viewport GetViewport(vtkRenderer* renderer)
@@ -243,18 +256,12 @@ bool IsPiece(const PresentedGrid& grid)
 
 bool MayHaveOpaqueDepth(vtkRenderer* renderer)
 {
-  if (renderer->GetPreserveDepthBuffer()) {
-    return true;
-  }
-  vtkCollectionSimpleIterator iterator;
-  vtkPropCollection* props = renderer->GetViewProps();
-  props->InitTraversal(iterator);
-  while (vtkProp* prop = props->GetNextProp(iterator)) {
-    if (DrawsOpaque(prop)) {
-      return true;
-    }
-  }
-  return false;
+  return renderer->GetPreserveDepthBuffer() || AnyProp(renderer, DrawsOpaque);
+}
+
+bool MayHideByWhatIsNotPicked(vtkRenderer* renderer)
+{
+  return AnyProp(renderer, [](vtkProp* prop) { return !prop->GetPickable() && DrawsOpaque(prop); });
 }
 
 std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewport)

@@ -79,6 +79,10 @@ bool IsPiece(const PresentedGrid& grid);
 /// overlays have none), or an earlier layer's depth that the renderer keeps.
 bool MayHaveOpaqueDepth(vtkRenderer* renderer);
 
+/// Whether something in front of a volume, or in its midst, can be one that nobody selects, such as
+/// the highlight of an earlier selection.
+bool MayHideByWhatIsNotPicked(vtkRenderer* renderer);
+
 /// Window-space depth of the viewport, row 0 at the bottom, multisampling resolved; empty when VTK
 /// cannot read it. The render window must be current.
 std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewport);

@@ -151,7 +151,9 @@ const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer,
   const bool cached = this->Caster.options().cached;
   const Frame drawn = AsItIsDrawn(scene, cached);
   const ViewPicture* shown = this->Pictures.find(renderer, volume);
-  if (shown != nullptr && shown->depicts(this->depicted(drawn, renderer, volume))) {
+  // A group has no other picture; else what a selector does not draw hides nothing from it.
+  const bool isUsable = !this->Group.isAlone() || !MayHideByWhatIsNotPicked(renderer);
+  if (isUsable && shown && shown->depicts(this->depicted(drawn, renderer, volume))) {
     return *shown;
   }
   Frame rays = scene; // paths are long, and end where rays do

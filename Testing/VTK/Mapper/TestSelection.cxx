@@ -2,6 +2,7 @@
 // What a hardware selector finds of a volume, whether or not the scene was drawn since it changed.
 #include "OneVolume.h"
 
+#include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
@@ -67,12 +68,14 @@ struct Change
 };
 
 /// A cube that hides part of the volume.
-void AddBefore(OneVolume& one)
+vtkActor* AddBefore(OneVolume& one)
 {
   const double* center = one.volume->GetCenter();
   const double* eye = one.renderer->GetActiveCamera()->GetPosition();
-  one.addCube()->SetPosition(0.5 * (eye[0] - center[0]), 0.5 * (eye[1] - center[1]),
-                             0.5 * (eye[2] - center[2]));
+  vtkActor* const cube = one.addCube();
+  cube->SetPosition(0.5 * (eye[0] - center[0]), 0.5 * (eye[1] - center[1]),
+                    0.5 * (eye[2] - center[2]));
+  return cube;
 }
 
 std::vector<Change> Changes()
@@ -113,6 +116,22 @@ TEST(Selection, IsOfTheSceneAsItIs)
       before = cells;
     }
   }
+}
+
+/// The highlight of what was selected before is such a thing.
+TEST(Selection, SeesThroughWhatIsNotPicked)
+{
+  OneVolume free;
+  OneVolume hidden;
+  AddBefore(hidden);
+  OneVolume highlit;
+  AddBefore(highlit)->PickableOff();
+  for (OneVolume* one : {&free, &hidden, &highlit}) {
+    one->scene.window->Render();
+  }
+  const Cells cells = Select(free);
+  EXPECT_NE(Select(hidden), cells);
+  EXPECT_EQ(Select(highlit), cells);
 }
 
 TEST(Selection, IsOfEachViewport)
