@@ -70,7 +70,7 @@ void Check(const Blending& blending, RenderMode mode)
 
 void Check(const Cropping& cropping, RenderMode mode)
 {
-  Require(!glm::any(glm::isnan(cropping.low + cropping.high)),
+  Require(!glm::any(glm::isnan(cropping.low)) && !glm::any(glm::isnan(cropping.high)),
           "cropping planes must be at numbers");
   Require(mode == RenderMode::RayMarching || BoxOf(cropping).full,
           "paths can be cropped to a box of regions only");

@@ -153,6 +153,9 @@ TEST_P(CroppingRegions, LeaveOutWhatIsCropped)
   EXPECT_LT(2 * renderer.render(FrameOf(scene, 0x0417410), image).samples, all);
   EXPECT_EQ(renderer.render(FrameOf(scene, 0), image).samples, 0);
   inr::Frame frame = FrameOf(scene, 0x0002000);
+  frame.cropping->low.x = -std::numeric_limits<double>::infinity(); // no plane at all
+  frame.cropping->high.x = std::numeric_limits<double>::infinity();
+  EXPECT_GT(renderer.render(frame, image).samples, 0);
   frame.cropping->low.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(Render(renderer, frame), inr::Error);
 }
