@@ -31,7 +31,8 @@ void Check(const TransferFunction& function)
           "a logarithmic transfer function needs a positive range");
   require(IsColour(function.below) && IsColour(function.above) &&
               std::all_of(function.table.begin(), function.table.end(), IsColour),
-          "a transfer function's colours must be finite and its opacities in [0, 1]");
+          "a transfer function's colours must be finite and its opacities in [0, 1]; on a "
+          "logarithmic scale, none of its points may be at 0 or below");
 }
 
 float ExtinctionOf(const glm::vec4& entry) { return -std::log1p(-entry.w); }
