@@ -91,12 +91,17 @@ fi
 
 # Core alone, as on a machine without VTK and by another compiler, under the sanitizers; without the long
 # training runs, all but one of the scenes that are hard on a tolerance and of the sizes that stand in for
-# finer ones, and what waits for a small cache in two ways at once elsewhere: they execute the same lines
-# over and over again. Of a GPU's own there are none in this build.
+# finer ones, what waits for a small cache in two ways at once elsewhere, and the longest of suites whose
+# other tests go the same ways: they execute the same lines over and over again. Of a GPU's own there are
+# none in this build.
 repeated='^(Trainer|Examples|TargetRatio|Divergence|WarmStart|Resume|RandomTolerances)\.|StatedErrors'
 repeated+='|IsAsGoodAsTrainingFromMemory|MakesTheDefaultModelFit|GivesAllTheSameModelEveryTime'
 repeated+='|HardToKeepTo\.ATolerance/[^N]|StandInForFinerOnes/[023]'
 repeated+='|SmallestCache/Host(Lit|Layered|Surfaces|Paths|Integrated|LitLayered|LayeredPaths|LayeredSurfaces)$|/Gpu'
+repeated+='|^KeptTiles\.(AreAsIfAll|EndWith|AreSoInAllModes)|WatchedDrawing\.(IsProven|KeepsToItsTimeInWindows)'
+repeated+='|OverfullDrawing\.GoesOn(Behind|InTime)|Drawing\.ComesToTheSamePictureInTime|DrawingByTolerance\.(Gives|Comes|Follows)'
+repeated+='|ErrorTolerance\.(DrawsTheSame|IsForTheColours)|^BFloat16\.(IsTheSameOnLattices|ValuesDoNotDepend)'
+repeated+='|^KeptSurvey\.(SparesAGroup|IsReadAgain|IsOfNoOther)|^UnfinishedDrawing\.ShowsWhatIsThere'
 build asan && run_tests build-asan -L 'core|fuzz' -E "$repeated" "$@"
 
 [ "$skipped" -eq 0 ] || echo "== $skipped skipped, as their output says why"
