@@ -76,6 +76,7 @@ void BrickLoader::giveUp()
   this->Finished.clear();
   this->Spare.clear();
   this->Room = this->holding();
+  this->Ready.notify_all(); // who waits may have nothing to wait for any more
 }
 
 void BrickLoader::start()
@@ -274,6 +275,7 @@ void BrickLoader::request(const std::vector<BrickPart>& parts)
                  [this](const BrickPart& part) { return !this->isAtHand(part.key); });
   }
   this->Wake.notify_all();
+  this->Ready.notify_all(); // as for giveUp
   if (!parts.empty() && this->Threads.empty()) {
     this->start();
   }

@@ -21,8 +21,9 @@ namespace inr {
 /// Its threads work layer by layer, all of them on the first bricks that were asked for, at a low
 /// priority, and not at all while it is paused: so pausing and ending it take the time of one layer
 /// at most. Bricks of a source that infers several at once are begun together, and one call of that
-/// source takes the place of the layer. It is made paused. Its functions are for one thread at a
-/// time, but for pause, resume and requests of nothing.
+/// source takes the place of the layer. It is made paused. What requests bricks, waits for them and
+/// receives them is one thread at a time; others may pause it, ask what it holds, and take from it
+/// what is wanted.
 class BrickLoader
 {
 public:

@@ -18,7 +18,7 @@ namespace inr {
 /// A cache of bricks with what fills it: threads that wait for bricks, or a loader behind them.
 ///
 /// Several renderers may have the same one, on several threads. They take turns: all but
-/// capacity(), mapped() and budget() is for who has a Call.
+/// capacity(), mapped(), budget() and forgetRequests() is for who has a Call.
 class BrickStore
 {
 public:

@@ -76,6 +76,7 @@ const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double ste
 {
   const int lengths = SampleLengths(this->Store->cache().hierarchy().levels());
   if (!this->Steps || !this->Steps->fits(stepLength, lengths)) {
+    this->Unfinished.reset(); // it reads the former ones
     this->Steps.emplace(colors, stepLength, lengths);
   }
   return this->Steps->lookup();
@@ -155,15 +156,16 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
                                        const std::function<bool()>& keepGoing)
 {
   this->Work = {};
-  if (this->Unfinished && limit.isLimited() && this->Unfinished->continues(frame, output)) {
+  std::optional<Refinement>& unfinished = this->Unfinished.of(frame.view);
+  if (unfinished && limit.isLimited() && unfinished->continues(frame, output)) {
     try {
-      return this->refine(limit, output, keepGoing);
+      return this->refine(*unfinished, limit, output, keepGoing);
     } catch (const std::bad_alloc&) { // in the midst of its rays: nobody knows how far they are
-      this->Unfinished.reset();
+      unfinished.reset();
       throw;
     }
   }
-  this->Unfinished.reset(); // before the table that it reads may change
+  unfinished.reset();
   const ColorLookup& lookup = colors.lookup();
   const StepLookup& steps = this->stepsFor(lookup, settings.step * settings.unitsPerT);
   const BrickCache& cache = this->Store->cache();
@@ -294,7 +296,7 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Wor
     const std::int64_t room = this->room();
     const bool fits = !contested && requests.count() <= room;
     if (!fits) { // should the same be asked for again
-      this->Unfinished.emplace(scene, output);
+      this->Unfinished.of(scene.frame.view).emplace(scene, output);
     }
     const std::int64_t most = std::min<std::int64_t>(room, this->Options.maximumRequests);
     this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking), limit,
@@ -337,14 +339,15 @@ FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const W
   }
 }
 
-FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput& output,
+FrameStatistics CachedRenderer::refine(Refinement& unfinished, const WorkLimit& limit,
+                                       const PassOutput& output,
                                        const std::function<bool()>& keepGoing)
 {
   const std::int64_t most = limit.isTimed() ? this->Store->cache().capacity() - 1
                                             : std::int64_t{this->Options.maximumRequests};
   double marching = 0;
   // What is loaded here may be gone at the next call, so each one brings some ray further.
-  const std::int64_t before = CamePast(this->Unfinished->statistics());
+  const std::int64_t before = CamePast(unfinished.statistics());
   const auto inTime = [&] { return !limit.endsWithin(0); };
   const std::function<bool()>& mayLoad =
       limit.isTimed() ? std::function<bool()>(inTime) : keepGoing;
@@ -352,17 +355,16 @@ FrameStatistics CachedRenderer::refine(const WorkLimit& limit, const PassOutput&
     const Timer march;
     this->beginFrame();
     RequestRanking requests;
-    this->Work.add(this->Unfinished->advance(this->Threads, keepGoing, requests));
+    this->Work.add(unfinished.advance(this->Threads, keepGoing, requests));
     marching += march.seconds();
-    if (this->Unfinished->done() ||
-        (!inTime() && CamePast(this->Unfinished->statistics()) > before)) {
+    if (unfinished.done() || (!inTime() && CamePast(unfinished.statistics()) > before)) {
       break;
     }
-    this->loadForPass(this->Unfinished->pass(), requests, most, mayLoad);
+    this->loadForPass(unfinished.pass(), requests, most, mayLoad);
   }
-  this->Unfinished->copyTo(output);
-  FrameStatistics statistics = this->Unfinished->statistics();
-  statistics.complete = this->Unfinished->done();
+  unfinished.copyTo(output);
+  FrameStatistics statistics = unfinished.statistics();
+  statistics.complete = unfinished.done();
   statistics.marchSeconds = marching;
   statistics.work = this->Work;
   return statistics;

@@ -10,6 +10,7 @@
 #include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Paths/PathShortage.h"
 #include "Core/Render/Refinement.h"
+#include "Core/Render/Scene/PerView.h"
 
 #include <functional>
 #include <memory>
@@ -116,7 +117,7 @@ private:
   /// Those tiles that are due, as far as the bricks are there.
   FrameStatistics march(const CachedScene& scene, MarchedTiles& tiles, const PassOutput& output,
                         const std::function<bool()>& keepGoing, RequestRanking& requests);
-  FrameStatistics refine(const WorkLimit& limit, const PassOutput& output,
+  FrameStatistics refine(Refinement& unfinished, const WorkLimit& limit, const PassOutput& output,
                          const std::function<bool()>& keepGoing);
   /// At most so many bricks.
   void loadForPass(CompletePass& pass, const RequestRanking& requests, std::int64_t most,
@@ -145,8 +146,8 @@ private:
   bool LoadsWhole = false;                ///< as it will look at more later
   /// The latest frame, where it lacks bricks that the cache has room for.
   std::unique_ptr<KeptPicture> Kept;
-  /// Of the latest frame, when the cache cannot hold, or keep for it, what it wants.
-  std::optional<Refinement> Unfinished;
+  /// Pictures of which the cache cannot hold, or keep for them, what they want.
+  PerView<std::optional<Refinement>> Unfinished;
   PathShortage Shortage; ///< of the latest path-traced picture
 };
 

@@ -90,7 +90,7 @@ Renderer::Implementation::marchElsewhere(const Frame& frame, MarchWay& way, cons
 FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOutput& output,
                                                 const std::function<bool()>& keepGoing)
 {
-  this->Paths.reset();
+  this->Paths.forget(frame.view);
   MarchWay way = this->wayOf(frame);
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
   if (this->isDrawnElsewhere(frame, keepGoing)) {

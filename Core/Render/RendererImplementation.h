@@ -5,8 +5,9 @@
 #include "Core/Render/AcceleratedFrames.h"
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Marching/PreIntegratedColors.h"
-#include "Core/Render/Paths/PathPictures.h"
+#include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/PerView.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 #include "Core/Render/Tolerance/LevelChooser.h"
 
@@ -115,7 +116,7 @@ struct Renderer::Implementation
   std::vector<float> Surfaces;            ///< of these pictures
   std::optional<CachedRenderer> Cached;   ///< where there is to be a cache
   std::optional<AcceleratedFrames> Drawn; ///< where there is an accelerator
-  PathPictures Paths;                     ///< while paths are traced
+  PerView<PathPicture> Paths;             ///< while paths are traced: 64 bytes a pixel each
   std::optional<LevelChooser> Levels;     ///< once a frame had a tolerance
   std::int64_t MajorantBuilds = 0;
 };

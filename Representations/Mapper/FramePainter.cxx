@@ -81,6 +81,22 @@ bool IsInteractive(vtkRenderWindow* window)
   return window->GetDesiredUpdateRate() >= ImageReduction::StillRate;
 }
 
+/// Seconds for a picture, or for what a click selects of one; 0: as many as it takes.
+double TimeLimit(vtkRenderer* renderer, double stillTimeLimit)
+{
+  constexpr double glance = 0.5; // what a user waits for without noticing
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  if (IsInteractive(window)) {
+    return glance / window->GetDesiredUpdateRate();
+  }
+  const bool isLimited = renderer->GetSelector() ? RefinementTimer::isWatched(window)
+                                                 : RefinementTimer::canRefine(window);
+  if (!isLimited) {
+    return 0;
+  }
+  return stillTimeLimit >= 0 ? stillTimeLimit : glance; // no number is no wish
+}
+
 /// Whether it can become no better.
 bool IsFinal(const FrameStatistics& statistics)
 {
@@ -92,8 +108,8 @@ bool IsFinal(const FrameStatistics& statistics)
 FramePainter::FramePainter(const std::function<bool()>& mayRefine)
     : Refine([this, mayRefine] {
         const bool refines = mayRefine();
-        if (refines) { // each view that is drawn asks for itself again
-          this->Pictures.clearRequests();
+        if (refines) {
+          this->Pictures.answerRequests();
         }
         return refines;
       })
@@ -114,6 +130,11 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   }
   frame = AsItIsDrawn(std::move(frame), settings.renderer.cached);
   frame.view = picture.number();
+  if ((picture.requested || picture.goesOn) && !IsInteractive(renderer->GetRenderWindow())) {
+    // Nobody waits for what follows the first look; the application's events do.
+    constexpr double piece = 0.1;
+    frame.timeLimit = std::min(frame.timeLimit, piece);
+  }
   const Job job{frame, renderer, picture};
   if (!this->draw(job)) {
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
@@ -158,6 +179,7 @@ const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer,
   }
   Frame rays = scene; // paths are long, and end where rays do
   rays.mode = RenderMode::RayMarching;
+  rays.view = -1; // nobody's: those that are in the making go on
   rays.shading.reset();
   rays = AsItIsDrawn(std::move(rays), cached);
   if (!this->Selected.depicts(this->depicted(rays, renderer, volume))) {
@@ -216,9 +238,8 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
   this->makeRenderer(*input.array, options);
   this->Caster->setTransferFunction(colors);
   this->CountSamples = settings.countSamples;
-  vtkRenderWindow* window = renderer->GetRenderWindow();
-  frame.sampleDistance *= IsInteractive(window) ? 2 : 1;
-  frame.timeLimit = this->timeLimit(window, settings.stillTimeLimit);
+  frame.sampleDistance *= IsInteractive(renderer->GetRenderWindow()) ? 2 : 1;
+  frame.timeLimit = TimeLimit(renderer, settings.stillTimeLimit);
   return {};
 }
 
@@ -237,21 +258,6 @@ void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOpti
   }
 }
 
-double FramePainter::timeLimit(vtkRenderWindow* window, double stillTimeLimit) const
-{
-  constexpr double glance = 0.5; // what a user waits for without noticing
-  if (IsInteractive(window)) {
-    return glance / window->GetDesiredUpdateRate();
-  }
-  if (!RefinementTimer::canRefine(window)) {
-    return 0;
-  }
-  const double limit = stillTimeLimit >= 0 ? stillTimeLimit : glance; // no number is no wish
-  // Nobody waits for what follows the first look; the application's events do.
-  constexpr double piece = 0.1;
-  return this->Refine.isPending() ? std::min(limit, piece) : limit;
-}
-
 void FramePainter::refineLater(const Job& job)
 {
   vtkRenderWindow* window = job.renderer->GetRenderWindow();
@@ -263,6 +269,7 @@ void FramePainter::refineLater(const Job& job)
     return; // captured; what is on the screen goes on afterwards
   }
   const PaintedFrame& last = job.picture.last();
+  job.picture.goesOn = false;
   job.picture.requested = !last.rgba.pixels.empty() && !last.statistics.complete;
   if (!this->Pictures.anyRequested()) {
     this->Refine.cancel();

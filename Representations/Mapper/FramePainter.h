@@ -93,7 +93,6 @@ private:
   /// A picture that is not shown; whether it was made.
   bool drawUnseen(const Job& job);
   DepictedScene depicted(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume) const;
-  double timeLimit(vtkRenderWindow* window, double stillTimeLimit) const;
   /// Sees to it that an unfinished still picture goes on.
   void refineLater(const Job& job);
 

@@ -6,6 +6,7 @@
 #include <vtkVolume.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace inr {
 
@@ -65,14 +66,15 @@ void PictureStore::outdate()
 
 bool PictureStore::anyRequested() const
 {
-  return std::any_of(this->Views.begin(), this->Views.end(),
-                     [](const View& view) { return view.picture.requested; });
+  return std::any_of(this->Views.begin(), this->Views.end(), [](const View& view) {
+    return view.picture.requested || view.picture.goesOn;
+  });
 }
 
-void PictureStore::clearRequests()
+void PictureStore::answerRequests()
 {
   for (View& view : this->Views) {
-    view.picture.requested = false;
+    view.picture.goesOn = std::exchange(view.picture.requested, false);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Paths/PathPictures.h"
+#include "Core/Render/Scene/PerView.h"
 #include "ViewPicture.h"
 
 #include <vtkWeakPointer.h>
@@ -21,7 +21,7 @@ public:
   PictureStore() { this->Views.emplace_front(0); } // nobody's
 
   /// Views that each go on with their picture: no more than the renderer knows.
-  static constexpr int Most = static_cast<int>(PathPictures::Most);
+  static constexpr int Most = static_cast<int>(PerView<ViewPicture>::Most);
 
   /// That of a volume as a renderer shows it to the eye for which its camera looks; from now on the
   /// latest. Of more than Most, that of the view that was not drawn for longest makes room.
@@ -33,10 +33,10 @@ public:
   /// None is to be shown again.
   void outdate();
 
-  /// Whether any asks for its window to be drawn again.
+  /// Whether any has asked for its window to be drawn again, and was not drawn since.
   bool anyRequested() const;
-  /// For when that is done.
-  void clearRequests();
+  /// For when that is done: each that is drawn asks for itself again.
+  void answerRequests();
 
 private:
   struct View

@@ -21,11 +21,15 @@ RefinementTimer::RefinementTimer(std::function<bool()> mayRefine) : MayRefine(st
   this->Command->SetCallback(&RefinementTimer::OnEvent);
 }
 
-bool RefinementTimer::canRefine(vtkRenderWindow* window)
+bool RefinementTimer::isWatched(vtkRenderWindow* window)
 {
   vtkRenderWindowInteractor* interactor = window->GetInteractor();
-  return interactor && interactor->GetInitialized() && !window->GetOffScreenRendering() &&
-         window->GetSwapBuffers();
+  return interactor && interactor->GetInitialized() && !window->GetOffScreenRendering();
+}
+
+bool RefinementTimer::canRefine(vtkRenderWindow* window)
+{
+  return isWatched(window) && window->GetSwapBuffers();
 }
 
 void RefinementTimer::request(vtkRenderWindow* window, double pause)

@@ -25,13 +25,13 @@ public:
   RefinementTimer(const RefinementTimer&) = delete;
   RefinementTimer& operator=(const RefinementTimer&) = delete;
 
-  /// Whether `window` belongs to an application that can be asked. False while the picture is being
-  /// captured: a screenshot has no later.
+  /// Whether `window` is on the screen and belongs to an application, which somebody may wait for.
+  static bool isWatched(vtkRenderWindow* window);
+  /// Whether that can be asked. False while the picture is being captured: a screenshot has no
+  /// later.
   static bool canRefine(vtkRenderWindow* window);
   /// One more picture in `pause` seconds, instead of one that was asked for before.
   void request(vtkRenderWindow* window, double pause);
-  /// Whether a picture is asked for, or being made because it was.
-  bool isPending() const { return this->Pending; }
   /// If one is asked for, not before somebody has stopped to ask for interactive ones.
   void postpone();
   void cancel();
@@ -46,7 +46,7 @@ private:
   std::function<bool()> MayRefine;
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
   vtkNew<vtkCallbackCommand> Command;
-  bool Pending = false;
+  bool Pending = false;     ///< a picture is asked for, or being made because it was
   bool Interacting = false; ///< a mouse button is down, whether the mouse moves or not
   int Timer = 0;
   int Fired = 0; ///< the timer before

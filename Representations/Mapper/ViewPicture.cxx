@@ -32,7 +32,9 @@ void ViewPicture::finish(const Frame& frame, bool countsSamples, std::int64_t co
 
 void ViewPicture::depict(const DepictedScene& scene)
 {
-  this->Scene.emplace(scene.frame, false, scene.colors);
+  Frame frame = scene.frame;
+  frame.timeLimit = 0; // how long it may take is nothing that it shows
+  this->Scene.emplace(frame, false, scene.colors);
   this->Surroundings = scene.surroundings;
 }
 

@@ -61,7 +61,9 @@ public:
   /// For when everything has changed: it is a picture of nothing that there is.
   void outdate();
 
-  bool requested = false; ///< that the window be drawn again, to go on with this picture
+  /// That the window be drawn again, to go on with this picture; and that this is being done.
+  bool requested = false;
+  bool goesOn = false;
 
 private:
   int Number;

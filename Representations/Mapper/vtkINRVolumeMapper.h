@@ -47,7 +47,11 @@
  *
  * Hardware selection finds the cells of the input where the opacity along a ray reaches one half
  * or, where it never does, half way through; no points. It looks at the picture that was drawn or,
- * where the scene has changed since, at one that it makes by ray marching.
+ * where the scene has changed since, at one that it makes by ray marching, in the time that a still
+ * picture has.
+ *
+ * Up to eight viewports, or eyes, go on with a picture of each by turns; of more, those of paths
+ * begin anew each time. Of several windows the one that was drawn last is refined.
  *
  * Drawn by path tracing, the same medium scatters light: that of the renderer's lights
  * (directional, positional, spots, headlights and camera lights, with colour, intensity and

@@ -23,6 +23,7 @@ void ForRays(Frame& frame)
     frame.lights.clear();
   }
   if (mode == BlendMode::MaximumIntensity || mode == BlendMode::MinimumIntensity ||
+      mode == BlendMode::AverageIntensity ||
       mode == BlendMode::Isosurface) { // of single values, whose opacity is for no length
     frame.unitDistance = Frame().unitDistance;
   }

@@ -5,8 +5,9 @@
 
 namespace inr {
 
-/// The frame as it is drawn, through a cache or not: whatever such a picture does not depend on is
-/// the same in all of them, so that two frames are the same if their pictures are.
+/// The frame as it is drawn, through a cache or not. What such a picture does not depend on is the
+/// same in all of them, as far as that can be told from the frame: a tolerance that a picture is
+/// drawn without still tells two of them apart.
 Frame AsItIsDrawn(Frame frame, bool cached);
 
 } // namespace inr

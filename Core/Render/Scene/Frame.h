@@ -68,9 +68,9 @@ struct Frame
   RenderMode mode = RenderMode::RayMarching;
   Blending blending; ///< for ray marching; paths know compositing only
   PathOptions paths; ///< for path tracing
-  /// Which of the host's views it is for: paths that a time limit leaves out go on when the same
-  /// picture is asked for again for that view, whatever was drawn for a few others in between (see
-  /// PathPictures). Any number; the picture does not depend on it.
+  /// Which of the host's views it is for: a picture that a time limit leaves unfinished goes on
+  /// when the same is asked for again for that view, whatever was drawn for a few others in between
+  /// (see PerView). Any number; the picture does not depend on it.
   int view = 0;
   /// Of path tracing: the picture is the mean of so many paths through each pixel, above 0; with a
   /// time limit, of those that were traced in time.

@@ -101,6 +101,26 @@ template <typename Condition> bool Soon(const Condition& condition)
   return condition();
 }
 
+/// Another renderer of the same field may go at any time.
+TEST_F(BrickLoaderTest, DoesNotWaitForWhatSomebodyElseHasTakenBack)
+{
+  inr::BrickLoader loader(this->Source, 1, 100);
+  std::atomic<bool> done{false};
+  std::thread other([&] {
+    while (!done) {
+      loader.request({});
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+    }
+  });
+  for (int k = 0; k < 3000; ++k) {
+    loader.request(Whole(Bricks(0, 8)));
+    loader.loadFor(1e-4);
+    Receive(loader);
+  }
+  done = true;
+  other.join();
+}
+
 TEST_P(BrickLoaderTest, LoadsWhatIsRequested)
 {
   inr::BrickLoader loader(this->Source, GetParam(), 100);

@@ -2,7 +2,8 @@
 //
 // Path tracing through the Renderer: with and without a cache, in parts, against what is known.
 #include "Core/Error.h"
-#include "Core/Render/Paths/PathPictures.h"
+#include "Core/Render/Paths/PathPicture.h"
+#include "Core/Render/Scene/PerView.h"
 #include "Testing/Core/Render/PathScene.h"
 
 #include <atomic>
@@ -357,7 +358,7 @@ std::vector<inr::Frame> Sides(std::size_t count)
 
 TEST(PathPicture, GoesOnForEachViewByTurns)
 {
-  const std::vector<inr::Frame> frames = Sides(inr::PathPictures::Most);
+  const std::vector<inr::Frame> frames = Sides(inr::PerView<inr::PathPicture>::Most);
   for (const bool cached : {false, true}) {
     inr::Renderer renderer = MakeRenderer(cached);
     std::vector<inr::Image> images;
@@ -369,10 +370,30 @@ TEST(PathPicture, GoesOnForEachViewByTurns)
   }
 }
 
-TEST(PathPictures, KeepThoseOfTheViewsThatWereDrawnLast)
+/// As what a selection looks at.
+TEST(PathPicture, GoesOnWhenRaysWereMarchedForAnotherView)
 {
-  inr::PathPictures pictures;
-  const int most = inr::PathPictures::Most;
+  inr::Renderer renderer = MakeRenderer(true);
+  inr::Frame frame = LitFrame();
+  frame.samplesPerPixel = 1000;
+  frame.timeLimit = 1e-9;
+  inr::Image image;
+  std::int64_t paths = 0;
+  while (paths < 2) {
+    paths = renderer.render(frame, image).paths;
+  }
+  inr::Frame rays = frame;
+  rays.mode = inr::RenderMode::RayMarching;
+  rays.view = -1;
+  inr::Image other;
+  renderer.render(rays, other);
+  EXPECT_GE(renderer.render(frame, image).paths, paths);
+}
+
+TEST(PerView, KeepsThoseOfTheViewsThatWereDrawnLast)
+{
+  inr::PerView<inr::PathPicture> pictures;
+  const int most = inr::PerView<inr::PathPicture>::Most;
   std::vector<const inr::PathPicture*> first;
   for (int view = 0; view < most; ++view) {
     first.push_back(&pictures.of(view));

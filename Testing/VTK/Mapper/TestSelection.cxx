@@ -9,6 +9,7 @@
 #include <vtkHardwareSelector.h>
 #include <vtkInformation.h>
 #include <vtkPiecewiseFunction.h>
+#include <vtkRenderWindowInteractor.h>
 #include <vtkSelection.h>
 #include <vtkSelectionNode.h>
 #include <vtkVolumeProperty.h>
@@ -174,6 +175,21 @@ TEST(Selection, LooksAtThePictureThatIsThere)
   const std::size_t cells = Select(one).size();
   EXPECT_GT(cells, 0);
   EXPECT_LE(cells, size[0] * size[1]);
+}
+
+/// Also in a window on the screen, whose pictures come in limited time. Where paths come to is not
+/// where rays do.
+TEST(Selection, LooksAtThePictureThatIsOnTheScreen)
+{
+  OneVolume one;
+  one.mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+  one.scene.window->SetOffScreenRendering(0);
+  vtkNew<vtkRenderWindowInteractor> interactor;
+  interactor->SetRenderWindow(one.scene.window);
+  interactor->Initialize();
+  one.scene.window->Render();
+  OneVolume marched;
+  EXPECT_NE(Select(one), Select(marched));
 }
 
 TEST(Selection, LeavesTheFrameAsItIs)

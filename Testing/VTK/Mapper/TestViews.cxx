@@ -232,6 +232,25 @@ TEST(Views, ClearUpWhateverOthersDo)
   EXPECT_TRUE(idle.clearsUp());
 }
 
+/// The window must not stand still for the time of a first look, whatever was drawn before.
+TEST(Views, GoOnInPiecesBehindOneThatIsFinished)
+{
+  IdleWindow idle;
+  AddViewports(idle.one, idle.watch, 2);
+  idle.one.renderer->GetActiveCamera()->Yaw(180); // sees nothing
+  idle.one.mapper->SetSamplesPerPixel(400);
+  idle.one.scene.window->Render();
+  idle.one.mapper->SetStillTimeLimit(60);
+  int renders = 0;
+  vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&renders);
+  count->SetCallback(
+      [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
+  idle.one.scene.window->AddObserver(vtkCommand::EndEvent, count);
+  RunUntilIdle(idle.one.scene.window, idle.interactor, [] {});
+  EXPECT_GE(renders, 3);
+}
+
 TEST(Views, ThatAreHiddenAskForNothing)
 {
   IdleWindow idle;
