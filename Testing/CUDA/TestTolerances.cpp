@@ -38,7 +38,7 @@ const inr::ModelPointer& SmoothModel()
     description.grid.baseResolution = 2;
     description.network.hiddenLayers = 1;
     const auto model = CalmModel(description);
-    const inr::LayerShape& last = inr::Layout(description).layers.back();
+    const inr::LayerShape last = inr::Layout(description).layers.back();
     float* const weights = model->parameters.data() + last.offset;
     const auto count = std::ptrdiff_t{last.rows} * last.columns;
     std::transform(weights, weights + count, weights,
