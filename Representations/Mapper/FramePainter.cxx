@@ -179,7 +179,7 @@ const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer,
   }
   Frame rays = scene; // paths are long, and end where rays do
   rays.mode = RenderMode::RayMarching;
-  rays.view = -1; // nobody's: those that are in the making go on
+  rays.view = this->Selected.number(); // no view's: what these make goes on
   rays.shading.reset();
   rays = AsItIsDrawn(std::move(rays), cached);
   if (!this->Selected.depicts(this->depicted(rays, renderer, volume))) {

@@ -107,7 +107,7 @@ private:
   TranslucentPeeler Peeler;
   RefinementTimer Refine;
   PictureStore Pictures;
-  ViewPicture Selected{0}; ///< for the latest selection, where no view shows what it is of
+  ViewPicture Selected{-1}; ///< for the latest selection, where no view shows what it is of
 };
 
 } // namespace inr

@@ -35,6 +35,9 @@ struct DepictedScene
 
 /// What a view shows of a volume. A picture that is complete is not made again while everything
 /// stays as it is: windows are drawn anew for many reasons.
+///
+/// For each picture: begin(), then showAgain() and, where that finds none, the drawing into last()
+/// and finish() if it is complete; then depict(). Of one that was not drawn, last() is empty.
 class ViewPicture
 {
 public:
