@@ -55,9 +55,10 @@ std::string Packed(const InputFile& file, const Blob& blob, std::uint32_t& check
 }
 
 // What the reader would refuse must not be written.
-std::string PackedReadably(const std::string& plain, const std::vector<std::size_t>& boundaries)
+std::string PackedReadably(const std::string& plain, const std::vector<std::size_t>& boundaries,
+                           Packing packing)
 {
-  std::string packed = Compress(plain, boundaries);
+  std::string packed = Compress(plain, boundaries, packing);
   if (!MayExpand(static_cast<std::int64_t>(packed.size()),
                  static_cast<std::int64_t>(plain.size()))) {
     throw Error(ErrorCode::InvalidModel,
@@ -149,7 +150,7 @@ std::int64_t LargestCompactRanges(std::int64_t cells)
   return CompressedBound(PlainRangeBytes(cells), 1);
 }
 
-std::string EncodeQuantised(const Model& model)
+std::string EncodeQuantised(const Model& model, Packing packing)
 {
   const std::vector<ParameterGroup> groups = ParameterGroups(model.description);
   if (model.steps.size() != groups.size() ||
@@ -166,7 +167,7 @@ std::string EncodeQuantised(const Model& model)
     plain[place] = static_cast<char>(code & 0xff);
     plain[count + place] = static_cast<char>(code >> 8);
   });
-  return PackedReadably(plain, BoundariesOf(runs));
+  return PackedReadably(plain, BoundariesOf(runs), packing);
 }
 
 AlignedVector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
@@ -184,7 +185,7 @@ AlignedVector<float> DecodeQuantised(const InputFile& file, const Blob& blob, co
   return parameters;
 }
 
-std::string EncodeCompactRanges(const std::vector<ValueRange>& ranges)
+std::string EncodeCompactRanges(const std::vector<ValueRange>& ranges, Packing packing)
 {
   std::string plain(ranges.size() * 2, '\0');
   for (std::size_t k = 0; k < ranges.size(); ++k) {
@@ -193,7 +194,7 @@ std::string EncodeCompactRanges(const std::vector<ValueRange>& ranges)
     plain[k] = static_cast<char>(range.empty() ? 255 : BoundBelow(range.low));
     plain[ranges.size() + k] = static_cast<char>(range.empty() ? 0 : BoundAbove(range.high));
   }
-  return PackedReadably(plain, {ranges.size()});
+  return PackedReadably(plain, {ranges.size()}, packing);
 }
 
 std::vector<ValueRange> DecodeCompactRanges(const InputFile& file, const Blob& blob,

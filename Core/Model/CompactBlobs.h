@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Model/Compression.h"
 #include "Core/Model/Document.h"
 #include "Core/Model/InputFile.h"
 #include "Core/Model/Model.h"
@@ -24,7 +25,7 @@ std::int64_t LargestCompactRanges(std::int64_t cells);
 
 /// The parameters as multiples of `model.steps`. Throws Error(InvalidModel) for a value that is not
 /// finite or not within 16 bits of its step, and for steps that are not one for each group.
-std::string EncodeQuantised(const Model& model);
+std::string EncodeQuantised(const Model& model, Packing packing);
 
 /// The inverse, for a header with description and (valid) steps.
 AlignedVector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
@@ -32,7 +33,7 @@ AlignedVector<float> DecodeQuantised(const InputFile& file, const Blob& blob, co
 
 /// Ranges in 8 bits a bound, rounded outwards by up to 1/255; the network's output never leaves
 /// [0, 1], and so what lies outside is cut off.
-std::string EncodeCompactRanges(const std::vector<ValueRange>& ranges);
+std::string EncodeCompactRanges(const std::vector<ValueRange>& ranges, Packing packing);
 std::vector<ValueRange> DecodeCompactRanges(const InputFile& file, const Blob& blob,
                                             std::int64_t cells, std::uint32_t& checksum);
 

@@ -11,9 +11,11 @@
 namespace inr {
 namespace {
 
-// The highest level without an extra window. What is packed here hardly repeats itself: the level
-// costs little and saves 1 to 4 %, and so does not looking for repetitions of a few bytes.
-constexpr int Level = 19;
+// The highest level without an extra window, 19, saves 8 % of 1 for a model of 23 million
+// parameters, in 7.7 s, not 0.2. What is packed here hardly repeats itself: not looking for
+// repetitions of a few bytes saves some, too.
+constexpr int HighestLevel = 19;
+constexpr int FastLevel = 1;
 constexpr int ShortestMatch = 7;
 constexpr std::size_t BlockOverhead = 8; // header, and what an encoder cannot know
 
@@ -27,13 +29,13 @@ void RequireMemory(std::size_t result)
   }
 }
 
-Compressor MakeCompressor(std::size_t bytes)
+Compressor MakeCompressor(std::size_t bytes, int level)
 {
   Compressor compressor(ZSTD_createCCtx(), ZSTD_freeCCtx);
   if (compressor == nullptr) {
     throw std::bad_alloc();
   }
-  RequireMemory(ZSTD_CCtx_setParameter(compressor.get(), ZSTD_c_compressionLevel, Level));
+  RequireMemory(ZSTD_CCtx_setParameter(compressor.get(), ZSTD_c_compressionLevel, level));
   RequireMemory(ZSTD_CCtx_setParameter(compressor.get(), ZSTD_c_minMatch, ShortestMatch));
   RequireMemory(ZSTD_CCtx_setPledgedSrcSize(compressor.get(), bytes));
   return compressor;
@@ -47,9 +49,11 @@ std::int64_t CompressedBound(std::int64_t bytes, std::size_t boundaries)
                                    (boundaries + 1) * BlockOverhead);
 }
 
-std::string Compress(const std::string& bytes, const std::vector<std::size_t>& boundaries)
+std::string Compress(const std::string& bytes, const std::vector<std::size_t>& boundaries,
+                     Packing packing)
 {
-  const Compressor compressor = MakeCompressor(bytes.size());
+  const int level = packing == Packing::Small ? HighestLevel : FastLevel;
+  const Compressor compressor = MakeCompressor(bytes.size(), level);
   const auto most = CompressedBound(static_cast<std::int64_t>(bytes.size()), boundaries.size());
   std::string frame(static_cast<std::size_t>(most), '\0');
   ZSTD_outBuffer output{frame.data(), frame.size(), 0};

@@ -138,17 +138,18 @@ void RequireParameters(const Model& model)
   }
 }
 
-std::string ParameterBlob(const Model& model)
+std::string ParameterBlob(const Model& model, Packing packing)
 {
   RequireParameters(model);
-  return IsCompact(model) ? EncodeQuantised(model)
+  return IsCompact(model) ? EncodeQuantised(model, packing)
                           : EncodeParameters(model.parameters, model.storedAs);
 }
 
-std::string RangeBlob(const Model& model)
+std::string RangeBlob(const Model& model, Packing packing)
 {
   const std::vector<ValueRange>& ranges = model.macroCells.ranges;
-  return IsCompact(model) && !ranges.empty() ? EncodeCompactRanges(ranges) : EncodeRanges(ranges);
+  return IsCompact(model) && !ranges.empty() ? EncodeCompactRanges(ranges, packing)
+                                             : EncodeRanges(ranges);
 }
 
 BlobSizes SizesOf(const std::string& ranges, const std::string& parameters)
@@ -177,10 +178,11 @@ void RequireSize(std::int64_t bytes)
 }
 
 // Hands the file to `write` piece by piece and returns its size.
-template <typename Write> std::int64_t WritePieces(const Model& model, const Write& write)
+template <typename Write>
+std::int64_t WritePieces(const Model& model, Packing packing, const Write& write)
 {
-  const std::string parameters = ParameterBlob(model);
-  const std::string ranges = RangeBlob(model);
+  const std::string parameters = ParameterBlob(model, packing);
+  const std::string ranges = RangeBlob(model, packing);
   const std::uint32_t checksum = ContinueChecksum(
       ContinueChecksum(0, parameters.data(), parameters.size()), ranges.data(), ranges.size());
   const Framing framing = Frame(model, SizesOf(ranges, parameters), checksum);
@@ -195,8 +197,9 @@ std::int64_t WriteFile(const Model& model, const std::string& path)
 {
   RequireStorable(model);
   AtomicFile file(path);
-  const std::int64_t bytes = WritePieces(
-      model, [&file](const std::string& piece) { file.write(piece.data(), piece.size()); });
+  const std::int64_t bytes = WritePieces(model, Packing::Small, [&file](const std::string& piece) {
+    file.write(piece.data(), piece.size());
+  });
   file.commit();
   return bytes;
 }
@@ -225,7 +228,8 @@ std::int64_t ModelFileSize(const Model& model)
 {
   const bool pack = IsCompact(model) && !model.parameters.empty();
   const BlobSizes sizes =
-      pack ? SizesOf(RangeBlob(model), ParameterBlob(model)) : LargestSizes(model);
+      pack ? SizesOf(RangeBlob(model, Packing::Small), ParameterBlob(model, Packing::Small))
+           : LargestSizes(model);
   return Frame(model, sizes, 0).total();
 }
 
@@ -233,7 +237,7 @@ std::string ModelToBytes(const Model& model)
 {
   RequireStorable(model);
   std::string bytes;
-  WritePieces(model, [&bytes](const std::string& piece) { bytes += piece; });
+  WritePieces(model, Packing::Fast, [&bytes](const std::string& piece) { bytes += piece; });
   return bytes;
 }
 

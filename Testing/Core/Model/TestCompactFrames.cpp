@@ -81,10 +81,12 @@ TEST_F(Frames, MayEndBlocksAnywhere)
     boundaries.push_back(k);
     bytes += static_cast<char>(inr::RandomBits(1, k));
   }
-  const std::string frame = inr::Compress(bytes, boundaries);
-  EXPECT_LE(static_cast<std::int64_t>(frame.size()), inr::CompressedBound(3000, 3000));
-  const auto plain = inr::Decompress(frame, 3000, "bytes");
-  EXPECT_EQ(std::string(reinterpret_cast<const char*>(plain.get()), 3000), bytes);
+  for (const inr::Packing packing : {inr::Packing::Small, inr::Packing::Fast}) {
+    const std::string frame = inr::Compress(bytes, boundaries, packing);
+    EXPECT_LE(static_cast<std::int64_t>(frame.size()), inr::CompressedBound(3000, 3000));
+    const auto plain = inr::Decompress(frame, 3000, "bytes");
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(plain.get()), 3000), bytes);
+  }
 }
 
 TEST_F(Frames, OfOtherSizesAreRefused)
