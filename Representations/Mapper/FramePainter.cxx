@@ -82,19 +82,19 @@ bool IsInteractive(vtkRenderWindow* window)
 }
 
 /// Seconds for a picture, or for what a click selects of one; 0: as many as it takes.
-double TimeLimit(vtkRenderer* renderer, double stillTimeLimit)
+double TimeLimit(vtkRenderer* renderer, const PaintSettings& settings)
 {
   constexpr double glance = 0.5; // what a user waits for without noticing
   vtkRenderWindow* window = renderer->GetRenderWindow();
   if (IsInteractive(window)) {
     return glance / window->GetDesiredUpdateRate();
   }
-  const bool isLimited = renderer->GetSelector() ? RefinementTimer::isWatched(window)
+  const bool isWatched = renderer->GetSelector() ? RefinementTimer::isWatched(window)
                                                  : RefinementTimer::canRefine(window);
-  if (!isLimited) {
+  if (!isWatched && !settings.shownElsewhere) {
     return 0;
   }
-  return stillTimeLimit >= 0 ? stillTimeLimit : glance; // no number is no wish
+  return settings.stillTimeLimit >= 0 ? settings.stillTimeLimit : glance; // no number is no wish
 }
 
 /// Whether it can become no better.
@@ -142,7 +142,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   }
   picture.depict(this->depicted(frame, renderer, volume));
   picture.last().seconds = SecondsSince(start);
-  this->refineLater(job);
+  this->refineLater(job, settings.shownElsewhere);
   return problem;
 }
 
@@ -239,7 +239,7 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
   this->Caster->setTransferFunction(colors);
   this->CountSamples = settings.countSamples;
   frame.sampleDistance *= IsInteractive(renderer->GetRenderWindow()) ? 2 : 1;
-  frame.timeLimit = TimeLimit(renderer, settings.stillTimeLimit);
+  frame.timeLimit = TimeLimit(renderer, settings);
   return {};
 }
 
@@ -258,14 +258,14 @@ void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOpti
   }
 }
 
-void FramePainter::refineLater(const Job& job)
+void FramePainter::refineLater(const Job& job, bool shownElsewhere)
 {
   vtkRenderWindow* window = job.renderer->GetRenderWindow();
   if (IsInteractive(window)) {
     this->Refine.postpone(); // what follows an interactive picture is the application's business
     return;
   }
-  if (!RefinementTimer::canRefine(window)) {
+  if (!shownElsewhere && !RefinementTimer::canRefine(window)) {
     return; // captured; what is on the screen goes on afterwards
   }
   const PaintedFrame& last = job.picture.last();
@@ -279,7 +279,21 @@ void FramePainter::refineLater(const Job& job)
   }
   // Bricks are decoded in the pause, too; paths are traced within pictures only.
   const double share = job.scene.mode == RenderMode::PathTracing ? 0.25 : 1;
-  this->Refine.request(window, std::clamp(share * last.seconds, 0.02, 0.5));
+  const double pause = std::clamp(share * last.seconds, 0.02, 0.5);
+  if (shownElsewhere) {
+    this->Pause = std::max(this->Pause, pause); // of both eyes
+  } else {
+    this->Refine.request(window, pause);
+  }
+}
+
+void FramePainter::refineLater(vtkRenderWindow* window, double pause)
+{
+  if (pause > 0) {
+    this->Refine.request(window, pause);
+  } else {
+    this->Refine.cancel();
+  }
 }
 
 bool FramePainter::draw(const Job& job)

@@ -20,6 +20,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 class vtkINRDataArray;
 class vtkRenderWindow;
@@ -47,6 +48,11 @@ public:
   std::string mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                    const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Pictures.latest().last(); }
+  /// Seconds until what was drawn since this was asked before, and is shown elsewhere, is to be
+  /// drawn again; 0: it is complete, or there is none.
+  double takePause() { return std::exchange(this->Pause, 0); }
+  /// What somebody else has made for `window` goes on in so many seconds; 0: it does not.
+  void refineLater(vtkRenderWindow* window, double pause);
   /// See Renderer.
   std::int64_t cacheBytes() const { return this->Caster.cacheBytes(); }
   std::optional<AcceleratedField::Failure> acceleratorFailure() const
@@ -94,7 +100,7 @@ private:
   bool drawUnseen(const Job& job);
   DepictedScene depicted(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume) const;
   /// Sees to it that an unfinished still picture goes on.
-  void refineLater(const Job& job);
+  void refineLater(const Job& job, bool shownElsewhere);
 
   CurrentRenderer Caster;
   bool CountSamples = false;
@@ -106,6 +112,7 @@ private:
   ImageBlender Blender;
   TranslucentPeeler Peeler;
   RefinementTimer Refine;
+  double Pause = 0;
   PictureStore Pictures;
   ViewPicture Selected{-1}; ///< for the latest selection, where no view shows what it is of
 };

@@ -21,8 +21,9 @@ struct PaintSettings
   bool preIntegration = false;
   double levelOfDetailScale = 1;
   std::optional<double> errorTolerance;
-  bool countSamples = false;  ///< into PaintedFrame::samples
-  double stillTimeLimit = -1; ///< seconds; below 0: see vtkINRVolumeMapper
+  bool countSamples = false;   ///< into PaintedFrame::samples
+  double stillTimeLimit = -1;  ///< seconds; below 0: see vtkINRVolumeMapper
+  bool shownElsewhere = false; ///< see there
   std::uint64_t seed = 0;
   RendererOptions renderer;
   PictureGroup group; ///< with whom to draw, see there

@@ -277,6 +277,18 @@ const char* vtkINRVolumeMapper::GetBackendInUse() const
   return this->Self->Painter.last().backend.c_str();
 }
 
+double vtkINRVolumeMapper::TakeRefinementPause() { return this->Self->Painter.takePause(); }
+
+bool vtkINRVolumeMapper::MayRefine(vtkRenderWindow* window)
+{
+  return inr::RefinementTimer::canRefine(window);
+}
+
+void vtkINRVolumeMapper::RefineLater(vtkRenderWindow* window, double pause)
+{
+  this->Self->Painter.refineLater(window, pause);
+}
+
 void vtkINRVolumeMapper::GetFrameSize(int size[2]) const
 {
   const inr::Image& picture = this->Self->Painter.last().rgba;
@@ -364,6 +376,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
     settings.errorTolerance = this->ErrorTolerance;
   }
   settings.stillTimeLimit = this->StillTimeLimit;
+  settings.shownElsewhere = this->ShownElsewhere;
   settings.countSamples = this->SampleChannels;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   inr::RendererOptions& renderer = settings.renderer;
@@ -500,6 +513,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "PriorityRanking: " << this->PriorityRanking << "\n"
      << indent << "Preloading: " << this->Preloading << "\n"
      << indent << "StillTimeLimit: " << this->StillTimeLimit << "\n"
+     << indent << "ShownElsewhere: " << this->ShownElsewhere << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Seed: " << this->Seed << "\n"
      << indent << "Deterministic: " << this->Deterministic << "\n"

@@ -74,6 +74,7 @@
 #include <vector> // for ProcessOrder
 
 class vtkMultiProcessController;
+class vtkRenderWindow;
 
 namespace inr {
 class Accelerator;
@@ -368,6 +369,34 @@ public:
   vtkGetMacro(StillTimeLimit, double);
   ///@}
 
+  ///@{
+  /**
+   * Whether somebody else shows what is drawn into a window of nobody's, and has it drawn again
+   * where TakeRefinementPause() says so: then StillTimeLimit holds for it, too. Default off. No
+   * picture looks different for it, so it modifies nothing.
+   */
+  void SetShownElsewhere(bool on) { this->ShownElsewhere = on; }
+  vtkGetMacro(ShownElsewhere, bool);
+  vtkBooleanMacro(ShownElsewhere, bool);
+  ///@}
+
+  /**
+   * Seconds until a still picture with ShownElsewhere, drawn since this was asked before, is to be
+   * drawn again, which goes on with it; 0: there is no such picture, or nothing left to do.
+   */
+  double TakeRefinementPause();
+
+  ///@{
+  /**
+   * For a mapper beside `window`, which shows what another one draws elsewhere: whether pictures
+   * there may be refined, which those of a screenshot may not; and to have the window drawn again
+   * in so many seconds, as for a picture of one's own, instead of what was asked for before. 0: not
+   * at all.
+   */
+  static bool MayRefine(vtkRenderWindow* window);
+  void RefineLater(vtkRenderWindow* window, double pause);
+  ///@}
+
   /**
    * Invoked before the mapper has its window refine a picture; the call data are a bool* that an
    * observer in a busy application sets to false. It is then asked again a little later.
@@ -561,6 +590,7 @@ private:
   bool PriorityRanking = true;
   bool Preloading = true;
   double StillTimeLimit = -1.0;
+  bool ShownElsewhere = false;
   int NumberOfThreads = 0;
   int Seed = 0;
   bool Deterministic = false;

@@ -8,6 +8,7 @@
 #include "VolumePlacement.h"
 #include "WhyBlank.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkCommunicator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
@@ -96,6 +97,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
     }
   } else if (request == vtkPVView::REQUEST_RENDER()) {
+    this->Refines = false;
     this->Client->update();
     this->TakeDelivery(in);
     static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());
@@ -435,7 +437,40 @@ void vtkINRVolumeRepresentation::SetSampleChannels(bool on)
   this->GetMapper()->SetSampleChannels(on);
 }
 
-bool vtkINRVolumeRepresentation::GetConverged() { return this->GetMapper()->GetConverged(); }
+bool vtkINRVolumeRepresentation::GetConverged()
+{
+  return this->GetMapper()->GetConverged() && !this->Refines;
+}
+
+void vtkINRVolumeRepresentation::SetShownElsewhere(bool on)
+{
+  this->GetMapper()->SetShownElsewhere(on);
+}
+
+double vtkINRVolumeRepresentation::GetRefinementPause()
+{
+  const double own = this->GetMapper()->TakeRefinementPause();
+  double longest = own;
+  vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
+  if (processes && processes->GetNumberOfProcesses() > 1) {
+    processes->AllReduce(&own, &longest, 1, vtkCommunicator::MAX_OP);
+  }
+  this->Refines = longest > 0;
+  return longest;
+}
+
+bool vtkINRVolumeRepresentation::MayRefine()
+{
+  auto* view = vtkPVRenderView::SafeDownCast(this->GetView());
+  return view && vtkINRVolumeMapper::MayRefine(view->GetRenderWindow());
+}
+
+void vtkINRVolumeRepresentation::RefineLater(double pause)
+{
+  this->Client->update();
+  auto* view = vtkPVRenderView::SafeDownCast(this->GetView());
+  this->GetMapper()->RefineLater(view->GetRenderWindow(), pause);
+}
 
 double vtkINRVolumeRepresentation::GetCacheHitRate()
 {

@@ -86,6 +86,20 @@ public:
   /// Whether this process has something to draw.
   bool DrawsHere();
 
+  ///@{
+  /// For pictures that a render server draws and a client shows. In the server's processes, by the
+  /// client: whether it has pictures made again that are not complete, and, of all of them
+  /// together, how many seconds after the latest one; 0: it is complete. Asked of all processes at
+  /// once, and once of each picture.
+  void SetShownElsewhere(bool on);
+  double GetRefinementPause();
+  ///@}
+  ///@{
+  /// The client's part: whether its window may be refined, and to have it drawn again.
+  bool MayRefine();
+  void RefineLater(double pause);
+  ///@}
+
   /// In place of the superclass', which would copy every point of the presented grid: a model holds
   /// one array, whose opacities no other one can give. Warns once when that is asked for.
   void SetUseSeparateOpacityArray(bool wants) { this->WantsOpacityArray = wants; }
@@ -132,6 +146,7 @@ private:
   vtkNew<vtkINRStatusActor> Status;
   bool ShowStatus = false;
   bool SharedReported = false;
+  bool Refines = false; ///< in a server: a picture goes on, of this process or another
 };
 
 #endif

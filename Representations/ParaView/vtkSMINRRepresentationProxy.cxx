@@ -1,20 +1,110 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSMINRRepresentationProxy.h"
 
+#include "vtkCallbackCommand.h"
+#include "vtkClientServerStream.h"
+#include "vtkCommand.h"
 #include "vtkINRVolumeRepresentation.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVSession.h"
+#include "vtkSMSession.h"
 
 vtkStandardNewMacro(vtkSMINRRepresentationProxy);
+
+vtkSMINRRepresentationProxy::vtkSMINRRepresentationProxy()
+{
+  this->RenderCommand->SetClientData(this);
+  this->RenderCommand->SetCallback(&vtkSMINRRepresentationProxy::OnRender);
+}
+
+vtkSMINRRepresentationProxy::~vtkSMINRRepresentationProxy() { this->Forget(); }
 
 void vtkSMINRRepresentationProxy::UpdatePropertyInformationInternal(vtkSMProperty* property)
 {
   // A session without a server answers itself wherever it is told to ask.
   const vtkTypeUInt32 everywhere = this->Location;
-  auto* here = vtkINRVolumeRepresentation::SafeDownCast(this->GetClientSideObject());
+  vtkINRVolumeRepresentation* here = this->Here();
   const vtkTypeUInt32 drawing = vtkPVSession::RENDER_SERVER | vtkPVSession::RENDER_SERVER_ROOT;
   this->Location =
       here && here->DrawsHere() ? vtkTypeUInt32{vtkPVSession::CLIENT} : everywhere & drawing;
   this->Superclass::UpdatePropertyInformationInternal(property);
   this->Location = everywhere;
+}
+
+void vtkSMINRRepresentationProxy::ViewUpdated(vtkSMProxy* view)
+{
+  this->Superclass::ViewUpdated(view);
+  if (view == this->View) {
+    return;
+  }
+  this->Forget();
+  this->View = view;
+  view->AddObserver(vtkCommand::StartEvent, this->RenderCommand);
+  view->AddObserver(vtkCommand::EndEvent, this->RenderCommand);
+  if (this->IsDrawnElsewhere()) { // a view is updated for a picture that has begun
+    this->Announce();
+  }
+}
+
+void vtkSMINRRepresentationProxy::Forget()
+{
+  if (this->View) {
+    this->View->RemoveObserver(this->RenderCommand);
+  }
+}
+
+vtkINRVolumeRepresentation* vtkSMINRRepresentationProxy::Here()
+{
+  return vtkINRVolumeRepresentation::SafeDownCast(this->GetClientSideObject());
+}
+
+bool vtkSMINRRepresentationProxy::IsDrawnElsewhere()
+{
+  vtkSMSession* session = this->GetSession();
+  const bool hasServer = session && (session->GetProcessRoles() & vtkPVSession::RENDER_SERVER) == 0;
+  return hasServer && this->Here() && !this->Here()->DrawsHere();
+}
+
+void vtkSMINRRepresentationProxy::OnRender(vtkObject*, unsigned long event, void* self,
+                                           void* isInteractive)
+{
+  auto* proxy = static_cast<vtkSMINRRepresentationProxy*>(self);
+  if (*static_cast<int*>(isInteractive) != 0 || !proxy->IsDrawnElsewhere()) {
+    return;
+  }
+  if (event == vtkCommand::StartEvent) {
+    proxy->Announce();
+  } else {
+    proxy->GoOn();
+  }
+}
+
+/** Before a still picture: whether it is one that goes on. */
+void vtkSMINRRepresentationProxy::Announce()
+{
+  const bool refines = this->Here()->MayRefine();
+  if (refines == this->Announced) {
+    return;
+  }
+  vtkClientServerStream stream;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "SetShownElsewhere"
+         << static_cast<int>(refines) // a bool is not understood
+         << vtkClientServerStream::End;
+  this->ExecuteStream(stream, false, vtkPVSession::RENDER_SERVER);
+  this->Announced = refines;
+}
+
+/** After one. */
+void vtkSMINRRepresentationProxy::GoOn()
+{
+  if (!this->Announced) {
+    return;
+  }
+  vtkClientServerStream stream;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "GetRefinementPause"
+         << vtkClientServerStream::End;
+  this->ExecuteStream(stream, false, vtkPVSession::RENDER_SERVER);
+  double pause = 0;
+  this->GetLastResult(vtkPVSession::RENDER_SERVER_ROOT).GetArgument(0, 0, &pause);
+  this->Here()->RefineLater(pause);
 }

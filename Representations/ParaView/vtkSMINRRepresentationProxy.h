@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkSMINRRepresentationProxy
- * @brief proxy of vtkINRVolumeRepresentation whose read-only properties are those of who draws
+ * @brief what ParaView's client knows of a vtkINRVolumeRepresentation that a server draws
  *
- * A representation lives in the client and in the servers, and ParaView asks the client's for
- * values. Connected to a server, it is the server that draws: its first process is asked here.
+ * A representation lives in the client and in the servers. Connected to a render server, it is the
+ * server that draws, and the client that has the window: read-only properties are asked of the
+ * server's first process, and pictures that are not complete are asked for again when the window is
+ * idle, as those that the client draws itself.
  */
 #ifndef vtkSMINRRepresentationProxy_h
 #define vtkSMINRRepresentationProxy_h
 
 #include "vtkINRRepresentationsModule.h" // for the export macro
+#include "vtkNew.h"                      // for OnRender
 #include "vtkSMRepresentationProxy.h"
+#include "vtkWeakPointer.h" // for View
+
+class vtkCallbackCommand;
+class vtkINRVolumeRepresentation;
 
 class VTKINRREPRESENTATIONS_EXPORT vtkSMINRRepresentationProxy : public vtkSMRepresentationProxy
 {
@@ -18,15 +25,28 @@ public:
   static vtkSMINRRepresentationProxy* New();
   vtkTypeMacro(vtkSMINRRepresentationProxy, vtkSMRepresentationProxy);
 
+  void ViewUpdated(vtkSMProxy* view) override;
+
 protected:
-  vtkSMINRRepresentationProxy() = default;
-  ~vtkSMINRRepresentationProxy() override = default;
+  vtkSMINRRepresentationProxy();
+  ~vtkSMINRRepresentationProxy() override;
 
   void UpdatePropertyInformationInternal(vtkSMProperty* property = nullptr) override;
 
 private:
   vtkSMINRRepresentationProxy(const vtkSMINRRepresentationProxy&) = delete;
   void operator=(const vtkSMINRRepresentationProxy&) = delete;
+
+  vtkINRVolumeRepresentation* Here();
+  bool IsDrawnElsewhere();
+  void Forget();
+  static void OnRender(vtkObject* view, unsigned long event, void* self, void* isInteractive);
+  void Announce();
+  void GoOn();
+
+  vtkWeakPointer<vtkSMProxy> View;
+  vtkNew<vtkCallbackCommand> RenderCommand;
+  bool Announced = false; ///< to the server: that its pictures are made again
 };
 
 #endif

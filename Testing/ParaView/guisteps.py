@@ -2,9 +2,10 @@
 """A test's own steps while ParaView's window goes on."""
 import os
 import sys
+import time
 
 from paraview import simple
-from pvtest import check, load_plugin
+from pvtest import MODEL, check, check_baseline, load_plugin, picture
 
 SIZE = (300, 300)  # of pictures, whatever the window's
 
@@ -34,3 +35,71 @@ def follow(steps, interactor):
 
     interactor.AddObserver("TimerEvent", look)
     interactor.CreateRepeatingTimer(50)
+
+
+class Refinement:
+    """A volume in a window that counts its pictures; steps that wait for these."""
+
+    def __init__(self, view):
+        self.view = view
+        self.display = simple.Show(simple.OpenDataFile(MODEL), view)
+        simple.ResetCamera(view)
+        self.display.StillTimeLimit = 0.05
+        self.display.SampleDistance = 4
+        self.display.MaximumBounces = 1
+        self.pictures = []
+        view.GetRenderWindow().AddObserver("EndEvent", lambda *_: self.pictures.append(time.time()))
+
+    def pictures_since(self, start):
+        return sum(picture > start for picture in self.pictures)
+
+    def is_converged(self):
+        self.display.UpdatePropertyInformation()
+        return self.display.GetPropertyValue("Converged") == 1
+
+    def show_endless(self):
+        """Never done: as long as this is shown, only the window's being busy stops pictures."""
+        self.display.RenderMode = "Path Tracing"
+        self.display.SamplesPerPixel = 1000000
+        simple.Render(self.view)
+        check(not self.is_converged(), "a picture that cannot be done has converged")
+
+    def wait_for_pictures(self, occasion):
+        start = time.time()
+        while self.pictures_since(start) < 3:
+            check(time.time() < start + 20, "not refined", occasion)
+            yield
+
+    def converges(self, brick_size):
+        """From an empty cache on, for bricks of a new size."""
+        self.display.RenderMode = "Ray Marching"
+        self.display.BrickSize = brick_size
+        simple.Render(self.view)
+        start = time.time()
+        check(not self.is_converged(), "a short look is enough for all bricks")
+        while not self.is_converged():
+            check(time.time() < start + 60, "does not converge")
+            yield
+        print("converged after", self.pictures_since(start), "more pictures")
+        check(self.pictures_since(start) > 0, "nothing was refined")
+
+    def converges_and_stops(self):
+        yield from self.converges(20)
+        converged = time.time() + 0.1
+        yield from self.rests(converged, "refined what has converged")
+        check_baseline(picture(self.view, "gui-refinement", SIZE), "GuiRefinement")
+
+    def rests(self, start, problem):
+        """No picture from `start` on, for a while."""
+        while time.time() < start + 1.5:
+            yield
+        check(self.pictures_since(start) == 0, problem)
+
+    def pauses_while_an_animation_plays(self):
+        scene = simple.GetAnimationScene()
+        scene.NumberOfFrames = 10
+        start = time.time()
+        scene.Play()
+        # The first time, ParaView shows some frames twice.
+        print(self.pictures_since(start), "pictures in an animation of 10")
+        check(10 <= self.pictures_since(start) <= 14, "refined while playing:", self.pictures_since(start))
