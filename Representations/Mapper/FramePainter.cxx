@@ -89,8 +89,9 @@ double TimeLimit(vtkRenderer* renderer, const PaintSettings& settings)
   if (IsInteractive(window)) {
     return glance / window->GetDesiredUpdateRate();
   }
-  const bool isWatched = renderer->GetSelector() ? RefinementTimer::isWatched(window)
-                                                 : RefinementTimer::canRefine(window);
+  const bool isWatched = renderer->GetSelector() || settings.forSelection
+                             ? RefinementTimer::isWatched(window)
+                             : RefinementTimer::canRefine(window);
   if (!isWatched && !settings.shownElsewhere) {
     return 0;
   }

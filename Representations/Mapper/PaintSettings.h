@@ -24,6 +24,7 @@ struct PaintSettings
   bool countSamples = false;   ///< into PaintedFrame::samples
   double stillTimeLimit = -1;  ///< seconds; below 0: see vtkINRVolumeMapper
   bool shownElsewhere = false; ///< see there
+  bool forSelection = false;   ///< see there
   std::uint64_t seed = 0;
   RendererOptions renderer;
   PictureGroup group; ///< with whom to draw, see there

@@ -377,6 +377,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   }
   settings.stillTimeLimit = this->StillTimeLimit;
   settings.shownElsewhere = this->ShownElsewhere;
+  settings.forSelection = this->ForSelection;
   settings.countSamples = this->SampleChannels;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   inr::RendererOptions& renderer = settings.renderer;
@@ -514,6 +515,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Preloading: " << this->Preloading << "\n"
      << indent << "StillTimeLimit: " << this->StillTimeLimit << "\n"
      << indent << "ShownElsewhere: " << this->ShownElsewhere << "\n"
+     << indent << "ForSelection: " << this->ForSelection << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Seed: " << this->Seed << "\n"
      << indent << "Deterministic: " << this->Deterministic << "\n"

@@ -388,6 +388,16 @@ public:
 
   ///@{
   /**
+   * Whether a picture is made for a selection to begin with, into a window that does not show it,
+   * as a screenshot's: but nobody keeps it, and it takes no longer than what the window shows.
+   * Default off. It modifies nothing either.
+   */
+  void SetForSelection(bool on) { this->ForSelection = on; }
+  vtkGetMacro(ForSelection, bool);
+  ///@}
+
+  ///@{
+  /**
    * For a mapper beside `window`, which shows what another one draws elsewhere: whether pictures
    * there may be refined, which those of a screenshot may not; and to have the window drawn again
    * in so many seconds, as for a picture of one's own, instead of what was asked for before. 0: not
@@ -591,6 +601,7 @@ private:
   bool Preloading = true;
   double StillTimeLimit = -1.0;
   bool ShownElsewhere = false;
+  bool ForSelection = false;
   int NumberOfThreads = 0;
   int Seed = 0;
   bool Deterministic = false;

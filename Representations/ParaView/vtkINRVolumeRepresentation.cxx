@@ -43,6 +43,19 @@ bool HasPieces()
          processes->GetNumberOfProcesses() > 1;
 }
 
+/// Whether the view is drawn for a selection, which it tells subclasses only.
+bool IsSelecting(vtkView* view)
+{
+  struct Subclass : vtkPVRenderView
+  {
+    static bool isSelecting(vtkPVRenderView* view)
+    {
+      return (view->*&Subclass::GetMakingSelection)();
+    }
+  };
+  return Subclass::isSelecting(vtkPVRenderView::SafeDownCast(view));
+}
+
 /// Whether another process may have to draw what this one has; of several that have all the model,
 /// one sends it.
 bool MaySend()
@@ -98,6 +111,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     }
   } else if (request == vtkPVView::REQUEST_RENDER()) {
     this->Refines = false;
+    this->GetMapper()->SetForSelection(IsSelecting(this->GetView()));
     this->Client->update();
     this->TakeDelivery(in);
     static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());

@@ -48,6 +48,8 @@ def watch():
     yield from refinement.wait_for_pictures("after the dialog")
     yield from pauses_while_a_button_is_down()
     yield from refinement.wait_for_pictures("after a click")
+    refinement.selects()
+    yield from refinement.wait_for_pictures("after a selection")
     yield from refinement.converges_and_stops()
     refinement.show_endless()
     refinement.pauses_while_an_animation_plays()

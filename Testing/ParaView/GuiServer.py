@@ -47,6 +47,8 @@ def watch():
     yield from refinement.wait_for_pictures("at first")
     yield from rests_while_hidden()
     yield from refinement.wait_for_pictures("when shown again")
+    refinement.selects()
+    yield from refinement.wait_for_pictures("after a selection")
     refinement.pauses_while_an_animation_plays()
     yield from refinement.wait_for_pictures("after the animation")
     shoots_what_is_complete()

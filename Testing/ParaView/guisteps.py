@@ -95,6 +95,15 @@ class Refinement:
             yield
         check(self.pictures_since(start) == 0, problem)
 
+    def selects(self):
+        """Of a picture that is never done: a selection does not wait for it."""
+        x, y = (size // 2 for size in self.view.GetRenderWindow().GetSize())
+        simple.SelectSurfaceCells(Rectangle=[x - 9, y - 9, x + 9, y + 9], View=self.view)
+        source = self.display.Input
+        check(source.SMProxy.GetSelectionInput(source.Port) is not None, "nothing is selected")
+        check(not self.is_converged(), "a picture that cannot be done has converged")
+        simple.ClearSelection(source)
+
     def pauses_while_an_animation_plays(self):
         scene = simple.GetAnimationScene()
         scene.NumberOfFrames = 10
