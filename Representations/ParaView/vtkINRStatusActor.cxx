@@ -7,6 +7,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPropCollection.h"
+#include "vtkRenderWindow.h"
 #include "vtkRenderer.h"
 #include "vtkTextProperty.h"
 #include "vtkViewport.h"
@@ -105,10 +106,17 @@ std::string vtkINRStatusActor::TextIn(vtkViewport* viewport)
                                                                : std::string();
 }
 
+void vtkINRStatusActor::SetProcesses(vtkMultiProcessController* processes, vtkRenderWindow* window)
+{
+  this->Processes = processes;
+  this->Window = window;
+}
+
 double* vtkINRStatusActor::GetBounds()
 {
   // Of a process' picture only that part is composed which these are seen in.
-  return this->Processes ? this->Everywhere : this->Superclass::GetBounds();
+  const bool isComposed = this->Processes && this->Window && this->Window->CheckInRenderStatus();
+  return isComposed ? this->Everywhere : this->Superclass::GetBounds();
 }
 
 double vtkINRStatusActor::TopIn(vtkViewport* viewport)

@@ -13,11 +13,13 @@
 
 #include "vtkINRRepresentationsModule.h" // for the export macro
 #include "vtkTextActor.h"
+#include "vtkWeakPointer.h" // for Window
 
 #include <string> // for return value
 
 class vtkINRVolumeMapper;
 class vtkMultiProcessController;
+class vtkRenderWindow;
 
 namespace inr {
 struct FrameStatus;
@@ -33,9 +35,10 @@ public:
   /// Whose picture it is about; it must outlive this.
   void SetVolumeMapper(vtkINRVolumeMapper* mapper) { this->StatusMapper = mapper; }
 
-  /// Those that draw a part each, and then must draw this at the same time; null when one draws it
-  /// all. Of several, the bounds are everywhere, as ParaView composes what lies within them.
-  void SetProcesses(vtkMultiProcessController* processes) { this->Processes = processes; }
+  /// Those that draw a part of `window` each, and then must draw this at the same time; null when
+  /// one draws it all. Of several, the bounds are everywhere while the window is drawn, as ParaView
+  /// composes what lies within them; else nowhere, or cameras would be set to see all of them.
+  void SetProcesses(vtkMultiProcessController* processes, vtkRenderWindow* window);
 
   /// Two lines on the mapper's latest picture in this process; empty when it has drawn none.
   std::string GetText();
@@ -62,6 +65,7 @@ private:
 
   vtkINRVolumeMapper* StatusMapper = nullptr;
   vtkMultiProcessController* Processes = nullptr;
+  vtkWeakPointer<vtkRenderWindow> Window;
   double Everywhere[6] = {-1e30, 1e30, -1e30, 1e30, -1e30, 1e30};
   double Height = 0; ///< pixels, of the latest text
 };

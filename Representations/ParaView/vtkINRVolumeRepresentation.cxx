@@ -134,7 +134,7 @@ void vtkINRVolumeRepresentation::DrawTogether()
   this->GetMapper()->SetAlwaysTogether(inr::ComposesOnePicture(renderer) ||
                                        inr::ShownVolumes(renderer).size() > 1 || isTurned ||
                                        inr::MayOutshineWhite(this->Property, renderer));
-  this->Status->SetProcesses(this->Others);
+  this->Status->SetProcesses(this->Others, renderer->GetRenderWindow());
   const bool sharesStatus = this->Others && this->Status->GetVisibility();
   if (sharesStatus || this->GetMapper()->GetDrawsTogether()) {
     inr::DrawEverywhere(renderer);

@@ -5,11 +5,28 @@ import os
 import re
 import sys
 
+import numpy as np
 from glass_scenes import check_parallel, path_of, pictures
 from paraview import servermanager, simple
-from pvtest import check, load_plugin, output_file, read_png
+from pvtest import check, load_plugin, output_file, picture, read_png, show_model
 
 load_plugin()
+
+
+def check_text():
+    """What ShowStatus adds is in a corner, and no camera wants to see all that it might be in."""
+    view, display = show_model()
+    bare = picture(view, "batch-status-off")
+    camera = list(view.CameraPosition)
+    display.ShowStatus = 1
+    simple.Render(view)
+    view.ResetCamera()
+    check(np.allclose(camera, view.CameraPosition), "the camera goes from", camera, view.CameraPosition)
+    differs = np.any(np.abs(picture(view, "batch-status") - bare) > 2.5 / 255, axis=2)
+    check(differs[-60:].any(), "there is no text")
+    check(not differs[:-60].any(), "more than the text is drawn")
+
+
 if sys.argv[1] == "write":
     pictures("batch")
     # They share the memory of the machine, too.
@@ -18,6 +35,7 @@ if sys.argv[1] == "write":
     for volume in simple.GetActiveView().GetRenderer().GetVolumes():
         for size in re.findall(r" CacheSize: (\d+)", str(volume.GetMapper())):
             check(processes > 1 and 0 < int(size) <= memory / 4 / processes, "CacheSize", size)
+    check_text()
 else:
     expected = pictures("alone")[2]
     found = {name: read_png(output_file(path_of("batch", name) + ".png")) for name in expected}
