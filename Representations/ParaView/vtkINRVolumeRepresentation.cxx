@@ -116,8 +116,9 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->TakeDelivery(in);
     static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());
     this->UpdateMapper();
-    this->DrawTogether();
     this->ReportColouring();
+    this->UpdateStatus();
+    this->DrawTogether();
     this->ReportOpacityArray();
     this->OutlineMapper->SetInputConnection(
         vtkPVRenderView::GetPieceProducer(in, this, this->OutlinePort));
@@ -261,6 +262,11 @@ void vtkINRVolumeRepresentation::UpdateMapper()
   std::copy_n(own, 6, this->DataBounds);
 }
 
+bool vtkINRVolumeRepresentation::IsShown()
+{
+  return this->GetVisibility() && this->LastProblem.empty();
+}
+
 bool vtkINRVolumeRepresentation::IsGroup()
 {
   return this->GetNumberOfInputConnections(0) > 0 &&
@@ -329,7 +335,7 @@ void vtkINRVolumeRepresentation::SetVisibility(bool on)
 
 void vtkINRVolumeRepresentation::UpdateStatus()
 {
-  this->Status->SetVisibility(this->ShowStatus && this->GetVisibility());
+  this->Status->SetVisibility(this->ShowStatus && this->IsShown());
 }
 
 vtkINRVolumeMapper* vtkINRVolumeRepresentation::GetMapper()
@@ -453,7 +459,7 @@ void vtkINRVolumeRepresentation::SetSampleChannels(bool on)
 
 bool vtkINRVolumeRepresentation::GetConverged()
 {
-  return this->GetMapper()->GetConverged() && !this->Refines;
+  return this->IsShown() && this->GetMapper()->GetConverged() && !this->Refines;
 }
 
 void vtkINRVolumeRepresentation::SetShownElsewhere(bool on)
@@ -488,12 +494,15 @@ void vtkINRVolumeRepresentation::RefineLater(double pause)
 
 double vtkINRVolumeRepresentation::GetCacheHitRate()
 {
-  return this->GetMapper()->GetCacheHitRate();
+  return this->IsShown() ? this->GetMapper()->GetCacheHitRate() : 0.0;
 }
 
 double vtkINRVolumeRepresentation::GetCacheUsed() { return this->GetMapper()->GetCacheUsed(); }
 
-double vtkINRVolumeRepresentation::GetFrameTime() { return this->GetMapper()->GetFrameTime(); }
+double vtkINRVolumeRepresentation::GetFrameTime()
+{
+  return this->IsShown() ? this->GetMapper()->GetFrameTime() : 0.0;
+}
 
 const char* vtkINRVolumeRepresentation::GetBackendInUse()
 {

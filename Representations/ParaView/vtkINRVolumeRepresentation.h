@@ -126,6 +126,7 @@ private:
   void ReportShared(bool drawsAll);
   void UpdateMapper();
   void DrawTogether();
+  bool IsShown(); ///< else there are pictures from before only
   bool IsGroup(); ///< of data sets
   void ReportColouring();
   void ReportOpacityArray();

@@ -117,3 +117,23 @@ for width in 260, 400:
     columns = np.flatnonzero(np.any(with_text[-60:] != without[-60:], axis=(0, 2)))
     check(columns[-1] < width - 4, "the text leaves a view of", width, "pixels at", columns[-1])
     check(columns[-1] > 0.7 * width, "the text ends at", columns[-1], "of", width)
+
+
+def converged():
+    display.UpdatePropertyInformation()
+    rate, seconds = display.GetPropertyValue("CacheHitRate"), display.GetPropertyValue("FrameTime")
+    check((rate > 0) == (seconds > 0), "a hit rate of", rate, "after", seconds, "s")
+    return display.GetPropertyValue("Converged") == 1 and rate == 1
+
+
+# Nothing is said of a picture that is not shown any more.
+check(converged() and actors(), "a complete picture is not said to be one")
+simple.ColorBy(display, None)  # which no volume can be drawn in
+picture(view, "status-solid")
+check(not actors() and not converged(), "a volume that is not drawn has converged")
+simple.ColorBy(display, ("POINTS", ARRAY))
+picture(view, "status-again")
+check(converged() and actors(), "a volume that is drawn again has not converged")
+simple.Hide(reader, view)
+picture(view, "status-gone")
+check(not actors() and not converged(), "a volume that is hidden has converged")
