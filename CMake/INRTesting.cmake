@@ -10,3 +10,21 @@ function (inr_add_core_test name)
   gtest_discover_tests(${name} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS core TIMEOUT 300)
 endfunction ()
+
+# inr_label_cases(NAME LABEL PATTERN...): another label for those cases of such a program that match one of
+# the regular expressions. One that none matches is a test that fails.
+function (inr_label_cases name label)
+  set(quoted)
+  foreach (pattern IN LISTS ARGN)
+    string(APPEND quoted " [==[${pattern}]==]")
+  endforeach ()
+  set(file "${CMAKE_CURRENT_BINARY_DIR}/${name}_${label}.cmake")
+  configure_file("${PROJECT_SOURCE_DIR}/CMake/INRLabelCases.cmake.in" "${file}" @ONLY)
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${file}")
+endfunction ()
+
+# inr_repeats(NAME PATTERN...): what takes long and executes the same lines as other cases do, over and over
+# again, or with a precision that is no business of a sanitizer's. Left out where there is one.
+function (inr_repeats name)
+  inr_label_cases(${name} repeated ${ARGN})
+endfunction ()

@@ -46,7 +46,7 @@ fail() {
 run_tests() {
   local folder=$1 summary missed names name
   shift
-  ctest --test-dir "$folder" -j "$(nproc)" -LE long --output-on-failure "$@" | tee "$folder/ctest.log"
+  ctest --test-dir "$folder" -j "$(nproc)" --output-on-failure "$@" | tee "$folder/ctest.log"
   summary=$(grep -E 'tests passed, .* failed out of' "$folder/ctest.log")
   if [[ $summary =~ ([0-9]+)\ tests?\ failed\ out\ of\ ([0-9]+) ]]; then
     missed=$(grep -c '\*\*\*Skipped' "$folder/ctest.log")
@@ -79,30 +79,19 @@ run_again() {
 }
 
 # Everything: Core, the VTK modules, the plugin in ParaView's own tools and window.
-build release && run_tests build "$@"
+build release && run_tests build -LE long "$@"
 
 # The same readers and mapper against plain VTK, unpacked beside the build, no ParaView; of Core and
 # CUDA, all has been built and tested before. The benchmarks are built here, so that they go on building.
 if [ -d build-vtk/vtk/usr ] || Testing/fetch-vtk.sh build-vtk/vtk; then
-  build vtk && run_tests build-vtk -L 'vtk|image' "$@"
+  build vtk && run_tests build-vtk -L 'vtk|image' -LE long "$@"
 else
   fail "plain VTK is not to be had"
 fi
 
-# Core alone, as on a machine without VTK and by another compiler, under the sanitizers; without the long
-# training runs, all but one of the scenes that are hard on a tolerance and of the sizes that stand in for
-# finer ones, what waits for a small cache in two ways at once elsewhere, and the longest of suites whose
-# other tests go the same ways: they execute the same lines over and over again. Of a GPU's own there are
-# none in this build.
-repeated='^(Trainer|Examples|TargetRatio|Divergence|WarmStart|Resume|RandomTolerances)\.|StatedErrors'
-repeated+='|IsAsGoodAsTrainingFromMemory|MakesTheDefaultModelFit|GivesAllTheSameModelEveryTime'
-repeated+='|HardToKeepTo\.ATolerance/[^N]|StandInForFinerOnes/[023]'
-repeated+='|SmallestCache/Host(Lit|Layered|Surfaces|Paths|Integrated|LitLayered|LayeredPaths|LayeredSurfaces)$|/Gpu'
-repeated+='|^KeptTiles\.(AreAsIfAll|EndWith|AreSoInAllModes)|WatchedDrawing\.(IsProven|KeepsToItsTimeInWindows)'
-repeated+='|OverfullDrawing\.GoesOn(Behind|InTime)|Drawing\.ComesToTheSamePictureInTime|DrawingByTolerance\.(Gives|Comes|Follows)'
-repeated+='|ErrorTolerance\.(DrawsTheSame|IsForTheColours)|^BFloat16\.(IsTheSameOnLattices|ValuesDoNotDepend)'
-repeated+='|^KeptSurvey\.(SparesAGroup|IsReadAgain|IsOfNoOther)|^UnfinishedDrawing\.ShowsWhatIsThere'
-build asan && run_tests build-asan -L 'core|fuzz' -E "$repeated" "$@"
+# Core alone, as on a machine without VTK and by another compiler, under the sanitizers; without what would
+# execute the same lines over and over again, and what waits for a GPU, which this build has no code of.
+build asan && run_tests build-asan -L 'core|fuzz' -LE 'long|repeated|gpu' "$@"
 
 [ "$skipped" -eq 0 ] || echo "== $skipped skipped, as their output says why"
 [ ${#seconds[@]} -eq 0 ] || printf '== passed only at the second attempt: %s\n' "${seconds[@]}"
