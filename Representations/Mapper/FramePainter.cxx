@@ -10,7 +10,7 @@
 #include "MapperInput.h"
 #include "PickedCells.h"
 #include "SceneCheck.h"
-#include "SceneLights.h"
+#include "SceneFrame.h"
 #include "SelectionPass.h"
 #include "vtkINRDataArray.h"
 
@@ -47,57 +47,6 @@ std::function<bool()> Unless(vtkRenderWindow* window, Clock::time_point deadline
   };
 }
 
-Frame MakeFrame(const PresentedGrid& grid, vtkVolumeMapper* mapper, vtkRenderer* renderer,
-                vtkVolume* volume, const PaintSettings& settings)
-{
-  Frame frame;
-  frame.clipToWorld = ClipToWorld(renderer);
-  frame.worldToIndex = WorldToIndex(grid, volume->GetMatrix());
-  frame.worldToMedium = WorldToVolume(volume->GetMatrix());
-  frame.clippingPlanes = ClippingPlanes(mapper->GetClippingPlanes());
-  if (settings.group.isAlone()) {
-    frame.piece = PiecePlanes(grid, frame.worldToIndex);
-  }
-  frame.lights = SceneLights(renderer);
-  frame.shading = MaterialOf(volume->GetProperty());
-  frame.unitDistance = volume->GetProperty()->GetScalarOpacityUnitDistance();
-  frame.mode = settings.mode;
-  frame.blending = BlendingOf(mapper, volume->GetProperty());
-  frame.cropping = CroppingOf(grid, mapper);
-  frame.paths = settings.paths;
-  frame.samplesPerPixel = settings.samplesPerPixel;
-  frame.sampleDistance = settings.sampleDistance;
-  frame.adaptiveSampling = settings.adaptiveSampling;
-  frame.preIntegration = settings.preIntegration;
-  frame.levelOfDetailScale = settings.levelOfDetailScale;
-  frame.errorTolerance = settings.errorTolerance;
-  frame.seed = settings.seed;
-  return frame;
-}
-
-/// Whether the application wants a picture soon, as while the camera moves.
-bool IsInteractive(vtkRenderWindow* window)
-{
-  return window->GetDesiredUpdateRate() >= ImageReduction::StillRate;
-}
-
-/// Seconds for a picture, or for what a click selects of one; 0: as many as it takes.
-double TimeLimit(vtkRenderer* renderer, const PaintSettings& settings)
-{
-  constexpr double glance = 0.5; // what a user waits for without noticing
-  vtkRenderWindow* window = renderer->GetRenderWindow();
-  if (IsInteractive(window)) {
-    return glance / window->GetDesiredUpdateRate();
-  }
-  const bool isWatched = renderer->GetSelector() || settings.forSelection
-                             ? RefinementTimer::isWatched(window)
-                             : RefinementTimer::canRefine(window);
-  if (!isWatched && !settings.shownElsewhere) {
-    return 0;
-  }
-  return settings.stillTimeLimit >= 0 ? settings.stillTimeLimit : glance; // no number is no wish
-}
-
 /// Whether it can become no better.
 bool IsFinal(const FrameStatistics& statistics)
 {
@@ -106,14 +55,8 @@ bool IsFinal(const FrameStatistics& statistics)
 
 } // namespace
 
-FramePainter::FramePainter(const std::function<bool()>& mayRefine)
-    : Refine([this, mayRefine] {
-        const bool refines = mayRefine();
-        if (refines) {
-          this->Pictures.answerRequests();
-        }
-        return refines;
-      })
+FramePainter::FramePainter(std::function<bool()> mayRefine)
+    : Stills(this->Pictures, std::move(mayRefine))
 {}
 
 std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
@@ -143,7 +86,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   }
   picture.depict(this->depicted(frame, renderer, volume));
   picture.last().seconds = SecondsSince(start);
-  this->refineLater(job, settings.shownElsewhere);
+  this->Stills.followUp(picture, frame.mode, renderer->GetRenderWindow(), settings.shownElsewhere);
   return problem;
 }
 
@@ -256,44 +199,6 @@ void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOpti
   if (measures != measured) {
     this->Rays = ImageReduction(measures);
     this->Paths = measures ? ImageReduction(true, ImageReduction::UnmeasuredPaths) : this->Rays;
-  }
-}
-
-void FramePainter::refineLater(const Job& job, bool shownElsewhere)
-{
-  vtkRenderWindow* window = job.renderer->GetRenderWindow();
-  if (IsInteractive(window)) {
-    this->Refine.postpone(); // what follows an interactive picture is the application's business
-    return;
-  }
-  if (!shownElsewhere && !RefinementTimer::canRefine(window)) {
-    return; // captured; what is on the screen goes on afterwards
-  }
-  const PaintedFrame& last = job.picture.last();
-  job.picture.goesOn = false;
-  job.picture.requested = !last.rgba.pixels.empty() && !last.statistics.complete;
-  if (!this->Pictures.anyRequested()) {
-    this->Refine.cancel();
-  }
-  if (!job.picture.requested) {
-    return;
-  }
-  // Bricks are decoded in the pause, too; paths are traced within pictures only.
-  const double share = job.scene.mode == RenderMode::PathTracing ? 0.25 : 1;
-  const double pause = std::clamp(share * last.seconds, 0.02, 0.5);
-  if (shownElsewhere) {
-    this->Pause = std::max(this->Pause, pause); // of both eyes
-  } else {
-    this->Refine.request(window, pause);
-  }
-}
-
-void FramePainter::refineLater(vtkRenderWindow* window, double pause)
-{
-  if (pause > 0) {
-    this->Refine.request(window, pause);
-  } else {
-    this->Refine.cancel();
   }
 }
 

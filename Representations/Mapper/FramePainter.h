@@ -10,7 +10,7 @@
 #include "PaintSettings.h"
 #include "PictureGroup.h"
 #include "PictureStore.h"
-#include "RefinementTimer.h"
+#include "StillPictures.h"
 #include "Surroundings.h"
 #include "TransferFunctionBuilder.h"
 #include "TranslucentPeeler.h"
@@ -20,7 +20,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 
 class vtkINRDataArray;
 class vtkRenderWindow;
@@ -36,7 +35,7 @@ class FramePainter
 {
 public:
   /// `mayRefine`: see RefinementTimer.
-  explicit FramePainter(const std::function<bool()>& mayRefine);
+  explicit FramePainter(std::function<bool()> mayRefine);
   /// Draws one frame and returns an empty text, or draws nothing and returns why. A frame aborted
   /// by the render window is not drawn and not an error. Throws what Renderer throws. Of a group,
   /// each process keeps its own part and what that took.
@@ -48,11 +47,8 @@ public:
   std::string mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                    const PaintSettings& settings);
   const PaintedFrame& last() const { return this->Pictures.latest().last(); }
-  /// Seconds until what was drawn since this was asked before, and is shown elsewhere, is to be
-  /// drawn again; 0: it is complete, or there is none.
-  double takePause() { return std::exchange(this->Pause, 0); }
-  /// What somebody else has made for `window` goes on in so many seconds; 0: it does not.
-  void refineLater(vtkRenderWindow* window, double pause);
+  /// Those that are not complete.
+  StillPictures& stills() { return this->Stills; }
   /// See Renderer.
   std::int64_t cacheBytes() const { return this->Caster.cacheBytes(); }
   std::optional<AcceleratedField::Failure> acceleratorFailure() const
@@ -61,7 +57,7 @@ public:
   }
   void release(vtkWindow* window)
   {
-    this->Refine.cancel();
+    this->Stills.cancel();
     this->Blender.release(window);
     this->Peeler.release(window);
   }
@@ -99,8 +95,6 @@ private:
   /// A picture that is not shown; whether it was made.
   bool drawUnseen(const Job& job);
   DepictedScene depicted(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume) const;
-  /// Sees to it that an unfinished still picture goes on.
-  void refineLater(const Job& job, bool shownElsewhere);
 
   CurrentRenderer Caster;
   bool CountSamples = false;
@@ -111,9 +105,8 @@ private:
   ImageReduction Paths{true, ImageReduction::UnmeasuredPaths};
   ImageBlender Blender;
   TranslucentPeeler Peeler;
-  RefinementTimer Refine;
-  double Pause = 0;
   PictureStore Pictures;
+  StillPictures Stills;     ///< of these
   ViewPicture Selected{-1}; ///< for the latest selection, where no view shows what it is of
 };
 

@@ -277,7 +277,7 @@ const char* vtkINRVolumeMapper::GetBackendInUse() const
   return this->Self->Painter.last().backend.c_str();
 }
 
-double vtkINRVolumeMapper::TakeRefinementPause() { return this->Self->Painter.takePause(); }
+double vtkINRVolumeMapper::TakeRefinementPause() { return this->Self->Painter.stills().takePause(); }
 
 bool vtkINRVolumeMapper::MayRefine(vtkRenderWindow* window)
 {
@@ -286,7 +286,7 @@ bool vtkINRVolumeMapper::MayRefine(vtkRenderWindow* window)
 
 void vtkINRVolumeMapper::RefineLater(vtkRenderWindow* window, double pause)
 {
-  this->Self->Painter.refineLater(window, pause);
+  this->Self->Painter.stills().request(window, pause);
 }
 
 void vtkINRVolumeMapper::GetFrameSize(int size[2]) const

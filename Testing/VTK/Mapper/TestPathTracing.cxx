@@ -261,6 +261,34 @@ TEST(PathTracing, WindowsClearUpWhileTheyAreIdle)
   EXPECT_TRUE(one.mapper->GetConverged());
 }
 
+TEST(PathTracing, PicturesShownElsewhereGoOnWhenThatIsAskedFor)
+{
+  Traced one;
+  one.mapper->SetAmbientLight(1, 1, 1);
+  one.mapper->SetSamplesPerPixel(6);
+  one.mapper->SetStillTimeLimit(1e-3);
+  one.mapper->ShownElsewhereOn();
+  EXPECT_EQ(one.mapper->TakeRefinementPause(), 0);
+  int pictures = 0;
+  double pause = 0;
+  do {
+    one.scene.window->Render();
+    pause = one.mapper->TakeRefinementPause();
+    EXPECT_EQ(one.mapper->TakeRefinementPause(), 0) << "asked for again";
+    EXPECT_EQ(pause > 0, !one.mapper->GetConverged());
+    ++pictures;
+  } while (pause > 0 && pictures < 1000);
+  EXPECT_GT(pictures, 1);
+  EXPECT_TRUE(one.mapper->GetConverged());
+  EXPECT_EQ(one.mapper->GetNumberOfPaths(), 6);
+
+  one.mapper->SetSamplesPerPixel(12);
+  one.mapper->ShownElsewhereOff(); // for a screenshot
+  one.scene.window->Render();
+  EXPECT_TRUE(one.mapper->GetConverged());
+  EXPECT_EQ(one.mapper->TakeRefinementPause(), 0);
+}
+
 TEST(PathTracing, WindowsOfBusyApplicationsClearUpLater)
 {
   Traced one;
