@@ -487,9 +487,11 @@ bool vtkINRVolumeRepresentation::MayRefine()
 
 void vtkINRVolumeRepresentation::RefineLater(double pause)
 {
-  this->Client->update();
   auto* view = vtkPVRenderView::SafeDownCast(this->GetView());
-  this->GetMapper()->RefineLater(view->GetRenderWindow(), pause);
+  if (view) {
+    this->Client->update();
+    this->GetMapper()->RefineLater(view->GetRenderWindow(), pause);
+  }
 }
 
 double vtkINRVolumeRepresentation::GetCacheHitRate()

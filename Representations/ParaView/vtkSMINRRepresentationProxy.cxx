@@ -82,7 +82,9 @@ void vtkSMINRRepresentationProxy::OnRender(vtkObject*, unsigned long event, void
 /** Before a still picture: whether it is one that goes on. */
 void vtkSMINRRepresentationProxy::Announce()
 {
-  const bool refines = this->Here()->MayRefine();
+  vtkINRVolumeRepresentation* here = this->Here();
+  // One of another type, which all images have beside this one, draws nothing.
+  const bool refines = here->MayRefine() && here->GetVisibility();
   if (refines == this->Announced) {
     return;
   }
@@ -97,14 +99,21 @@ void vtkSMINRRepresentationProxy::Announce()
 /** After one. */
 void vtkSMINRRepresentationProxy::GoOn()
 {
-  if (!this->Announced) {
-    return;
+  vtkINRVolumeRepresentation* here = this->Here();
+  if (!here->GetVisibility()) {
+    here->RefineLater(0);
+  } else if (this->Announced) { // else a screenshot: what is on the screen goes on afterwards
+    here->RefineLater(this->AskForPause());
   }
+}
+
+double vtkSMINRRepresentationProxy::AskForPause()
+{
   vtkClientServerStream stream;
   stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "GetRefinementPause"
          << vtkClientServerStream::End;
   this->ExecuteStream(stream, false, vtkPVSession::RENDER_SERVER);
   double pause = 0;
   this->GetLastResult(vtkPVSession::RENDER_SERVER_ROOT).GetArgument(0, 0, &pause);
-  this->Here()->RefineLater(pause);
+  return pause;
 }

@@ -43,6 +43,7 @@ private:
   static void OnRender(vtkObject* view, unsigned long event, void* self, void* isInteractive);
   void Announce();
   void GoOn();
+  double AskForPause();
 
   vtkWeakPointer<vtkSMProxy> View;
   vtkNew<vtkCallbackCommand> RenderCommand;
