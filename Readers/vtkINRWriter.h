@@ -141,9 +141,10 @@ public:
   ///@}
 
   ///@{
-  /// Steps that the learning rate is spread over; 0 (default) = MaximumSteps or, without it, what
-  /// the first steps show that TimeLimit allows. To repeat a training that TimeLimit ended: its
-  /// file says `planned_steps` and `steps` (MaximumSteps).
+  /// Steps that the learning rate is spread over; 0 (default) = MaximumSteps or, without it, 10,000
+  /// to a TargetPSNR; but what the first steps show that TimeLimit allows, where that is clearly
+  /// less or neither is set. To repeat a training that TimeLimit ended: its file says
+  /// `planned_steps` and `steps` (MaximumSteps).
   vtkSetClampMacro(PlannedSteps, vtkIdType, 0, VTK_ID_MAX);
   vtkGetMacro(PlannedSteps, vtkIdType);
   ///@}

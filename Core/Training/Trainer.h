@@ -24,8 +24,9 @@ struct TrainingOptions
   double targetRatio = 0;
   std::uint64_t maximumSteps = 0; ///< 0 = no limit
   double timeLimit = 300;         ///< seconds of training; measuring comes on top; 0 = no limit
-  /// Steps that the learning rate is spread over; 0 = maximumSteps or, without it, what the time
-  /// limit is seen to allow. To repeat a training, as its record says.
+  /// Steps that the learning rate is spread over; 0 = maximumSteps or, without it, 10,000 to a
+  /// target or else without end, but what the time limit is seen to allow where that is clearly
+  /// less. To repeat a training that the time limit counted for, as its record says.
   std::uint64_t plannedSteps = 0;
   std::uint64_t seed = 1;
   int macroCellSize = 0; ///< voxels, a power of two up to 2^29; 0 = DefaultMacroCellSize

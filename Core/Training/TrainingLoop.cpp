@@ -16,13 +16,6 @@ namespace {
 constexpr std::uint64_t PsnrInterval = 200;
 constexpr double ReportInterval = 0.2; // seconds, within a step
 
-/// The learning rate of a training that only its quality ends is spread over so many steps.
-constexpr std::uint64_t StepsToTarget = 10000;
-
-/// Share of the time limit after which it is known how many steps it allows: less than that in
-/// which the learning rate is constant.
-constexpr double TimingShare = 0.03;
-
 void RequireFinite(bool finite, std::uint64_t steps)
 {
   if (!finite) {
@@ -94,13 +87,11 @@ void TrainingLoop::waitForFirst() const
 
 void TrainingLoop::planAhead(Descent& descent)
 {
-  const bool byTheClock = this->Options.timeLimit > 0 && this->Options.maximumSteps == 0;
-  if (this->Options.plannedSteps > 0) {
-    this->plan(descent, this->Options.plannedSteps);
-  } else if (!byTheClock) {
-    const std::uint64_t steps = this->Options.maximumSteps;
-    this->plan(descent, steps > 0 ? steps : StepsToTarget);
+  const std::uint64_t steps = StepsAhead(this->Options);
+  if (steps > 0) {
+    this->plan(descent, steps);
   }
+  this->IsPlanFinal = !ClockPlans(this->Options);
 }
 
 /// An error in the middle of a step leaves the parameters of the steps before it.
@@ -193,6 +184,9 @@ void TrainingLoop::resume(Descent& descent, BatchSource& batches)
   descent.goOnAfter(before.state.steps);
   if (before.state.plannedSteps > 0) {
     this->plan(descent, before.state.plannedSteps);
+    // It had been looked at by then.
+    this->IsPlanFinal =
+        this->IsPlanFinal || before.state.seconds >= TimingShare * this->Options.timeLimit;
   }
   this->Clock = TrainingClock(before.state.seconds);
   this->LastReport = before.state.seconds;
@@ -238,18 +232,14 @@ void TrainingLoop::noteFirst(std::uint64_t steps)
 /// Plans as many steps as the time limit allows, once that is known.
 void TrainingLoop::planByTheClock(Descent& descent)
 {
-  const double seconds = this->Clock.seconds() - this->Timed.seconds;
-  const double limit = this->Options.timeLimit;
-  if (this->PlannedSteps > 0 || seconds < TimingShare * limit || this->Group.rank() > 0) {
+  const TimedSteps now{descent.steps(), this->Clock.seconds()};
+  const double seconds = now.seconds - this->Timed.seconds;
+  if (this->IsPlanFinal || seconds < TimingShare * this->Options.timeLimit ||
+      this->Group.rank() > 0) {
     return;
   }
-  const double rate = static_cast<double>(descent.steps() - this->Timed.steps) / seconds;
-  auto steps = this->Timed.steps + static_cast<std::uint64_t>(rate * (limit - this->Timed.seconds));
-  if (this->Options.targetPsnr > 0) { // which ought to be reached as soon as may be
-    steps = std::min(steps, StepsToTarget);
-  }
-  // Not less than would have kept the rate constant up to here, so that it can be repeated.
-  this->plan(descent, std::max(steps, LearningRate::ConstantShare * descent.steps()));
+  this->IsPlanFinal = true;
+  this->plan(descent, StepsByTheClock(this->Options, this->Timed, now));
 }
 
 /// In dB, that storing the parameters may cost afterwards.

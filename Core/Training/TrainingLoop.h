@@ -6,6 +6,7 @@
 #include "Core/Training/CheckpointKeeper.h"
 #include "Core/Training/Descent.h"
 #include "Core/Training/PsnrEstimate.h"
+#include "Core/Training/StepPlan.h"
 #include "Core/Training/Trainer.h"
 #include "Core/Training/TrainingClock.h"
 #include "Core/Training/TrainingGroup.h"
@@ -78,14 +79,11 @@ private:
   const TrainingGroup& Group;
   TrainingPipeline Pipeline;
   bool IsAccelerated = false;
-  struct
-  {
-    std::uint64_t steps = 0;
-    double seconds = 0;
-  } Timed; ///< from where it is seen how many steps a time allows
+  TimedSteps Timed; ///< from where it is seen how many steps a time allows
   TrainingClock Clock;
   bool Finished = false;          ///< before it was stopped
   std::uint64_t PlannedSteps = 0; ///< 0 until there is a plan
+  bool IsPlanFinal = false;       ///< the clock has no say in it, or has had it
   double Psnr = 0;
   double Fraction = 0;
   double LastReport = 0;
