@@ -56,7 +56,9 @@ enum class TrainingPhase { Reading, Training, Measuring };
 struct TrainingProgress
 {
   TrainingPhase phase = TrainingPhase::Training;
-  double fraction = 0; ///< of the whole, 0 to 1, never falling
+  /// Of the whole, 0 to 1, never falling: of what the limits allow and, to a target, of the planned
+  /// steps, of which it may not take all.
+  double fraction = 0;
   std::uint64_t steps = 0;
   double psnr = 0;          ///< latest estimate in dB; 0 while there is none
   bool accelerated = false; ///< an accelerator trains

@@ -292,8 +292,9 @@ double TrainingLoop::fraction(std::uint64_t steps) const
   if (this->Options.timeLimit > 0) {
     done = std::max(done, this->Clock.seconds() / this->Options.timeLimit);
   }
-  if (this->Options.targetPsnr > 0) {
-    done = std::max(done, this->Psnr / this->Options.targetPsnr);
+  // The dB of the target say nothing: most of them are there after the first tenth of the steps.
+  if (this->Options.targetPsnr > 0 && this->PlannedSteps > 0) {
+    done = std::max(done, static_cast<double>(steps) / static_cast<double>(this->PlannedSteps));
   }
   return std::clamp(done, 0.0, 1.0);
 }

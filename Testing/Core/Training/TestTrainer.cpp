@@ -2,6 +2,7 @@
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
 #include "Testing/Core/Kernels.h"
+#include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
 
 #include <gtest/gtest.h>
@@ -223,6 +224,25 @@ TEST(Trainer, ProgressRisesAndEndsInMeasuring)
   });
   EXPECT_TRUE(measured);
   EXPECT_GT(last, 0.9);
+}
+
+// A target of which most decibels are there after the first steps is as far away as before.
+TEST(Trainer, ProgressToATargetIsThatOfItsSteps)
+{
+  inr::TrainingOptions options = Steps(0);
+  options.targetPsnr = 18;
+  options.plannedSteps = 2000;
+  options.description = SmallDescription();
+  options.storedAs = inr::ParameterType::Half;
+  const auto expectSteps = [](const inr::TrainingProgress& progress) {
+    if (progress.phase == inr::TrainingPhase::Training) {
+      EXPECT_LT(std::abs(progress.fraction - 0.9 * static_cast<double>(progress.steps) / 2000),
+                1e-6);
+    }
+    return true;
+  };
+  const inr::ModelPointer model = inr::TrainModel(Waves().data(), {}, options, expectSteps);
+  EXPECT_LT(model->training->steps, 2000u);
 }
 
 TEST(Trainer, CanBeStopped)
