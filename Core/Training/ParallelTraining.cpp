@@ -62,8 +62,8 @@ ModelPointer TrainModel(const VolumePiece& piece, const VolumeInfo& info,
   const double high = run.volume().high;
   const SharedSource source(part, group, low, high);
   PieceBatches batches(part, low, high, group.size());
-  run.train(batches, PsnrEstimate(source, options.seed), arena);
-  const PsnrEstimate estimate(source, options.seed, PsnrEstimate::StoringVoxels);
+  run.train(batches, PsnrEstimate(source, options.seed, arena), arena);
+  const PsnrEstimate estimate(source, options.seed, arena, PsnrEstimate::StoringVoxels);
   std::shared_ptr<Model> trained;
   group.together([&] { trained = run.store(estimate); });
 

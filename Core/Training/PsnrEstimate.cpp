@@ -12,7 +12,8 @@
 namespace inr {
 
 namespace {
-constexpr std::int64_t BlockSize = 64;
+constexpr std::int64_t BlockSize = 64; ///< between two checks: a wide network takes long
+constexpr std::int64_t TaskSize = 1024;
 
 std::vector<float> TargetsAt(const SampleSource& source, const std::vector<glm::vec3>& positions)
 {
@@ -34,16 +35,25 @@ std::vector<glm::vec3> PsnrEstimate::positions(const glm::i64vec3& dims, std::ui
   return positions;
 }
 
-PsnrEstimate::PsnrEstimate(std::vector<glm::vec3> positions, std::vector<float> targets)
-    : Positions(std::move(positions)), Targets(std::move(targets)),
+PsnrEstimate::PsnrEstimate(std::vector<glm::vec3> positions, std::vector<float> targets,
+                           const Arena& arena)
+    : Threads(arena), Positions(std::move(positions)), Targets(std::move(targets)),
       Known(std::count_if(this->Targets.begin(), this->Targets.end(),
                           [](float target) { return std::isfinite(target); }))
 {}
 
-PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed, std::int64_t voxels)
+PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed, const Arena& arena,
+                           std::int64_t voxels)
     : PsnrEstimate(positions(source.dims(), seed, voxels),
-                   TargetsAt(source, positions(source.dims(), seed, voxels)))
+                   TargetsAt(source, positions(source.dims(), seed, voxels)), arena)
 {}
+
+PsnrEstimate PsnrEstimate::first(std::int64_t voxels) const
+{
+  return {{this->Positions.begin(), this->Positions.begin() + voxels},
+          {this->Targets.begin(), this->Targets.begin() + voxels},
+          this->Threads};
+}
 
 double PsnrEstimate::measure(const ModelView& model, const EvaluateKernel& kernel,
                              const StopCheck& check) const
@@ -56,16 +66,25 @@ std::vector<float> PsnrEstimate::values(const ModelView& model, const EvaluateKe
                                         const StopCheck& check) const
 {
   const PackedNetwork network(model);
-  const auto count = static_cast<std::int64_t>(this->Targets.size());
   std::vector<float> values(this->Targets.size());
-  std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(network.view())));
-  for (std::int64_t first = 0; first < count && check.goesOn(); first += BlockSize) {
-    kernel.evaluate(network.view(), &this->Positions[first].x,
-                    std::min<std::int64_t>(BlockSize, count - first), &values[first],
-                    workspace.data());
-  }
-  std::transform(values.begin(), values.end(), values.begin(), NormalisedOutput);
+  this->Threads.forEachBlock(static_cast<std::int64_t>(values.size()), TaskSize,
+                             [&](std::int64_t begin, std::int64_t end) {
+                               this->evaluate(network.view(), kernel, check, begin, end,
+                                              values.data());
+                             });
   return values;
+}
+
+void PsnrEstimate::evaluate(const ModelView& model, const EvaluateKernel& kernel,
+                            const StopCheck& check, std::int64_t begin, std::int64_t end,
+                            float* values) const
+{
+  std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(model)));
+  for (std::int64_t first = begin; first < end && check.goesOn(); first += BlockSize) {
+    kernel.evaluate(model, &this->Positions[first].x, std::min(BlockSize, end - first),
+                    values + first, workspace.data());
+  }
+  std::transform(values + begin, values + end, values + begin, NormalisedOutput);
 }
 
 std::uint32_t PsnrEstimate::checksum() const

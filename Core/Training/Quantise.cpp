@@ -57,6 +57,15 @@ struct GroupShape
   std::uint64_t live = 0; ///< parameters that matter
 };
 
+/// Mean squared errors.
+struct ErrorLimit
+{
+  double own;  ///< of the network as it was
+  double most; ///< that quantising may leave
+
+  double more() const { return this->most - this->own; }
+};
+
 class Quantiser
 {
 public:
@@ -74,19 +83,22 @@ public:
   /// The coarsest steps that cost so many dB at most; false when there are none.
   bool keepLoss(double decibels)
   {
-    const double own = this->Estimate.squaredError(this->Exact);
-    const double allowed = own * std::pow(10.0, decibels / 10.0) + NegligibleError;
+    const PsnrEstimate few = this->Estimate.first(this->Estimate.voxels() / 8);
+    const ErrorLimit limit = this->limitOn(this->Estimate, decibels);
+    const ErrorLimit limitOnFew = this->limitOn(few, decibels);
     double live = 1;
     for (const GroupShape& group : this->Groups) {
       live += static_cast<double>(group.live);
     }
     // As if errors were independent of each other and of what the training left.
-    const double expected = std::sqrt((allowed - own) / live);
+    const double expected = std::sqrt(limit.more() / live);
     constexpr int coarsest = 2 * StepsPerOctave;
     constexpr int finest = -16 * StepsPerOctave;
     for (int k = coarsest; k >= finest; --k) {
       this->apply(expected * std::exp2(static_cast<double>(k) / StepsPerOctave));
-      if (this->Estimate.squaredError(this->values()) <= allowed) {
+      // Most steps are so much too coarse that a part of the voxels is enough to see it.
+      const bool isHopeless = this->error(few) > limitOnFew.own + 2 * limitOnFew.more();
+      if (!isHopeless && this->error(this->Estimate) <= limit.most) {
         return true;
       }
     }
@@ -121,6 +133,18 @@ private:
   std::vector<float> values() const
   {
     return this->Estimate.values(this->Views.view(), this->Kernel, this->Check);
+  }
+
+  double error(const PsnrEstimate& estimate) const
+  {
+    return estimate.squaredError(estimate.values(this->Views.view(), this->Kernel, this->Check));
+  }
+
+  /// While the network is as it was.
+  ErrorLimit limitOn(const PsnrEstimate& estimate, double decibels) const
+  {
+    const double own = this->error(estimate);
+    return {own, own * std::pow(10.0, decibels / 10.0) + NegligibleError};
   }
 
   float* parametersOf(const ParameterGroup& where)

@@ -121,7 +121,8 @@ PsnrEstimate StreamedVolume::estimate(std::int64_t voxels) const
                                        this->Statistics.low, this->Statistics.high));
   }
   return {{this->EstimatePositions.begin(), this->EstimatePositions.begin() + voxels},
-          std::move(targets)};
+          std::move(targets),
+          this->Threads};
 }
 
 SamplePool& StreamedVolume::begin(double rereads)

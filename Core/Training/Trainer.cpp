@@ -22,9 +22,9 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   }
   const InMemorySource source(volume, run.volume().low, run.volume().high);
   StratifiedBatches batches(source);
-  run.train(batches, PsnrEstimate(source, options.seed), arena);
+  run.train(batches, PsnrEstimate(source, options.seed, arena), arena);
   const std::shared_ptr<Model> trained =
-      run.store(PsnrEstimate(source, options.seed, PsnrEstimate::StoringVoxels));
+      run.store(PsnrEstimate(source, options.seed, arena, PsnrEstimate::StoringVoxels));
 
   const auto keepGoing = [&](double fraction) {
     const double done = TrainingShare + (1.0 - TrainingShare) * fraction;

@@ -8,12 +8,23 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <filesystem>
 #include <limits>
+#include <mutex>
 #include <numeric>
+#include <set>
+#include <thread>
 #include <unistd.h>
 
 namespace {
+
+const inr::EvaluateKernel& FastestKernel()
+{
+  return inr::EvaluateKernelFor(inr::ChooseInstructionSet(""));
+}
 
 /// What a network that was trained on a field is quantised with.
 struct Quantising : testing::Test
@@ -40,14 +51,12 @@ struct Quantising : testing::Test
     return this->Estimate.measure(views.view(), this->kernel(), inr::StopCheck());
   }
 
-  const inr::EvaluateKernel& kernel() const
-  {
-    return inr::EvaluateKernelFor(inr::ChooseInstructionSet(""));
-  }
+  static const inr::EvaluateKernel& kernel() { return FastestKernel(); }
 
   Field<float> Data = Waves();
   inr::InMemorySource Source{this->Data.data(), -1, 1};
-  inr::PsnrEstimate Estimate{this->Source, 1, 1 << 13}; ///< of 8,160 voxels
+  inr::Arena Threads{2};
+  inr::PsnrEstimate Estimate{this->Source, 1, this->Threads, 1 << 13}; ///< of 8,160 voxels
   inr::Model Trained;
 };
 
@@ -185,6 +194,65 @@ TEST_F(Quantising, CanBeStopped)
   inr::Model model = this->Trained;
   const inr::StopCheck check([]() -> bool { throw std::runtime_error("enough"); });
   EXPECT_THROW(inr::Quantise(model, this->Estimate, this->kernel(), {}, check), std::runtime_error);
+}
+
+/// The fastest kernel, and how it was called.
+struct WatchedKernel
+{
+  static inline std::atomic<std::int64_t> points{0};
+
+  static void evaluate(const inr::ModelView& model, const float* xyz, std::int64_t count,
+                       float* values, float* workspace)
+  {
+    points += count;
+    FastestKernel().evaluate(model, xyz, count, values, workspace);
+  }
+  static inr::EvaluateKernel kernel() { return {FastestKernel().workspace, &evaluate}; }
+};
+
+TEST_F(Quantising, EvaluatesTheNetworkAFewTimesOnly)
+{
+  WatchedKernel::points = 0;
+  inr::Model model = this->Trained;
+  inr::Quantise(model, this->Estimate, WatchedKernel::kernel(), {});
+  const std::int64_t groups = static_cast<std::int64_t>(model.steps.size());
+  // Each group alone, the network as it was, and some of the many steps that are tried.
+  EXPECT_LE(WatchedKernel::points / (1 << 13), groups + 1 + 10);
+}
+
+/// Two threads that wait until they are in it at the same time.
+struct MeetingKernel
+{
+  static inline std::mutex mutex;
+  static inline std::condition_variable met;
+  static inline std::set<std::thread::id> threads;
+
+  static void evaluate(const inr::ModelView& model, const float* xyz, std::int64_t count,
+                       float* values, float* workspace)
+  {
+    {
+      std::unique_lock<std::mutex> lock(mutex);
+      threads.insert(std::this_thread::get_id());
+      met.notify_all();
+      met.wait_for(lock, std::chrono::seconds(10), [] { return threads.size() > 1; });
+      threads.insert(std::thread::id()); // nobody waits again
+    }
+    FastestKernel().evaluate(model, xyz, count, values, workspace);
+  }
+};
+
+TEST_F(Quantising, EvaluatesTheNetworkOnAllThreads)
+{
+  const inr::Layout layout(this->Trained.description);
+  const inr::ModelViewStorage views(this->Trained.description, layout,
+                                    this->Trained.parameters.data());
+  const inr::EvaluateKernel meeting{FastestKernel().workspace, &MeetingKernel::evaluate};
+  const std::vector<float> values = this->Estimate.values(views.view(), meeting, inr::StopCheck());
+  MeetingKernel::threads.erase(std::thread::id());
+  EXPECT_EQ(MeetingKernel::threads.size(), 2u);
+  const inr::Arena alone(1);
+  const inr::PsnrEstimate byOne(this->Source, 1, alone, 1 << 13);
+  EXPECT_EQ(byOne.values(views.view(), this->kernel(), inr::StopCheck()), values);
 }
 
 /// Bytes of the file of a model that was trained at a ratio, over the bytes asked for.
