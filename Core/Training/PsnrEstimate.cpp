@@ -5,9 +5,12 @@
 #include "Core/Model/ModelBlobs.h"
 #include "Core/Training/HalvedCube.h"
 #include "Core/Training/RandomStream.h"
+#include "Core/Training/VoxelDraw.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace inr {
 
@@ -35,24 +38,56 @@ std::vector<glm::vec3> PsnrEstimate::positions(const glm::i64vec3& dims, std::ui
   return positions;
 }
 
-PsnrEstimate::PsnrEstimate(std::vector<glm::vec3> positions, std::vector<float> targets,
-                           const Arena& arena)
-    : Threads(arena), Positions(std::move(positions)), Targets(std::move(targets)),
+PsnrEstimate::Choice PsnrEstimate::Choose(const SampleSource& source, std::uint64_t seed,
+                                          const Arena& arena, std::int64_t voxels)
+{
+  const std::optional<NormalisedVolume> volume = source.inMemory();
+  if (!volume) {
+    return {positions(source.dims(), seed, voxels), {}};
+  }
+  const VoxelDraw draw(*volume, arena);
+  const std::uint64_t stream = StreamSeed(seed, RandomStream::Estimate);
+  Choice choice{std::vector<glm::vec3>(static_cast<std::size_t>(voxels)),
+                std::vector<float>(static_cast<std::size_t>(voxels))};
+  arena.forEachBlock(voxels, TaskSize, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t k = begin; k < end; ++k) {
+      const VoxelDraw::Voxel voxel = draw.voxel(stream, static_cast<std::uint64_t>(k));
+      choice.positions[k] = (glm::dvec3(voxel.at) + 0.5) / glm::dvec3(source.dims());
+      choice.weights[k] = voxel.weight;
+    }
+  });
+  return choice;
+}
+
+PsnrEstimate::PsnrEstimate(Choice choice, std::vector<float> targets, const Arena& arena)
+    : Threads(arena), Positions(std::move(choice.positions)), Weights(std::move(choice.weights)),
+      Targets(std::move(targets)),
       Known(std::count_if(this->Targets.begin(), this->Targets.end(),
                           [](float target) { return std::isfinite(target); }))
 {}
 
+PsnrEstimate::PsnrEstimate(Choice choice, const SampleSource& source, const Arena& arena)
+    : PsnrEstimate(choice, TargetsAt(source, choice.positions), arena)
+{}
+
 PsnrEstimate::PsnrEstimate(const SampleSource& source, std::uint64_t seed, const Arena& arena,
                            std::int64_t voxels)
-    : PsnrEstimate(positions(source.dims(), seed, voxels),
-                   TargetsAt(source, positions(source.dims(), seed, voxels)), arena)
+    : PsnrEstimate(Choose(source, seed, arena, voxels), source, arena)
+{}
+
+PsnrEstimate::PsnrEstimate(std::vector<glm::vec3> positions, std::vector<float> targets,
+                           const Arena& arena)
+    : PsnrEstimate(Choice{std::move(positions), {}}, std::move(targets), arena)
 {}
 
 PsnrEstimate PsnrEstimate::first(std::int64_t voxels) const
 {
-  return {{this->Positions.begin(), this->Positions.begin() + voxels},
-          {this->Targets.begin(), this->Targets.begin() + voxels},
-          this->Threads};
+  Choice choice{{this->Positions.begin(), this->Positions.begin() + voxels}, {}};
+  if (!this->Weights.empty()) {
+    choice.weights.assign(this->Weights.begin(), this->Weights.begin() + voxels);
+  }
+  return {
+      std::move(choice), {this->Targets.begin(), this->Targets.begin() + voxels}, this->Threads};
 }
 
 double PsnrEstimate::measure(const ModelView& model, const EvaluateKernel& kernel,
@@ -98,10 +133,21 @@ double PsnrEstimate::squaredError(const std::vector<float>& values) const
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (std::isfinite(this->Targets[k])) {
       const double difference = values[k] - this->Targets[k];
-      squared += difference * difference;
+      squared += this->weight(k) * difference * difference;
     }
   }
   return squared / static_cast<double>(std::max<std::int64_t>(1, this->Known));
+}
+
+double PsnrEstimate::squaredDifference(const std::vector<float>& a,
+                                       const std::vector<float>& b) const
+{
+  double squared = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const double difference = a[k] - b[k];
+    squared += this->weight(k) * difference * difference;
+  }
+  return squared / static_cast<double>(a.size());
 }
 
 } // namespace inr

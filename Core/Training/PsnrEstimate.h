@@ -12,7 +12,8 @@
 namespace inr {
 
 /// PSNR of a network in training, on a fixed set of random voxels: the quality of a file is
-/// measured at voxels, too.
+/// measured at voxels, too. Of a volume in memory they are those of VoxelDraw; of any other they
+/// are uniform, of whatever value, and may miss what is localised.
 class PsnrEstimate
 {
 public:
@@ -23,10 +24,10 @@ public:
   PsnrEstimate(const SampleSource& source, std::uint64_t seed, const Arena& arena,
                std::int64_t voxels = UsualVoxels);
 
-  /// The same from targets at the first of positions().
+  /// From targets at the first of positions().
   PsnrEstimate(std::vector<glm::vec3> positions, std::vector<float> targets, const Arena& arena);
 
-  /// Centres of the random voxels: fewer are the first of more.
+  /// Centres of uniform random voxels: fewer are the first of more.
   static std::vector<glm::vec3> positions(const glm::i64vec3& dims, std::uint64_t seed,
                                           std::int64_t voxels);
 
@@ -50,12 +51,31 @@ public:
   /// is.
   double squaredError(const std::vector<float>& values) const;
 
+  /// The same of values from others.
+  double squaredDifference(const std::vector<float>& a, const std::vector<float>& b) const;
+
+  /// Targets that are finite, on which all of this depends.
+  std::int64_t known() const { return this->Known; }
+
 private:
+  struct Choice
+  {
+    std::vector<glm::vec3> positions;
+    std::vector<float> weights; ///< empty = 1 each
+  };
+  static Choice Choose(const SampleSource& source, std::uint64_t seed, const Arena& arena,
+                       std::int64_t voxels);
+
+  PsnrEstimate(Choice choice, std::vector<float> targets, const Arena& arena);
+  PsnrEstimate(Choice choice, const SampleSource& source, const Arena& arena);
+
+  double weight(std::size_t k) const { return this->Weights.empty() ? 1.0 : this->Weights[k]; }
   void evaluate(const ModelView& model, const EvaluateKernel& kernel, const StopCheck& check,
                 std::int64_t begin, std::int64_t end, float* values) const;
 
   const Arena& Threads;
   std::vector<glm::vec3> Positions;
+  std::vector<float> Weights;
   std::vector<float> Targets;
   std::int64_t Known = 0; ///< targets that are finite
 };

@@ -18,18 +18,10 @@ constexpr double NegligibleError = 1e-10;
 /// What a group seems to do to the output at least: less is lost in the arithmetic.
 constexpr double SmallestEffect = 1e-16;
 constexpr int StepsPerOctave = 8;
+/// Voxels with fewer finite values say nothing of a tenth of a dB.
+constexpr std::int64_t FewestKnown = 1000;
 /// Beyond that a file cannot become small enough at all: its macro-cells are too many.
 constexpr double MostCoarsening = 64.0;
-
-double SquaredDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    const double difference = a[k] - b[k];
-    sum += difference * difference;
-  }
-  return sum / static_cast<double>(a.size());
-}
 
 /// Sets to 0 what the padding of a network multiplies: input columns that are 0, and all rows of
 /// the last matrix but the first.
@@ -170,7 +162,8 @@ private:
     group.live = where.count -
                  static_cast<std::uint64_t>(std::count(parameters, parameters + where.count, 0.0f));
     const double effect =
-        std::max(SquaredDifference(this->values(), this->Exact), SmallestEffect) / step / step;
+        std::max(this->Estimate.squaredDifference(this->values(), this->Exact), SmallestEffect) /
+        step / step;
     group.relative = std::sqrt(static_cast<double>(group.live) / effect);
     std::copy_n(this->Original.data() + where.offset, where.count, parameters);
     return group;
@@ -226,7 +219,7 @@ void Quantise(Model& model, const PsnrEstimate& estimate, const EvaluateKernel& 
   model.storedAs = ParameterType::Quantised;
   ClearPadding(Layout(model.description), model.parameters);
   Quantiser quantiser(model, estimate, kernel, check);
-  if (!quantiser.keepLoss(limits.loss)) {
+  if (estimate.known() < FewestKnown || !quantiser.keepLoss(limits.loss)) {
     model.storedAs = ParameterType::Half;
     quantiser.restore();
   } else if (limits.fileSize > 0) {

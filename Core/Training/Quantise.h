@@ -26,8 +26,8 @@ QuantiseLimits LimitsForRatio(const Model& model, double ratio);
 /// step is proportional to sqrt(n / s). Parameters that no output depends on become 0.
 ///
 /// `model.storedAs` becomes Quantised; or Half, with the parameters as they were, when not even the
-/// finest steps keep the loss. `check` stops it by throwing. The result does not depend on the
-/// number of threads.
+/// finest steps keep the loss, or the estimate has too few finite voxels to tell. `check` stops it
+/// by throwing. The result does not depend on the number of threads.
 void Quantise(Model& model, const PsnrEstimate& estimate, const EvaluateKernel& kernel,
               const QuantiseLimits& limits, const StopCheck& check = StopCheck());
 

@@ -174,6 +174,20 @@ TEST_F(Quantising, StaysInHalvesWhereSixteenBitsAreTooFew)
   EXPECT_EQ(this->psnr(model), before);
 }
 
+// Whatever the steps, no voxel would say that they are too coarse.
+TEST_F(Quantising, StaysInHalvesWhereNothingIsKnown)
+{
+  constexpr std::int64_t count = 1 << 13;
+  std::vector<float> targets(count, NAN);
+  targets[5] = 0.5f;
+  const inr::PsnrEstimate estimate(inr::PsnrEstimate::positions(this->Data.dims, 1, count), targets,
+                                   this->Threads);
+  inr::Model model = this->Trained;
+  inr::Quantise(model, estimate, this->kernel(), {});
+  EXPECT_EQ(model.storedAs, inr::ParameterType::Half);
+  EXPECT_EQ(this->psnr(model), this->psnr(this->Trained));
+}
+
 TEST_F(Quantising, KeepsASizeAndGivesUpOnOneOutOfReach)
 {
   inr::Model model = this->Trained;
