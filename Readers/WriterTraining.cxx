@@ -7,6 +7,7 @@
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Training/ParallelTraining.h"
+#include "Core/Training/TargetReport.h"
 #include "Core/UsableMemory.h"
 #include "ParallelInput.h"
 #include "PipelineReader.h"
@@ -184,6 +185,10 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
                      "the training, and what the model shows there is made up. To hide it "
                      "later, give them a value outside of the data's range before "
                      "saving (Calculator; of hidden points, then PassArrays).");
+  }
+  const std::string missing = inr::ShortOfTarget(*model, options);
+  if (!missing.empty() && group.rank() == 0) {
+    vtkWarningMacro("Of '" << this->Internal->Target << "' " << missing << ".");
   }
   if (group.any(this->Internal->ShowsHidden) && group.rank() == 0) {
     vtkWarningMacro("Some points of array '"

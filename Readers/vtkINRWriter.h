@@ -65,8 +65,9 @@ public:
 
   ///@{
   /// Stop at this peak signal-to-noise ratio in dB, as estimated on random voxels every 200 steps;
-  /// the file's may differ by some hundredths, or more where TargetRatio is set, too. 0 (default) =
-  /// no target.
+  /// the file's may differ by some hundredths, or more where TargetRatio is set, too, and of
+  /// localised data, above all where they are read in pieces or shared out to processes. A warning
+  /// tells of a file that is 0.1 dB below or more. 0 (default) = no target.
   vtkSetClampMacro(TargetPSNR, double, 0, VTK_DOUBLE_MAX);
   vtkGetMacro(TargetPSNR, double);
   ///@}
@@ -221,8 +222,8 @@ public:
 
   ///@{
   /// Write a file that instantvnr and cINR read, too, and that is two to six times as large for
-  /// the same model. Off (default): a compact file, which loses about 0.1 dB at most, but more
-  /// where TargetRatio takes it.
+  /// the same model. Off (default): a compact file, which loses about 0.1 dB, but more where
+  /// TargetRatio takes it, or of localised data that are read in pieces.
   ///
   ///     SaveData("model.inr", proxy=volume, ReadableByInstantVNR=1)
   vtkSetMacro(ReadableByInstantVNR, bool);

@@ -17,8 +17,9 @@ namespace inr {
 /// What to train and when to stop; the first limit reached ends it.
 struct TrainingOptions
 {
-  /// dB, as estimated on random voxels every 200 steps, with what storing the parameters is going
-  /// to cost: 0.1 dB of a Quantised model, 1 dB where a ratio is asked for; 0 = off.
+  /// dB, as estimated on random voxels every 200 steps (PsnrEstimate.h says of which), with what
+  /// storing the parameters is going to cost: 0.1 dB of a Quantised model, 1 dB where a ratio is
+  /// asked for; 0 = off. ShortOfTarget tells what the measured quality lacks.
   double targetPsnr = 0;
   /// Volume bytes / file bytes; 0 = by the volume's size, and where there is a description.
   double targetRatio = 0;
@@ -34,8 +35,9 @@ struct TrainingOptions
   /// A model of a similar volume, whose parameters are where the training starts if they mean the
   /// same, that is, if it has the same description; null = random ones.
   ModelPointer start;
-  /// Quantised costs 0.1 dB at most, but more where targetRatio takes it. Half instead where steps
-  /// cannot be that fine, and Float where a half cannot hold a parameter.
+  /// Quantised costs 0.1 dB at most, as estimated on more random voxels, but more where targetRatio
+  /// takes it. Half instead where steps cannot be that fine or too few of these voxels are finite,
+  /// and Float where a half cannot hold a parameter.
   ParameterType storedAs = ParameterType::Quantised;
   /// Bytes that training from a VolumeReader may take, all in all.
   std::int64_t memoryLimit = std::int64_t{1} << 30;
