@@ -104,13 +104,14 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
 /// number in every equal part of the volume. While another thread trains, this one reads blocks
 /// again in random order and draws their samples anew: not more than three times the volume is read
 /// in all and, where the time limit is the only end, for not more than half of it. With
-/// maximumSteps the result is repeatable, whatever the speed of reading, unless the time ends it.
-/// From its checkpoint a process alone goes on without the first reading, and without what was read
-/// again, but for some blocks that show whether the volume is still the same; several read it
-/// again. Where there are too many voxels, quality is measured in bars all over the volume, and
-/// ranges of macro-cells are those of the data, wider by the largest error that was found;
-/// otherwise as above. Throws what `reader` throws, and Error(InvalidArgument) when the limit is
-/// too low or a value leaves the range that the first reading found.
+/// maximumSteps the result is repeatable, whatever the speed of reading, unless the time limit ends
+/// it or seems to allow clearly fewer steps. From its checkpoint a process alone goes on without
+/// the first reading, and without what was read again, but for some blocks that show whether the
+/// volume is still the same; several read it again. Where there are too many voxels, quality is
+/// measured in bars all over the volume, and ranges of macro-cells are those of the data, wider by
+/// the largest error that was found; otherwise as above. Throws what `reader` throws, and
+/// Error(InvalidArgument) when the limit is too low or a value leaves the range that the first
+/// reading found.
 ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 
