@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <numeric>
+#include <sstream>
 #include <string>
 
 namespace inr {
@@ -90,15 +92,21 @@ std::vector<double> SamplePool::sample(std::int64_t block, std::uint32_t round,
     for (std::int64_t k = begin; k < end; ++k) {
       positions.push_back(this->position(block, round, k));
     }
-    SamplePiece(piece, this->Blocks.dims(), positions.data(), end - begin, 0, &values[begin]);
+    SamplePiece(piece, this->Blocks.dims(), positions.data(), end - begin, this->Origin,
+                &values[begin]);
   });
   return values;
 }
 
 std::string SamplePool::name() const
 {
-  return "a pool of " + std::to_string(this->samples()) + " of " +
-         std::to_string(this->Blocks.count()) + " blocks";
+  std::ostringstream text;
+  text << "a pool of " << this->samples() << " of " << this->Blocks.count() << " blocks";
+  if (this->Origin != 0) {
+    text << " above " << std::setprecision(std::numeric_limits<double>::max_digits10)
+         << this->Origin;
+  }
+  return text.str();
 }
 
 void SamplePool::put(std::int64_t block, const std::vector<double>& values)
@@ -136,8 +144,8 @@ std::int64_t SamplePool::differences(std::int64_t block, const VolumePiece& piec
 
 void SamplePool::begin(double low, double high, double rereads)
 {
-  this->Low = low;
-  this->High = high;
+  this->Low = low - this->Origin;
+  this->High = high - this->Origin;
   this->Order = Shuffled(this->Share.blocks(), StreamSeed(this->Seed, RandomStream::PoolOrder));
   for (std::int64_t& block : this->Order) {
     block += this->Share.firstBlock;

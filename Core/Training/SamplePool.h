@@ -41,8 +41,14 @@ public:
 
   std::int64_t samples() const { return this->Blocks.count() * this->Boxes.count(); }
 
-  /// Values of a block's samples when it is read for the first time (`round` 0) or again (1), of a
-  /// piece that holds blocks.voxels(block).
+  /// What is subtracted from all values, see SamplePiece: to be set before the first sample, and to
+  /// the same in all processes. 0 until then.
+  void setOrigin(double origin) { this->Origin = origin; }
+  double origin() const { return this->Origin; }
+  StateArray originState() { return {"origin", &this->Origin, sizeof(this->Origin)}; }
+
+  /// Values, above the origin, of a block's samples when it is read for the first time (`round` 0)
+  /// or again (1), of a piece that holds blocks.voxels(block).
   std::vector<double> sample(std::int64_t block, std::uint32_t round, const VolumePiece& piece,
                              const Arena& arena) const;
 
@@ -102,7 +108,8 @@ private:
   HalvedCube Boxes; ///< of a block, in units of the block
   std::vector<double> Values;
   std::vector<std::uint32_t> Rounds; ///< of the values of each block of the share
-  double Low = 0;
+  double Origin = 0;
+  double Low = 0; ///< above the origin
   double High = 1;
 
   std::vector<std::int64_t> Order; ///< in which blocks are read again

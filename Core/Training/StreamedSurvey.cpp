@@ -6,6 +6,7 @@
 #include "Core/Training/TrainingClock.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,11 @@ void StreamedVolume::survey(const Progress& progress)
     const std::int64_t block = this->Share.firstBlock + k;
     this->Group.together(
         [&] { progress(static_cast<double>(k) / static_cast<double>(this->Share.mostBlocks)); });
+    VolumePiece piece;
+    this->Group.together([&] { piece = this->readFirst(block); });
+    this->fixOrigin(piece);
     this->Group.together(
-        [&] { block < this->Share.endBlock ? this->survey(block) : this->readNothing(); });
+        [&] { block < this->Share.endBlock ? this->survey(block, piece) : void(); });
   }
   const std::vector<double> seconds = this->Group.valuesOfAll(clock.seconds());
   this->SurveySeconds = *std::max_element(seconds.begin(), seconds.end());
@@ -34,9 +38,44 @@ void StreamedVolume::survey(const Progress& progress)
   this->shareEstimates();
 }
 
-void StreamedVolume::survey(std::int64_t block)
+/// A block of the share, or behind it nothing.
+VolumePiece StreamedVolume::readFirst(std::int64_t block)
 {
-  const VolumePiece piece = this->read(this->Blocks.voxels(block));
+  if (block < this->Share.endBlock) {
+    return this->read(this->Blocks.voxels(block));
+  }
+  this->readNothing();
+  return {};
+}
+
+/// Numbers of fewer bytes a double holds with room to spare.
+bool StreamedVolume::needsOrigin() const
+{
+  return ScalarSize(this->Reader.type()) == sizeof(double);
+}
+
+/// The first finite value of all will do: what counts is that it is near the others. Before it is
+/// known, no sample is finite.
+void StreamedVolume::fixOrigin(const VolumePiece& piece)
+{
+  if (!this->needsOrigin() || this->HasOrigin) {
+    return;
+  }
+  double mine = 0;
+  this->Group.together([&] {
+    mine = MeasureBox(piece, {piece.first, piece.data.dims}, this->Threads).low;
+  });
+  for (const double low : this->Group.valuesOfAll(mine)) {
+    if (std::isfinite(low)) {
+      this->Pool.setOrigin(low);
+      this->HasOrigin = true;
+      return;
+    }
+  }
+}
+
+void StreamedVolume::survey(std::int64_t block, const VolumePiece& piece)
+{
   const VoxelBox own = this->Blocks.ownVoxels(block);
   this->Statistics.add(MeasureBox(piece, own, this->Threads));
   if (!this->measuresAll()) {
@@ -55,12 +94,18 @@ StateArrays StreamedVolume::state()
   if (!this->measuresAll()) {
     arrays.push_back(this->Ranges.state());
   }
+  if (this->needsOrigin()) { // checkpoints of other types have none
+    arrays.push_back(this->Pool.originState());
+  }
   const StateArrays pool = this->Pool.state();
   arrays.insert(arrays.end(), pool.begin(), pool.end());
   return arrays;
 }
 
-bool StreamedVolume::resume() { return this->Pool.resume() && this->Statistics.hasValues(); }
+bool StreamedVolume::resume()
+{
+  return this->Pool.resume() && this->Statistics.hasValues() && std::isfinite(this->Pool.origin());
+}
 
 bool StreamedVolume::isAsBefore(std::uint64_t number)
 {
@@ -94,7 +139,7 @@ bool StreamedVolume::isAsBefore(std::uint64_t stream, std::int64_t k)
 void StreamedVolume::sampleEstimate(std::int64_t block, const VolumePiece& piece)
 {
   for (const std::size_t k : this->EstimatesOfBlocks[static_cast<std::size_t>(block)]) {
-    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, 0,
+    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, this->Pool.origin(),
                 &this->EstimateValues[k]);
   }
 }

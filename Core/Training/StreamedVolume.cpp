@@ -116,9 +116,11 @@ void StreamedVolume::readNothing() { this->read({glm::i64vec3(0), glm::i64vec3(1
 PsnrEstimate StreamedVolume::estimate(std::int64_t voxels) const
 {
   std::vector<float> targets;
+  const double low = this->Statistics.low - this->Pool.origin();
+  const double high = this->Statistics.high - this->Pool.origin();
   for (std::int64_t k = 0; k < voxels; ++k) {
-    targets.push_back(NormalisedTarget(this->EstimateValues[static_cast<std::size_t>(k)],
-                                       this->Statistics.low, this->Statistics.high));
+    targets.push_back(
+        NormalisedTarget(this->EstimateValues[static_cast<std::size_t>(k)], low, high));
   }
   return {{this->EstimatePositions.begin(), this->EstimatePositions.begin() + voxels},
           std::move(targets),
@@ -162,7 +164,8 @@ void StreamedVolume::requireKnownValues(std::int64_t block, const VolumePiece& p
   std::int64_t differing = 0;
   for (const std::size_t k : this->EstimatesOfBlocks[static_cast<std::size_t>(block)]) {
     double now = 0;
-    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, 0, &now);
+    SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, this->Pool.origin(),
+                &now);
     differing += CountDifferences(&now, &this->EstimateValues[k], 1, this->tolerance());
   }
   if (differing > 0) {

@@ -73,7 +73,10 @@ private:
   VolumePiece read(const VoxelBox& box);
   void requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const;
   void readNothing();
-  void survey(std::int64_t block);
+  VolumePiece readFirst(std::int64_t block);
+  bool needsOrigin() const;
+  void fixOrigin(const VolumePiece& piece);
+  void survey(std::int64_t block, const VolumePiece& piece);
   bool isAsBefore(std::uint64_t stream, std::int64_t k);
   void sampleEstimate(std::int64_t block, const VolumePiece& piece);
   void requireKnownValues(std::int64_t block, const VolumePiece& piece) const;
@@ -94,11 +97,12 @@ private:
   BlockGrid Blocks;
   BlockShare Share;
   SamplePool Pool;
+  bool HasOrigin = false; ///< the pool, from the survey
   VolumeStatistics Statistics;
   CellRanges Ranges; ///< of the data
   double SurveySeconds = 0;
   std::vector<glm::vec3> EstimatePositions;
-  std::vector<double> EstimateValues;
+  std::vector<double> EstimateValues;                      ///< above the pool's origin
   std::vector<std::vector<std::size_t>> EstimatesOfBlocks; ///< numbers of positions
 };
 

@@ -51,15 +51,16 @@ using Before = std::function<void(int rank, int reading)>;
 using Watch = std::function<bool(int rank, const inr::TrainingProgress&)>;
 
 /// Nobody reads before all others do: as with files that are opened together.
-inline std::vector<Outcome> TrainTogether(int size, const inr::TrainingOptions& options,
-                                          const Before& before = {}, const Watch& watch = {},
-                                          const Field<float>& field = StreamedField())
+template <class T = float>
+std::vector<Outcome> TrainTogether(int size, const inr::TrainingOptions& options,
+                                   const Before& before = {}, const Watch& watch = {},
+                                   const Field<T>& field = StreamedField())
 {
   Meeting readers(size);
   std::vector<Outcome> outcomes(static_cast<std::size_t>(size));
   InGroup(size, [&](const ThreadGroup& group) {
     Outcome& outcome = outcomes[static_cast<std::size_t>(group.rank())];
-    FieldReader<float> reader(field);
+    FieldReader<T> reader(field);
     reader.before = [&](int reading) {
       readers.gather(group.rank(), "");
       before ? before(group.rank(), reading) : void();
