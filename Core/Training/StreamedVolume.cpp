@@ -155,14 +155,60 @@ void StreamedVolume::requireKnownRange(const VolumePiece& piece, const VoxelBox&
                     ToText(this->Statistics.low) + " to " + ToText(this->Statistics.high) +
                     ", the range of all data when they were read for the first time");
   }
+  if (now.nonFinite > this->Statistics.nonFinite) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the data changed while they were read: of the voxels " + ToText(box) + " now " +
+                    std::to_string(now.nonFinite) + " are not finite, and of all voxels " +
+                    std::to_string(this->Statistics.nonFinite) +
+                    " were not when they were read for the first time");
+  }
+}
+
+/// Of a volume all of whose voxels were measured.
+void StreamedVolume::requireKnownFinite(std::int64_t finite) const
+{
+  const std::int64_t before = Voxels(this->Reader.dims()) - this->Statistics.nonFinite;
+  if (finite != before) {
+    throw Error(ErrorCode::InvalidArgument,
+                "the data changed while they were read: " + std::to_string(finite) +
+                    " voxels are finite now, and " + std::to_string(before) +
+                    " were when they were read for the first time");
+  }
+}
+
+/// Those of the estimate's voxels that a piece of just this box tells as one does that holds more:
+/// not at its faces, where rounding may put a voxel's centre towards the voxel beyond.
+std::vector<std::size_t> StreamedVolume::estimatesWithin(const VoxelBox& box) const
+{
+  const glm::i64vec3 dims = this->Reader.dims();
+  const auto isWithin = [&](const glm::vec3& position) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto voxel = static_cast<std::int64_t>(static_cast<double>(position[axis]) *
+                                                   static_cast<double>(dims[axis]));
+      const std::int64_t first = box.first[axis];
+      const std::int64_t end = box.end()[axis];
+      if (voxel < first + (first > 0 ? 1 : 0) || voxel >= end - (end < dims[axis] ? 1 : 0)) {
+        return false;
+      }
+    }
+    return true;
+  };
+  std::vector<std::size_t> within;
+  for (std::size_t k = 0; k < this->EstimatePositions.size(); ++k) {
+    if (isWithin(this->EstimatePositions[k])) {
+      within.push_back(k);
+    }
+  }
+  return within;
 }
 
 /// Looks at those of PsnrEstimate: within the range they may have changed, too, the more easily
 /// since the first reading was in another process.
-void StreamedVolume::requireKnownValues(std::int64_t block, const VolumePiece& piece) const
+void StreamedVolume::requireKnownValues(const VolumePiece& piece, const VoxelBox& box,
+                                        const std::vector<std::size_t>& estimates) const
 {
   std::int64_t differing = 0;
-  for (const std::size_t k : this->EstimatesOfBlocks[static_cast<std::size_t>(block)]) {
+  for (const std::size_t k : estimates) {
     double now = 0;
     SamplePiece(piece, this->Reader.dims(), &this->EstimatePositions[k], 1, this->Pool.origin(),
                 &now);
@@ -170,9 +216,8 @@ void StreamedVolume::requireKnownValues(std::int64_t block, const VolumePiece& p
   }
   if (differing > 0) {
     throw Error(ErrorCode::InvalidArgument,
-                "the data changed after they were first read: of the voxels " +
-                    ToText(this->Blocks.ownVoxels(block)) + " at least " +
-                    std::to_string(differing) +
+                "the data changed after they were first read: of the voxels " + ToText(box) +
+                    " at least " + std::to_string(differing) +
                     " have other values; if these are right, begin the training anew");
   }
 }
@@ -193,8 +238,9 @@ void StreamedVolume::readAgain()
 void StreamedVolume::readAgain(std::int64_t block)
 {
   const VolumePiece piece = this->read(this->Blocks.voxels(block));
-  this->requireKnownRange(piece, this->Blocks.ownVoxels(block));
-  this->requireKnownValues(block, piece);
+  const VoxelBox own = this->Blocks.ownVoxels(block);
+  this->requireKnownRange(piece, own);
+  this->requireKnownValues(piece, own, this->EstimatesOfBlocks[static_cast<std::size_t>(block)]);
   this->Pool.offer(block, this->Pool.sample(block, 1, piece, this->Threads));
 }
 
@@ -247,6 +293,7 @@ void StreamedVolume::measureShare(const BlockGrid& boxes, const std::vector<std:
       }
       const VolumePiece piece = this->read(own);
       this->requireKnownRange(piece, own);
+      this->requireKnownValues(piece, own, this->estimatesWithin(own));
       meter.add(piece, decoded, done);
     });
   }
@@ -272,6 +319,7 @@ DecodedReport StreamedVolume::measure(const Evaluator& evaluator, const Model& m
   meter.gather(this->Group);
   Quality quality = meter.quality();
   if (all) {
+    this->requireKnownFinite(meter.errors().voxels);
     decoded->gather(this->Group);
     return {quality, decoded->cells(0.0, 1.0, 0.0, MacroCellProvenance::Decoded)};
   }

@@ -55,8 +55,8 @@ public:
   double mostRereads() const;
 
   /// Reads the block again that the pool wants, or waits a moment when there is none. Throws
-  /// Error(InvalidArgument) where a value is outside the range that the survey found, or is not
-  /// what it was.
+  /// Error(InvalidArgument) where a value is outside the range that the survey found, more values
+  /// are not finite than it found in all, or one of the estimate's is not what it was.
   void readAgain();
 
   /// Reads the blocks again that are to be read before a step, where one thread reads and trains;
@@ -64,8 +64,8 @@ public:
   /// as `check` does. For all.
   bool readBefore(const TrainingStep& step, const StopCheck& check);
 
-  /// Compares all voxels, or some where they are many, with a model of them. Throws as readAgain.
-  /// For all.
+  /// Compares all voxels, or some where they are many, with a model of them. Throws as readAgain
+  /// and, of all voxels, where another number of them is finite. For all.
   DecodedReport measure(const Evaluator& evaluator, const Model& model, const Progress& progress);
 
 private:
@@ -79,7 +79,10 @@ private:
   void survey(std::int64_t block, const VolumePiece& piece);
   bool isAsBefore(std::uint64_t stream, std::int64_t k);
   void sampleEstimate(std::int64_t block, const VolumePiece& piece);
-  void requireKnownValues(std::int64_t block, const VolumePiece& piece) const;
+  void requireKnownFinite(std::int64_t finite) const;
+  std::vector<std::size_t> estimatesWithin(const VoxelBox& box) const;
+  void requireKnownValues(const VolumePiece& piece, const VoxelBox& box,
+                          const std::vector<std::size_t>& estimates) const;
   double tolerance() const;
   bool allGoOn(const StopCheck& check) const;
   void shareEstimates();

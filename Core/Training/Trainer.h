@@ -110,8 +110,8 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
 /// volume is still the same; several read it again. Where there are too many voxels, quality is
 /// measured in bars all over the volume, and ranges of macro-cells are those of the data, wider by
 /// the largest error that was found; otherwise as above. Throws what `reader` throws, and
-/// Error(InvalidArgument) when the limit is too low or a value leaves the range that the first
-/// reading found.
+/// Error(InvalidArgument) when the limit is too low, a value leaves the range that the first reading
+/// found, or the data are seen to have changed since otherwise.
 ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 

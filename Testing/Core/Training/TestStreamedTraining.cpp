@@ -3,11 +3,13 @@
 // Training from pieces against training from memory.
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
+#include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Quality.h"
 #include "Core/Training/StreamBudget.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/FieldReader.h"
 
+#include <glm/common.hpp>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -176,6 +178,74 @@ TEST(StreamedTraining, SaysWhenTheDataChange)
     };
     ExpectError(reader, Options(200), "the data changed while they were read");
   }
+}
+
+/// Before the second piece is read for the quality.
+void ExpectChangeIsSeenInMeasuring(Field<float> field, std::int64_t measuredVoxels,
+                                   const std::function<void(std::vector<float>&)>& change)
+{
+  FieldReader<float> reader(field);
+  inr::TrainingOptions options = Options(10);
+  options.measuredVoxels = measuredVoxels;
+  options.storedAs = inr::ParameterType::Half; // packing takes longer than this training
+  bool measuring = false;
+  reader.before = [&](int) {
+    if (measuring) {
+      change(field.values);
+    }
+  };
+  ExpectError(reader, options, "the data changed", [&](const inr::TrainingProgress& progress) {
+    measuring = progress.phase == inr::TrainingPhase::Measuring;
+    return true;
+  });
+}
+
+constexpr std::int64_t AllVoxels = std::int64_t{1} << 26;
+constexpr std::int64_t FourBars = std::int64_t{1} << 19;
+
+TEST(StreamedTraining, SaysWhenTheDataChangeWhileTheyAreMeasured)
+{
+  for (const std::int64_t voxels : {AllVoxels, FourBars}) {
+    for (const float other : {0.5f, NAN}) {
+      ExpectChangeIsSeenInMeasuring(LargeField(), voxels, [other](std::vector<float>& values) {
+        std::fill(values.begin(), values.end(), other);
+      });
+    }
+  }
+}
+
+/// Those that neither are random voxels whose values are compared nor lie beside one.
+std::vector<bool> UncomparedVoxels()
+{
+  const glm::i64vec3 dims = LargeField().dims;
+  std::vector<bool> uncompared(LargeField().values.size(), true);
+  for (const glm::vec3& position :
+       inr::PsnrEstimate::positions(dims, Options(1).seed, inr::PsnrEstimate::StoringVoxels)) {
+    const glm::i64vec3 voxel(glm::dvec3(position) * glm::dvec3(dims));
+    for (std::int64_t k = 0; k < 27; ++k) {
+      const glm::i64vec3 near =
+          glm::clamp(voxel + glm::i64vec3(k % 3, k / 3 % 3, k / 9) - std::int64_t{1},
+                     glm::i64vec3(0), dims - std::int64_t{1});
+      uncompared[static_cast<std::size_t>(near.x + dims.x * (near.y + dims.y * near.z))] = false;
+    }
+  }
+  return uncompared;
+}
+
+TEST(StreamedTraining, SaysWhenMoreOrFewerVoxelsAreFiniteThanBefore)
+{
+  const std::vector<bool> uncompared = UncomparedVoxels();
+  const auto set = [&](std::vector<float>& values, float value) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      values[k] = uncompared[k] ? value : values[k];
+    }
+  };
+  const auto toNaN = [&](std::vector<float>& values) { set(values, NAN); };
+  ExpectChangeIsSeenInMeasuring(LargeField(), FourBars, toNaN);
+  Field<float> field = LargeField();
+  toNaN(field.values);
+  ExpectChangeIsSeenInMeasuring(field, AllVoxels,
+                                [&](std::vector<float>& values) { set(values, 0.5f); });
 }
 
 TEST(StreamedTraining, SaysHowMuchMemoryAModelNeeds)
