@@ -93,6 +93,7 @@ std::optional<TrainingState> CheckpointKeeper::resume(const StateArrays& arrays)
     file.load(arrays);
     this->IsOthers = false;
     this->HasWritten = true;
+    this->HasAll = file.state().finished;
     this->tell(CheckpointEvent::Resumed, "the training goes on after " +
                                              std::to_string(file.state().steps) + " steps from '" +
                                              path + "'");
@@ -125,6 +126,7 @@ std::string CheckpointKeeper::replace(const TrainingState& state, const StateArr
     }
     WriteCheckpoint(this->Options.path, this->Identity, state, arrays, this->Survey);
     this->HasWritten = true;
+    this->HasAll = state.finished;
     this->tell(CheckpointEvent::Written,
                "'" + this->Options.path + "' holds " + std::to_string(state.steps) + " steps");
   } catch (const Error& error) {
@@ -159,7 +161,7 @@ std::string CheckpointKeeper::writeAtStop(const TrainingState& state, const Stat
   if (this->Options.path.empty() || state.steps == 0) {
     return "nothing was kept";
   }
-  const std::string problem = this->replace(state, arrays);
+  const std::string problem = this->HasAll ? "" : this->replace(state, arrays);
   if (problem.empty()) {
     return "its " + std::to_string(state.steps) + " steps are kept in '" + this->Options.path +
            "', from where the same training goes on";

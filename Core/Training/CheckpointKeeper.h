@@ -40,6 +40,9 @@ public:
   /// training so short that it needed none.
   void writeAtEnd(const TrainingState& state, const StateArrays& arrays);
 
+  /// Whether nothing is left to writeAtStop: the checkpoint has all steps, or there is to be none.
+  bool isDone() const { return this->HasAll || this->Options.path.empty(); }
+
   /// For a training that stops before its end: writes and says, for the user, what is kept.
   std::string writeAtStop(const TrainingState& state, const StateArrays& arrays);
 
@@ -53,6 +56,7 @@ private:
   TrainingClock SinceWritten;
   double WriteSeconds = 0; ///< that the last took
   bool HasWritten = false; ///< or gone on from
+  bool HasAll = false;     ///< steps, in the last that was written, or gone on from
   bool HasFailed = false;
   bool IsOthers = false; ///< what is at the path: it is set aside before it is replaced
 };

@@ -133,6 +133,15 @@ StateArrays GradientDescent::state()
           array("moment2", this->SecondMoments), array("updates", this->Updates)};
 }
 
+void GradientDescent::freeWorkspace()
+{
+  this->Gradient = {};
+  this->Encoded = {};
+  this->Positions = {};
+  this->Targets = {};
+  this->ShardGradients = {};
+}
+
 std::optional<double> GradientDescent::step(BatchSource& batches, const StopCheck& check)
 {
   batches.prepare({this->Steps, this->PlannedSteps, this->stream()}, check);

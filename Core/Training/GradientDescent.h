@@ -52,6 +52,9 @@ public:
     return this->Exchange ? this->Exchange->times() : ExchangeTimes();
   }
 
+  /// After the last step: leaves what state() tells.
+  void freeWorkspace();
+
   void plan(std::uint64_t steps) override { this->PlannedSteps = steps; }
 
   /// In a group all must call it; it returns the same to all, and throws when one's does.

@@ -65,19 +65,20 @@ ModelPointer TrainModel(const VolumePiece& piece, const VolumeInfo& info,
   run.train(batches, PsnrEstimate(source, options.seed, arena), arena);
   const PsnrEstimate estimate(source, options.seed, arena, PsnrEstimate::StoringVoxels);
   std::shared_ptr<Model> trained;
-  group.together([&] { trained = run.store(estimate); });
-
   const auto check = [&](double fraction) {
     const double done = TrainingShare + (1.0 - TrainingShare) * fraction;
     if (observer && !observer({TrainingPhase::Measuring, done, trained->training->steps, 0})) {
       throw Error(ErrorCode::Cancelled, "stopped while measuring the quality");
     }
   };
-  const DecodedReport report =
-      MeasureParts(*MakeEvaluator(trained, options.kernel), part, trained->volume,
-                   run.macroCellSize(), group, arena, check, BandSize(trained->description));
-  trained->quality = report.quality;
-  trained->macroCells = report.macroCells;
+  run.keepSteps([&] {
+    group.together([&] { trained = run.store(estimate); });
+    const DecodedReport report =
+        MeasureParts(*MakeEvaluator(trained, options.kernel), part, trained->volume,
+                     run.macroCellSize(), group, arena, check, BandSize(trained->description));
+    trained->quality = report.quality;
+    trained->macroCells = report.macroCells;
+  });
   return trained;
 }
 

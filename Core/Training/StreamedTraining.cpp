@@ -65,6 +65,9 @@ void TrainWhileReading(TrainingRun& run, StreamedVolume& volume, BatchSource& ba
   } catch (...) {
     relay.stop();
     trainer.join();
+    if (!failure) { // all steps were done by then
+      run.keepSteps([] { throw; });
+    }
     throw;
   }
   trainer.join();
@@ -215,9 +218,11 @@ private:
     this->Kept.keep(*this->Volume, run, isFromCheckpoint);
     this->takeSteps(run, relay, isFromCheckpoint);
     std::shared_ptr<Model> trained;
-    this->Group.together(
-        [&] { trained = run.store(this->Volume->estimate(PsnrEstimate::StoringVoxels)); });
-    this->measure(*trained, *MakeEvaluator(trained, this->Options.kernel));
+    run.keepSteps([&] {
+      this->Group.together(
+          [&] { trained = run.store(this->Volume->estimate(PsnrEstimate::StoringVoxels)); });
+      this->measure(*trained, *MakeEvaluator(trained, this->Options.kernel));
+    });
     return trained;
   }
 

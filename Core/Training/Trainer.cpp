@@ -8,6 +8,23 @@
 
 namespace inr {
 
+namespace {
+
+void Measure(Model& trained, const Evaluator& evaluator, const VolumeData& volume,
+             int macroCellSize, const Arena& arena, const TrainingObserver& observer)
+{
+  const auto keepGoing = [&](double fraction) {
+    const double done = TrainingShare + (1.0 - TrainingShare) * fraction;
+    return !observer || observer({TrainingPhase::Measuring, done, trained.training->steps, 0});
+  };
+  const DecodedReport report = MeasureQuality(evaluator, volume, trained.volume, macroCellSize,
+                                              arena, keepGoing, BandSize(trained.description));
+  trained.quality = report.quality;
+  trained.macroCells = report.macroCells;
+}
+
+} // namespace
+
 ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer)
 {
@@ -23,18 +40,12 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
   const InMemorySource source(volume, run.volume().low, run.volume().high);
   StratifiedBatches batches(source);
   run.train(batches, PsnrEstimate(source, options.seed, arena), arena);
-  const std::shared_ptr<Model> trained =
-      run.store(PsnrEstimate(source, options.seed, arena, PsnrEstimate::StoringVoxels));
-
-  const auto keepGoing = [&](double fraction) {
-    const double done = TrainingShare + (1.0 - TrainingShare) * fraction;
-    return !observer || observer({TrainingPhase::Measuring, done, trained->training->steps, 0});
-  };
-  const DecodedReport report =
-      MeasureQuality(*MakeEvaluator(trained, options.kernel), volume, trained->volume,
-                     run.macroCellSize(), arena, keepGoing, BandSize(trained->description));
-  trained->quality = report.quality;
-  trained->macroCells = report.macroCells;
+  std::shared_ptr<Model> trained;
+  run.keepSteps([&] {
+    trained = run.store(PsnrEstimate(source, options.seed, arena, PsnrEstimate::StoringVoxels));
+    Measure(*trained, *MakeEvaluator(trained, options.kernel), volume, run.macroCellSize(), arena,
+            observer);
+  });
   return trained;
 }
 

@@ -35,6 +35,17 @@ Error NoMemoryToTrain()
                "or fewer parameters in ModelConfig), or end other programs");
 }
 
+void StopTraining(const Error& error, const TrainingGroup& group,
+                  const std::function<std::string()>& keep)
+{
+  const std::string kept = group.rank() == 0 ? "; " + keep() : "";
+  try {
+    group.gather("");
+  } catch (const Error&) { // nobody can be reached any more
+  }
+  throw Error(error.code(), error.what() + kept);
+}
+
 void TrainingLoop::run(Descent& descent, BatchSource& batches, const PsnrEstimate& estimate,
                        const EvaluateKernel& kernel)
 {
@@ -64,25 +75,10 @@ void TrainingLoop::stop(Descent& descent, const Error& error)
   if (error.code() == ErrorCode::InvalidModel) {
     throw error; // there is nothing to go on from
   }
-  if (this->Group.rank() > 0) {
-    this->waitForFirst();
-    throw error;
-  }
-  const StateArrays arrays = descent.state(); // which may change the number of steps
-  const std::string kept = this->Keeper.writeAtStop(this->state(descent, false), arrays);
-  this->waitForFirst();
-  throw Error(error.code(), std::string(error.what()) + "; " + kept);
-}
-
-/// Until it has written the checkpoint: whoever started the processes may end all of them when one
-/// has ended.
-void TrainingLoop::waitForFirst() const
-{
-  try {
-    this->Group.gather("");
-  } catch (const Error&) {
-    return; // nobody can be reached any more
-  }
+  StopTraining(error, this->Group, [&] {
+    const StateArrays arrays = descent.state(); // which may change the number of steps
+    return this->Keeper.writeAtStop(this->state(descent, false), arrays);
+  });
 }
 
 void TrainingLoop::planAhead(Descent& descent)

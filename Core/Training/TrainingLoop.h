@@ -12,6 +12,8 @@
 #include "Core/Training/TrainingGroup.h"
 
 #include <cstdint>
+#include <functional>
+#include <string>
 
 namespace inr {
 
@@ -28,6 +30,11 @@ public:
 
 /// What to say where std::bad_alloc ends a training.
 Error NoMemoryToTrain();
+
+/// Throws `error` with what `keep`, which rank 0 calls, says is kept of the steps; in all processes
+/// of a group, and not before that is done: whoever started them may end all when one has ended.
+[[noreturn]] void StopTraining(const Error& error, const TrainingGroup& group,
+                               const std::function<std::string()>& keep);
 
 /// Steps until one of the options' limits is reached, telling the observer.
 class TrainingLoop
@@ -49,6 +56,9 @@ public:
   double seconds() const { return this->Clock.seconds(); }
   std::uint64_t plannedSteps() const { return this->PlannedSteps; }
 
+  /// What a checkpoint says of it.
+  TrainingState state(const Descent& descent, bool finished) const;
+
 private:
   void planAhead(Descent& descent);
   void resume(Descent& descent, BatchSource& batches);
@@ -58,8 +68,6 @@ private:
              const EvaluateKernel& kernel);
   void finish(Descent& descent);
   [[noreturn]] void stop(Descent& descent, const Error& error);
-  void waitForFirst() const;
-  TrainingState state(const Descent& descent, bool finished) const;
   void write(Descent& descent);
   void plan(Descent& descent, std::uint64_t steps);
   void noteFirst(std::uint64_t steps);

@@ -142,6 +142,8 @@ TrainingRun::TrainingRun(const VolumeInfo& info, const VolumeStatistics& statist
   RequireStorable(model);
 }
 
+TrainingRun::~TrainingRun() = default; // where GradientDescent is known
+
 bool TrainingRun::isConstant() const
 {
   return !(this->Result.volume.low < this->Result.volume.high);
@@ -186,7 +188,9 @@ void TrainingRun::train(BatchSource& batches, const PsnrEstimate& estimate, cons
 void TrainingRun::takeSteps(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena)
 {
   Model& model = this->Result;
-  GradientDescent host(model.description, this->Options.seed, this->Set, arena);
+  auto steps =
+      std::make_unique<GradientDescent>(model.description, this->Options.seed, this->Set, arena);
+  GradientDescent& host = *steps;
   StartFrom(this->Options.start, model, host);
   host.share(this->group());
   const auto accelerated = this->accelerate(host, batches, arena);
@@ -197,17 +201,43 @@ void TrainingRun::takeSteps(BatchSource& batches, const PsnrEstimate& estimate, 
     model.training->kernel = this->Options.acceleration.accelerator->kernel();
   }
   const bool first = this->group().rank() == 0;
-  CheckpointKeeper keeper(first ? this->Options.checkpoint : CheckpointOptions(),
-                          this->identity(estimate, batches));
-  TrainingLoop loop(this->Options, this->Observer, keeper, this->group(), model.training->pipeline);
+  this->Keeper.emplace(first ? this->Options.checkpoint : CheckpointOptions(),
+                       this->identity(estimate, batches));
+  TrainingLoop loop(this->Options, this->Observer, *this->Keeper, this->group(),
+                    model.training->pipeline);
   loop.run(descent, batches, estimate, EvaluateKernelFor(this->Set));
-  model.parameters = std::move(descent.parameters());
+  this->End = loop.state(descent, true);
+  if (this->Keeper->isDone()) {
+    model.parameters = std::move(descent.parameters());
+  } else {
+    descent.parameters(); // to the host
+    host.freeWorkspace();
+    this->Steps = std::move(steps);
+  }
   model.training->steps = descent.steps();
   model.training->plannedSteps = loop.plannedSteps();
   model.training->seconds = loop.seconds();
   model.training->waitingSeconds = host.exchangeTimes().waiting;
   model.training->exchangeSeconds = host.exchangeTimes().exchanging;
   this->record(accelerated.get());
+}
+
+void TrainingRun::keepSteps(const std::function<void()>& work)
+{
+  try {
+    work();
+  } catch (const Error& error) {
+    StopTraining(error, this->group(), [this] { return this->writeSteps(); });
+  } catch (...) { // which other processes need not know of
+    this->writeSteps();
+    throw;
+  }
+}
+
+/// Says, for the user, what is kept.
+std::string TrainingRun::writeSteps()
+{
+  return this->Keeper->writeAtStop(this->End, this->Steps ? this->Steps->state() : StateArrays());
 }
 
 /// Null where the CPU trains alone, which is told where there is an accelerator.
@@ -254,6 +284,9 @@ void TrainingRun::record(const AcceleratedDescent* accelerated)
 
 std::shared_ptr<Model> TrainingRun::store(const PsnrEstimate& estimate)
 {
+  if (this->Steps) {
+    this->Result.parameters = this->Steps->parameters();
+  }
   if (this->Options.storedAs == ParameterType::Quantised) {
     const double ratio = this->Options.description ? 0.0 : this->Options.targetRatio;
     Quantise(this->Result, estimate, EvaluateKernelFor(this->Set),

@@ -3,12 +3,16 @@
 
 #include "Core/Training/BatchSource.h"
 #include "Core/Training/Checkpoint.h"
+#include "Core/Training/CheckpointKeeper.h"
 #include "Core/Training/PsnrEstimate.h"
 #include "Core/Training/Trainer.h"
 #include "Core/Training/TrainingGroup.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 namespace inr {
 
@@ -25,6 +29,7 @@ public:
   TrainingRun(const VolumeInfo& info, const VolumeStatistics& statistics,
               const TrainingOptions& options, const TrainingObserver& observer,
               const TrainingGroup* group = nullptr);
+  ~TrainingRun();
 
   const Description& description() const { return this->Result.description; }
   int macroCellSize() const { return this->MacroCellSize; }
@@ -44,10 +49,15 @@ public:
   /// measured. `estimate` has more voxels than that of train: a tenth of a dB is to be told.
   std::shared_ptr<Model> store(const PsnrEstimate& estimate);
 
+  /// Does `work`, all that comes after the steps. Where it throws, the steps are kept first, as
+  /// they are when training itself is stopped. In a group what is an Error in one is so in all.
+  void keepSteps(const std::function<void()>& work);
+
 private:
   std::unique_ptr<AcceleratedDescent> accelerate(GradientDescent& host, const BatchSource& batches,
                                                  const Arena& arena) const;
   void takeSteps(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena);
+  std::string writeSteps();
   void record(const AcceleratedDescent* accelerated);
   StopCheck storingCheck() const;
   const TrainingGroup& group() const { return this->Together ? *this->Together : this->Alone; }
@@ -59,6 +69,9 @@ private:
   InstructionSet Set;
   int MacroCellSize;
   Model Result;
+  std::optional<CheckpointKeeper> Keeper; ///< since there are steps to keep
+  std::unique_ptr<GradientDescent> Steps; ///< null where they are on disk, or not to be kept
+  TrainingState End;                      ///< of them
 };
 
 /// Throws for options that no training can have, and where there is nothing to train on.

@@ -181,6 +181,23 @@ TEST(ParallelStreaming, GoesOnFromItsCheckpoint)
   EXPECT_EQ(TrainTogether(2, options)[1].model->parameters, whole->parameters);
 }
 
+// Of a training that was too short for a checkpoint; none ends before it is written.
+TEST(ParallelStreaming, KeepsAllStepsWhenItIsStoppedBehindThem)
+{
+  const TemporaryFolder folder;
+  inr::TrainingOptions options = StreamedOptions(20);
+  const inr::ModelPointer whole = TrainTogether(2, options)[0].model;
+  options.checkpoint.path = folder.file("a.checkpoint");
+  const std::vector<Outcome> stopped =
+      TrainTogether(2, options, {}, [](int rank, const inr::TrainingProgress& now) {
+        return rank != 1 || now.phase != inr::TrainingPhase::Measuring;
+      });
+  ExpectErrors(stopped, "stopped");
+  EXPECT_TRUE(stopped[0].leftCheckpoint && stopped[1].leftCheckpoint);
+  EXPECT_NE(std::string(stopped[0].error->what()).find("20 steps are kept"), std::string::npos);
+  EXPECT_EQ(TrainTogether(2, options)[1].model->parameters, whole->parameters);
+}
+
 // Both have to read the same blocks.
 TEST(ParallelStreaming, HeedsTheSmallestMemoryLimitAndTheLargestVoxels)
 {

@@ -131,6 +131,34 @@ TEST_F(Resume, LeavesNothingWhereNothingIsWorthKeeping)
   EXPECT_TRUE(this->Events.empty());
 }
 
+// However short the training was: it was stopped.
+TEST_F(Resume, KeepsAllStepsWhenItIsStoppedBehindThem)
+{
+  inr::TrainingOptions options = this->options(12);
+  for (const double interval : {3600.0, 0.0}) { // then they are kept already
+    options.checkpoint.interval = interval;
+    const inr::ModelPointer whole = this->withoutCheckpoint(options);
+    try {
+      inr::TrainModel(this->Data.data(), {}, options, [](const inr::TrainingProgress& now) {
+        return now.phase != inr::TrainingPhase::Measuring;
+      });
+      FAIL() << "went on";
+    } catch (const inr::Error& error) {
+      EXPECT_EQ(error.code(), inr::ErrorCode::Cancelled);
+      const std::string told = error.what();
+      EXPECT_NE(told.find("measuring the quality; its 12 steps are kept in '" + this->Path),
+                std::string::npos)
+          << told;
+    }
+    ASSERT_TRUE(this->exists());
+    EXPECT_TRUE(inr::CheckpointFile(this->Path).state().finished);
+    EXPECT_EQ(this->train(options)->parameters, whole->parameters);
+    EXPECT_EQ(this->count(CheckpointEvent::Resumed), 1);
+    EXPECT_EQ(this->count(CheckpointEvent::Written), 0);
+    std::filesystem::remove(this->Path);
+  }
+}
+
 TEST_F(Resume, WritesInIntervals)
 {
   inr::TrainingOptions options = this->options(400);

@@ -163,6 +163,47 @@ TEST_F(ResumeStreaming, ReadsOnlyForTheQualityWhenAllStepsAreDone)
   EXPECT_LT(this->Read, 0.4);
 }
 
+// Of a training that was too short for a checkpoint.
+TEST_F(ResumeStreaming, KeepsAllStepsWhenTheReaderFailsBehindThem)
+{
+  this->Options.checkpoint.interval = 3600;
+  const inr::ModelPointer whole = this->trainWithoutCheckpoint();
+  bool measuring = false;
+  this->Before = [&](int) {
+    measuring ? throw inr::Error(inr::ErrorCode::CannotRead, "the disk is on fire") : void();
+  };
+  EXPECT_FALSE(this->train([&](const inr::TrainingProgress& now) {
+    measuring = now.phase == inr::TrainingPhase::Measuring;
+    return true;
+  }));
+  EXPECT_NE(this->Warning.find("on fire; its 40 steps are kept"), std::string::npos)
+      << this->Warning;
+  this->Before = {};
+  this->expectModelOf(whole, this->train());
+  EXPECT_EQ(this->Resumed, 1);
+  EXPECT_FALSE(this->Surveyed);
+}
+
+// While the last step is taken, which does not need what is read ahead of it.
+TEST_F(ResumeStreaming, KeepsAllStepsWhenTheReaderFailsBesideTheLast)
+{
+  this->Options.checkpoint.interval = 3600;
+  this->Options.maximumSteps = 3;
+  constexpr int failing = static_cast<int>(Blocks) + 18 + 1; // 18 are read again by then
+  this->Before = [&](int number) {
+    if (number == failing) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(400));
+      throw inr::Error(inr::ErrorCode::CannotRead, "the disk is on fire");
+    }
+  };
+  EXPECT_FALSE(this->train());
+  EXPECT_NE(this->Warning.find("on fire; its 3 steps are kept"), std::string::npos)
+      << this->Warning;
+  this->Before = {};
+  EXPECT_TRUE(this->train());
+  EXPECT_EQ(this->Resumed, 1);
+}
+
 // The same size and range, and the same values nearly everywhere.
 TEST_F(ResumeStreaming, BeginsAnewWhenTheDataHaveChanged)
 {
