@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
 #include "Core/Training/KeptSurvey.h"
+#include "Core/Training/NoMemory.h"
 #include "Core/Training/ParallelTraining.h"
 #include "Core/Training/ProgressRelay.h"
 #include "Core/Training/StreamBudget.h"
@@ -12,6 +13,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <new>
 #include <string>
 #include <thread>
 
@@ -272,7 +274,11 @@ ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info, const Trai
                         const TrainingGroup& group, const TrainingObserver& observer)
 {
   CheckArguments(reader.dims(), asked);
-  return StreamedTraining(reader, info, asked, group, observer).train();
+  try {
+    return StreamedTraining(reader, info, asked, group, observer).train();
+  } catch (const std::bad_alloc&) {
+    throw NoMemoryBesideSteps();
+  }
 }
 
 } // namespace inr

@@ -109,9 +109,10 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
 /// the first reading, and without what was read again, but for some blocks that show whether the
 /// volume is still the same; several read it again. Where there are too many voxels, quality is
 /// measured in bars all over the volume, and ranges of macro-cells are those of the data, wider by
-/// the largest error that was found; otherwise as above. Throws what `reader` throws, and
-/// Error(InvalidArgument) when the limit is too low, a value leaves the range that the first reading
-/// found, or the data are seen to have changed since otherwise.
+/// the largest error that was found; otherwise as above. Throws what `reader` throws, but
+/// Error(TooLarge) for its std::bad_alloc, and Error(InvalidArgument) when the limit is too low, a
+/// value leaves the range that the first reading found, or the data are seen to have changed since
+/// otherwise.
 ModelPointer TrainModel(VolumeReader& reader, const VolumeInfo& info,
                         const TrainingOptions& options, const TrainingObserver& observer = {});
 

@@ -2,6 +2,7 @@
 #include "Core/Training/TrainingGroup.h"
 
 #include "Core/Error.h"
+#include "Core/Training/NoMemory.h"
 
 #include <exception>
 #include <new>
@@ -65,7 +66,7 @@ void TrainingGroup::together(const std::function<void()>& work) const
   } catch (const Error& error) {
     mine = Described(error);
   } catch (const std::bad_alloc&) {
-    mine = Described(Error(ErrorCode::TooLarge, "there is not enough memory"));
+    mine = Described(NoMemoryBesideSteps());
   } catch (const std::exception& error) { // or the others would wait for ever
     mine = Described(Error(ErrorCode::InvalidArgument, error.what()));
   }

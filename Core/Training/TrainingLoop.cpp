@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Training/GradientDescent.h"
+#include "Core/Training/NoMemory.h"
 #include "Core/Training/Quantise.h"
 
 #include <algorithm>
@@ -27,13 +28,6 @@ void RequireFinite(bool finite, std::uint64_t steps)
 }
 
 } // namespace
-
-Error NoMemoryToTrain()
-{
-  return Error(ErrorCode::TooLarge,
-               "there is not enough memory to train; choose a smaller model (a higher TargetRatio, "
-               "or fewer parameters in ModelConfig), or end other programs");
-}
 
 void StopTraining(const Error& error, const TrainingGroup& group,
                   const std::function<std::string()>& keep)

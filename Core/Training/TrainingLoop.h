@@ -28,9 +28,6 @@ public:
   using Error::Error;
 };
 
-/// What to say where std::bad_alloc ends a training.
-Error NoMemoryToTrain();
-
 /// Throws `error` with what `keep`, which rank 0 calls, says is kept of the steps; in all processes
 /// of a group, and not before that is done: whoever started them may end all when one has ended.
 [[noreturn]] void StopTraining(const Error& error, const TrainingGroup& group,

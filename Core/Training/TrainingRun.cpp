@@ -9,6 +9,7 @@
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
 #include "Core/Training/AcceleratedDescent.h"
+#include "Core/Training/NoMemory.h"
 #include "Core/Training/Quantise.h"
 #include "Core/Training/Ssim.h"
 #include "Core/Training/TrainingIdentity.h"
@@ -228,7 +229,10 @@ void TrainingRun::keepSteps(const std::function<void()>& work)
     work();
   } catch (const Error& error) {
     StopTraining(error, this->group(), [this] { return this->writeSteps(); });
-  } catch (...) { // which other processes need not know of
+  } catch (const std::bad_alloc&) { // nor do other processes know of it
+    const Error error = NoMemoryBesideSteps();
+    throw Error(error.code(), error.what() + ("; " + this->writeSteps()));
+  } catch (...) {
     this->writeSteps();
     throw;
   }

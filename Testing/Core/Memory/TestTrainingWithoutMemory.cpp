@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <new>
 #include <optional>
 #include <string>
 
@@ -46,7 +45,6 @@ protected:
       });
     } catch (const inr::Error& error) {
       EXPECT_NE(std::string(error.what()).find("memory"), std::string::npos) << error.what();
-    } catch (const std::bad_alloc&) { // behind the steps
     }
     return memory->hasFailed();
   }

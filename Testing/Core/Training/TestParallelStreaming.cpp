@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <new>
 #include <optional>
 
 namespace {
@@ -150,6 +151,15 @@ TEST(ParallelStreaming, StopsForAllWhenOneCannotRead)
                                }),
                  "on fire");
   }
+}
+
+TEST(ParallelStreaming, SaysWhatToDoWhereAReaderHasNoMemory)
+{
+  ExpectErrors(TrainTogether(2, StreamedOptions(20),
+                             [&](int rank, int reading) {
+                               rank == 1 && reading == 2 ? throw std::bad_alloc() : void();
+                             }),
+               "not enough memory to read the data");
 }
 
 TEST(ParallelStreaming, StopsForAllWhenOneIsToldToInEveryPhase)

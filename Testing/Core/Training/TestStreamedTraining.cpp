@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <new>
 #include <thread>
 
 namespace {
@@ -163,6 +164,19 @@ TEST(StreamedTraining, HandsOnWhatTheReaderSaysWheneverItFails)
       }
     };
     ExpectError(reader, Options(40), "on fire");
+  }
+}
+
+TEST(StreamedTraining, SaysWhatToDoWhereTheReaderHasNoMemory)
+{
+  for (const int failing : {2, 6, 10}) { // while surveying, training and measuring
+    FieldReader<float> reader(LargeField());
+    reader.before = [&](int number) {
+      if (number == failing) {
+        throw std::bad_alloc();
+      }
+    };
+    ExpectError(reader, Options(40), "not enough memory to read the data");
   }
 }
 
