@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -87,7 +88,9 @@ void StreamedVolume::survey(std::int64_t block, const VolumePiece& piece)
 
 StateArrays StreamedVolume::state()
 {
-  StateArrays arrays = {{"range", &this->Statistics, sizeof(this->Statistics)},
+  // What follows the range is of constant volumes only, which have no checkpoint.
+  constexpr std::size_t range = offsetof(VolumeStatistics, overLow);
+  StateArrays arrays = {{"range", &this->Statistics, range},
                         {"seconds", &this->SurveySeconds, sizeof(this->SurveySeconds)},
                         {"random", this->EstimateValues.data(),
                          static_cast<std::int64_t>(this->EstimateValues.size() * sizeof(double))}};

@@ -88,7 +88,8 @@ Description ChooseDescription(const glm::i64vec3& dims, ScalarType type, double 
 /// Optimiser.h says. In a cell with a NaN or infinite voxel the target is the nearest voxel's
 /// value, and where that one is not finite the position carries no gradient; such voxels are
 /// counted and left out of range and quality. A constant volume takes no step and is exact, or, of
-/// an integer that no double is, one of the two doubles next to it. A start shows in the record's
+/// integers that no double tells apart, the double nearest to them; its largest error is then all
+/// that is known of its quality. A start shows in the record's
 /// earlierSteps, where it is of use. The result's quality and macro-cells are those of the
 /// parameters as they are stored. For a given seed, number of steps, plan and kernel family the
 /// result is the same whatever the number of threads. Throws Error(InvalidArgument) for a volume

@@ -118,7 +118,8 @@ TrainingRun::TrainingRun(const VolumeInfo& info, const VolumeStatistics& statist
                          const TrainingGroup* group)
     : Options(options), Observer(observer), Together(group),
       Set(CommonInstructionSet(options.kernel, this->group())),
-      MacroCellSize(MacroCellSizeOf(info, options))
+      MacroCellSize(MacroCellSizeOf(info, options)),
+      ConstantError(statistics.isConstant() ? statistics.distance() : 0.0)
 {
   if (!statistics.hasValues()) {
     throw Error(ErrorCode::InvalidArgument, "none of the " + std::to_string(statistics.nonFinite) +
@@ -130,8 +131,9 @@ TrainingRun::TrainingRun(const VolumeInfo& info, const VolumeStatistics& statist
       info.dims, info.type, options.targetRatio, options.storedAs, this->MacroCellSize));
   model.storedAs = options.storedAs;
   model.volume = info;
-  model.volume.low = statistics.low;
-  model.volume.high = statistics.isConstant() ? statistics.low : statistics.high;
+  const bool constant = statistics.isConstant();
+  model.volume.low = constant ? statistics.nearest() : statistics.low;
+  model.volume.high = constant ? statistics.nearest() : statistics.high;
   model.training = TrainingRecord{0,
                                   0,
                                   options.seed,
@@ -161,10 +163,12 @@ ModelPointer TrainingRun::constantModel()
     model.steps.assign(packs ? ParameterGroups(model.description).size() : 0, 1.0f);
   }
   const glm::i64vec3 dims = model.volume.dims;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const bool exact = this->ConstantError == 0; // or there is no range to compare errors with
   // Whether there is a window without a gap is not worth a search.
-  const bool windowFits = SliceSsim::HasWindows(dims) && model.training->nonFinite == 0;
-  model.quality = Quality{std::numeric_limits<double>::infinity(),
-                          windowFits ? 1.0 : std::numeric_limits<double>::quiet_NaN(), 0.0};
+  const bool windowFits = exact && SliceSsim::HasWindows(dims) && model.training->nonFinite == 0;
+  model.quality = Quality{exact ? std::numeric_limits<double>::infinity() : unknown,
+                          windowFits ? 1.0 : unknown, this->ConstantError};
   const auto made = std::make_shared<Model>(std::move(model));
   made->macroCells.provenance = MacroCellProvenance::Decoded;
   std::fill(made->macroCells.ranges.begin(), made->macroCells.ranges.end(), OnlyRangeOf(made));

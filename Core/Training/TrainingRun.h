@@ -35,7 +35,8 @@ public:
   int macroCellSize() const { return this->MacroCellSize; }
   const VolumeInfo& volume() const { return this->Result.volume; }
 
-  /// Whether all finite voxels are equal, for all that doubles tell: no step is needed to be exact.
+  /// Whether all finite voxels are equal, for all that doubles tell: no step is needed to be as
+  /// exact as can be.
   bool isConstant() const;
   ModelPointer constantModel();
 
@@ -68,6 +69,7 @@ private:
   const TrainingGroup* Together; ///< null = alone
   InstructionSet Set;
   int MacroCellSize;
+  double ConstantError; ///< of a constant volume that no double is
   Model Result;
   std::optional<CheckpointKeeper> Keeper; ///< since there are steps to keep
   std::unique_ptr<GradientDescent> Steps; ///< null where they are on disk, or not to be kept

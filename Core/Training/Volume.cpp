@@ -26,6 +26,10 @@ void MeasureRow(const T* values, std::int64_t stride, std::int64_t count, Volume
     result.innerLow = std::max(result.innerLow, below);
     result.high = std::max(result.high, above);
     result.innerHigh = std::min(result.innerHigh, above);
+    if constexpr (IsVast<T>) {
+      result.overLow = std::max(result.overLow, Above(value, below));
+      result.underHigh = std::max(result.underHigh, -Above(value, above));
+    }
   }
 }
 
@@ -38,6 +42,8 @@ void VolumeStatistics::add(const VolumeStatistics& other)
   this->innerLow = std::max(this->innerLow, other.innerLow);
   this->innerHigh = std::min(this->innerHigh, other.innerHigh);
   this->nonFinite += other.nonFinite;
+  this->overLow = std::max(this->overLow, other.overLow);
+  this->underHigh = std::max(this->underHigh, other.underHigh);
 }
 
 VolumeStatistics MeasureBox(const VolumePiece& piece, const VoxelBox& box, const Arena& arena)

@@ -6,6 +6,7 @@
 
 #include <glm/gtc/type_precision.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -50,10 +51,16 @@ struct VolumeStatistics
   double innerLow = -std::numeric_limits<double>::infinity();
   double innerHigh = std::numeric_limits<double>::infinity();
   std::int64_t nonFinite = 0;
+  /// The largest distance of an integer from the double below it, and from that above.
+  double overLow = 0;
+  double underHigh = 0;
 
   bool hasValues() const { return this->low <= this->high; }
   /// Whether doubles tell no value from another.
   bool isConstant() const { return this->low == this->innerLow && this->high == this->innerHigh; }
+  /// Of one that is constant: the double nearest to its values, and the largest distance from it.
+  double nearest() const { return this->overLow <= this->underHigh ? this->low : this->high; }
+  double distance() const { return std::min(this->overLow, this->underHigh); }
   void add(const VolumeStatistics& other);
 };
 VolumeStatistics MeasureVolume(const VolumeData& volume, const Arena& arena);

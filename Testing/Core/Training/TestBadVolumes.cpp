@@ -7,6 +7,7 @@
 #include "Core/Model/ModelFile.h"
 #include "Core/Random.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
+#include "Testing/Core/Training/FieldReader.h"
 #include "Testing/Core/Training/Fields.h"
 
 #include <gtest/gtest.h>
@@ -259,11 +260,39 @@ TEST(ConstantVolumes, OfIntegersThatNoDoubleIs)
   const inr::ModelPointer model = check(inr::ScalarType::Int64, odd, odd);
   EXPECT_EQ(model->training->steps, 0u);
   EXPECT_EQ(inr::ValueOf(model->volume, 0.0f), static_cast<double>(odd - 1));
-  EXPECT_EQ(model->quality->psnr, Infinity);
+  EXPECT_EQ(model->quality->maxError, 1);
+  EXPECT_TRUE(std::isnan(model->quality->psnr) && std::isnan(model->quality->ssim));
+  ExpectSameFromFile(*model);
   EXPECT_EQ(check(inr::ScalarType::UInt64, ones, ones)->training->steps, 0u);
   EXPECT_EQ(check(inr::ScalarType::UInt64, ones, ones - 1)->training->steps, 0u);
   EXPECT_EQ(check(inr::ScalarType::Int64, odd - 1, odd + 1)->training->steps, 5u);
   EXPECT_EQ(check(inr::ScalarType::Int64, odd, odd + 1)->training->steps, 5u);
+}
+
+/// Not the double below them.
+TEST(ConstantVolumes, AreTheNearestDouble)
+{
+  constexpr std::int64_t exact = std::int64_t{1} << 60; // doubles are 256 apart
+  const auto expect = [](std::int64_t value, std::int64_t last, std::int64_t stored, double error) {
+    for (const std::int64_t sign : {1, -1}) {
+      Field<std::int64_t> field{{8, 9, 10}, inr::ScalarType::Int64, {}};
+      field.values.assign(720, sign * value);
+      field.values[700] = sign * last;
+      FieldReader<std::int64_t> reader(field);
+      for (const inr::ModelPointer& model :
+           {inr::TrainModel(field.data(), {}, Steps(5)), inr::TrainModel(reader, {}, Steps(5))}) {
+        EXPECT_EQ(model->training->steps, 0u);
+        EXPECT_EQ(model->volume.low, static_cast<double>(sign * stored));
+        EXPECT_EQ(model->volume.high, model->volume.low);
+        EXPECT_EQ(model->quality->maxError, error);
+      }
+    }
+  };
+  expect(exact, exact, exact, 0);
+  expect(exact + 1, exact + 1, exact, 1);
+  expect(exact + 255, exact + 255, exact + 256, 1);
+  expect(exact + 5, exact + 200, exact, 200);
+  expect(exact + 100, exact + 255, exact + 256, 156);
 }
 
 TEST(ConstantVolumes, HaveTheRangeOfWhatTheNetworkSays)
