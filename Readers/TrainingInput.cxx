@@ -15,6 +15,8 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace {
 
@@ -68,6 +70,19 @@ void LeaveOutHidden(vtkImageData* image, vtkDataArray* own, TrainingInput& input
       input.values->SetTuple1(point, std::numeric_limits<double>::quiet_NaN());
     }
   }
+}
+
+/// All point arrays but masks.
+std::vector<vtkAbstractArray*> VolumesAmong(vtkDataSetAttributes& data)
+{
+  std::vector<vtkAbstractArray*> volumes;
+  for (int k = 0; k < data.GetNumberOfArrays(); ++k) {
+    vtkAbstractArray* array = data.GetAbstractArray(k);
+    if (!IsMask(*array)) {
+      volumes.push_back(array);
+    }
+  }
+  return volumes;
 }
 
 } // namespace
@@ -124,14 +139,37 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
   return input;
 }
 
+bool IsMask(vtkAbstractArray& array)
+{
+  const char* name = array.GetName();
+  return name && (name == std::string_view(vtkDataSetAttributes::GhostArrayName()) ||
+                  name == std::string_view("vtkValidPointMask")); // by vtkProbeFilter
+}
+
+vtkAbstractArray* DefaultArray(vtkDataSetAttributes& data)
+{
+  const std::vector<vtkAbstractArray*> arrays = VolumesAmong(data);
+  vtkAbstractArray* active = data.GetScalars();
+  if (active && !IsMask(*active)) {
+    return active;
+  }
+  return arrays.size() == 1 ? arrays.front() : nullptr;
+}
+
 std::string NoSuchArray(vtkDataSetAttributes& data, const char* chosen)
 {
   std::string text = chosen && *chosen
                          ? "the image has no point array '" + std::string(chosen) + "'"
                          : std::string("no point array is chosen");
-  text += data.GetNumberOfArrays() > 0 ? "; Scalars takes one of" : ", and the image has none";
-  for (int k = 0; k < data.GetNumberOfArrays(); ++k) {
-    const char* name = data.GetArrayName(k);
+  const std::vector<vtkAbstractArray*> arrays = VolumesAmong(data);
+  if (arrays.empty()) {
+    const bool hasMasks = data.GetNumberOfArrays() > 0;
+    return text + ", and the image has none" +
+           (hasMasks ? " but vtkGhostType or vtkValidPointMask" : "");
+  }
+  text += "; Scalars takes one of";
+  for (std::size_t k = 0; k < arrays.size(); ++k) {
+    const char* name = arrays[k]->GetName();
     text += std::string(k > 0 ? ", '" : " '") + (name ? name : "") + "'";
   }
   return text;

@@ -29,5 +29,14 @@ struct TrainingInput
 /// Throws inr::Error(InvalidArgument) that says what is wrong with the array.
 TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values);
 
-/// For the user: that `chosen` (may be null) is none of the point arrays, and which there are.
+/// Does the array tell which points other arrays have no value at (vtkGhostType,
+/// vtkValidPointMask)?
+bool IsMask(vtkAbstractArray& array);
+
+/// What is saved when nobody chooses: the active scalars or the only array, masks left out; else
+/// null.
+vtkAbstractArray* DefaultArray(vtkDataSetAttributes& data);
+
+/// For the user: that `chosen` (may be null) is none of the point arrays, and which there are
+/// beside masks.
 std::string NoSuchArray(vtkDataSetAttributes& data, const char* chosen);

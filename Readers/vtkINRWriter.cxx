@@ -257,10 +257,8 @@ TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
   vtkAbstractArray* array = this->GetInputAbstractArrayToProcess(0, image, association);
   // Where nobody has seen the data, nobody could choose.
   const char* chosen = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-  if (!array && !(chosen && *chosen)) {
-    const bool single = image->GetPointData()->GetNumberOfArrays() == 1;
-    array =
-        single ? image->GetPointData()->GetAbstractArray(0) : image->GetPointData()->GetScalars();
+  if (!(chosen && *chosen) && (!array || IsMask(*array))) {
+    array = DefaultArray(*image->GetPointData());
   }
   if (!array) {
     throw inr::Error(inr::ErrorCode::InvalidArgument, NoSuchArray(*image->GetPointData(), chosen));

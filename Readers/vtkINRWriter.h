@@ -4,11 +4,11 @@
  * @brief trains an implicit neural representation of image data and saves it as a model file
  *
  * The point array to save is chosen with SetInputArrayToProcess (default: the active scalars, or
- * the only array); it
- * has one component of any number type. Training ends when TargetPSNR is reached, after
- * MaximumSteps or after TimeLimit, whichever comes first. With the same seed, steps and kernel
- * family the result is the same on any number of threads; where TimeLimit ended it, or seemed to
- * allow clearly less than MaximumSteps, with the same PlannedSteps, too.
+ * the only array; vtkGhostType and vtkValidPointMask do not count); it has one component of any
+ * number type. Training ends when TargetPSNR is reached, after MaximumSteps or after TimeLimit,
+ * whichever comes first. With the same seed, steps and kernel family the result is the same on any
+ * number of threads; where TimeLimit ended it, or seemed to allow clearly less than MaximumSteps,
+ * with the same PlannedSteps, too.
  *
  * With WriteTimeSteps each time step of the input goes into a file of its own, which tells its
  * time, and is trained from the parameters of the one before.

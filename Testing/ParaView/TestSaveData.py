@@ -2,7 +2,7 @@
 """Save Data through the writer proxy: limits, progress, and the file that the other tests open."""
 import os
 
-from paraview import simple
+from paraview import simple, vtk
 from pvtest import ARRAY, MODEL, Messages, check, data_file, load_plugin, output_file
 
 load_plugin()
@@ -50,3 +50,22 @@ wavelet = simple.Wavelet(WholeExtent=[-8, 8, -8, 8, -8, 8])
 wavelet.UpdatePipeline()
 simple.SaveData(output_file("wavelet.inr"), wavelet, Scalars=["POINTS", "RTData"], TimeLimit=2)
 same_points(output_file("wavelet.inr"), wavelet)
+
+# Of arrays none of which is active, ParaView would choose the first: a mask, if a filter left one.
+masked = vtk.vtkImageData()
+masked.SetDimensions(9, 8, 7)
+for name, type in (("vtkValidPointMask", vtk.VTK_CHAR), ("vtkGhostType", vtk.VTK_UNSIGNED_CHAR),
+                   ("zeta", vtk.VTK_FLOAT)):
+    array = vtk.vtkDataArray.CreateDataArray(type)
+    array.SetName(name)
+    array.SetNumberOfTuples(masked.GetNumberOfPoints())
+    array.Fill(0)
+    masked.GetPointData().AddArray(array)
+producer = simple.TrivialProducer()
+producer.GetClientSideObject().SetOutput(masked)
+producer.UpdatePipeline()
+for chosen, saved in (({}, "zeta"), ({"Scalars": ["POINTS", "vtkGhostType"]}, "vtkGhostType")):
+    save(producer, output_file("masked.inr"), MaximumSteps=2, **chosen)
+    reader = same_points(output_file("masked.inr"), producer)
+    check(reader.PointData.keys() == [saved], reader.PointData.keys(), "instead of", saved)
+    simple.Delete(reader)

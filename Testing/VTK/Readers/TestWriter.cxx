@@ -4,12 +4,15 @@
 
 #include <vtkBitArray.h>
 #include <vtkCellData.h>
+#include <vtkCharArray.h>
 #include <vtkFloatArray.h>
 #include <vtkMatrix3x3.h>
 #include <vtkPolyData.h>
 #include <vtkSOADataArrayTemplate.h>
 #include <vtkStringArray.h>
+#include <vtkUnsignedCharArray.h>
 
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -146,6 +149,38 @@ TEST_F(Writer, SavesTheChosenArray)
   const auto decoded = this->decode();
   EXPECT_STREQ(decoded->GetPointData()->GetScalars()->GetName(), "other");
   EXPECT_EQ(decoded->GetPointData()->GetScalars()->GetTuple1(100), 42.0); // constants are exact
+}
+
+TEST_F(Writer, SavesNoMaskThatNobodyChose)
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(4, 4, 4);
+  const auto add = [&](const char* name, auto&& array) {
+    array->SetName(name);
+    array->SetNumberOfTuples(64);
+    array->Fill(0);
+    image->GetPointData()->AddArray(array);
+  };
+  add("vtkValidPointMask", vtkNew<vtkCharArray>());
+  add("vtkGhostType", vtkNew<vtkUnsignedCharArray>());
+  this->expectRefusal(image, "the image has none but vtkGhostType or vtkValidPointMask");
+  image->GetPointData()->SetActiveScalars("vtkValidPointMask");
+  add("zeta", vtkNew<vtkFloatArray>());
+  const auto saved = [&] { return std::string(this->decode()->GetPointData()->GetArrayName(0)); };
+  this->write(image);
+  EXPECT_EQ(saved(), "zeta");
+  image->GetPointData()->SetActiveScalars(nullptr);
+  this->write(image);
+  EXPECT_EQ(saved(), "zeta");
+  this->Algorithm->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                                          "vtkGhostType");
+  this->write(image);
+  EXPECT_EQ(saved(), "vtkGhostType");
+
+  std::remove(this->path().c_str());
+  this->Algorithm->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
+  add("eta", vtkNew<vtkFloatArray>());
+  this->expectRefusal(image, "no point array is chosen; Scalars takes one of 'zeta', 'eta'");
 }
 
 TEST_F(Writer, StoresTheQualityThatItReports)
