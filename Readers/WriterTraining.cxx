@@ -57,7 +57,7 @@ inr::TrainingOptions vtkINRWriter::MakeOptions() const
   options.storedAs =
       this->ReadableByInstantVNR ? inr::ParameterType::Half : inr::ParameterType::Quantised;
   if (this->ModelConfig && *this->ModelConfig) {
-    options.description = inr::ParseDescription(std::string(this->ModelConfig));
+    options.description = inr::ParseModelConfig(this->ModelConfig);
   }
   options.memoryLimit = this->MemoryLimitInBytes();
   return options;

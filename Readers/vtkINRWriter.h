@@ -214,8 +214,8 @@ public:
   const char* GetBackendInUse() const { return this->BackendInUse.c_str(); }
 
   ///@{
-  /// The model as tiny-cuda-nn configuration (JSON text with "encoding" and "network"); overrides
-  /// TargetRatio. Empty (default) = chosen.
+  /// The model as tiny-cuda-nn configuration (JSON text with "encoding" and "network", in which
+  /// unknown keys are refused); overrides TargetRatio. Empty (default) = chosen.
   vtkSetStringMacro(ModelConfig);
   vtkGetStringMacro(ModelConfig);
   ///@}

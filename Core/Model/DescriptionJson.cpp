@@ -141,6 +141,24 @@ NetworkType TypeOf(const NetworkDescription& network)
   return fused ? NetworkType::FullyFused : NetworkType::Cutlass;
 }
 
+/// Of those of tiny-cuda-nn that are read, or belong to its training.
+void CheckKeys(const json& model)
+{
+  const JsonSection config(model, "");
+  config.allowOnly({"encoding", "network", "loss", "optimizer"});
+  config.section("encoding")
+      .allowOnly({"otype", "type", "n_levels", "n_features", "n_features_per_level",
+                  "log2_hashmap_size", "base_resolution", "per_level_scale", "interpolation",
+                  "hash"});
+  config.section("network").allowOnly(
+      {"otype", "n_neurons", "n_hidden_layers", "activation", "output_activation"});
+  for (const char* section : {"encoding", "network"}) {
+    if (!config.has(section)) {
+      config.refuse(section, "is missing from the model configuration");
+    }
+  }
+}
+
 } // namespace
 
 Description ParseDescription(const json& model)
@@ -150,7 +168,7 @@ Description ParseDescription(const json& model)
   return description;
 }
 
-Description ParseDescription(const std::string& text)
+Description ParseModelConfig(const std::string& text)
 {
   json model;
   try {
@@ -159,6 +177,7 @@ Description ParseDescription(const std::string& text)
     throw Error(ErrorCode::Malformed,
                 std::string("the model configuration is not JSON: ") + failure.what());
   }
+  CheckKeys(model);
   return ParseDescription(model);
 }
 

@@ -16,8 +16,11 @@ namespace inr {
 /// message names the key.
 Description ParseDescription(const nlohmann::json& model);
 
-/// As above, from text (C and C++ comments allowed); Error(Malformed) when it is not JSON.
-Description ParseDescription(const std::string& text);
+/// As above, of what a user wrote (C and C++ comments allowed); Error(Malformed) when it is not
+/// JSON. Both sections have to be there, if empty, and an unknown key is refused, with those that
+/// are known: a misspelt one must not stand for its default. `loss` and `optimizer`, which such
+/// configurations have, too, are ignored.
+Description ParseModelConfig(const std::string& text);
 
 /// The same sections as upstream writes and reads them.
 BsonObject DescriptionSection(const Description& description);

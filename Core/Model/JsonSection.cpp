@@ -99,6 +99,22 @@ std::string JsonSection::text(const char* key, const std::string& fallback) cons
   return this->has(key) ? this->text(key) : fallback;
 }
 
+void JsonSection::allowOnly(std::initializer_list<const char*> known) const
+{
+  if (this->Object == nullptr) {
+    return;
+  }
+  for (const auto& item : this->Object->items()) {
+    if (std::find(known.begin(), known.end(), item.key()) == known.end()) {
+      std::string list;
+      for (const char* key : known) {
+        list += (list.empty() ? "" : ", ") + std::string(key);
+      }
+      this->refuse(item.key().c_str(), "is not known; what may be here is " + list);
+    }
+  }
+}
+
 void JsonSection::refuse(const char* key, const std::string& reason) const
 {
   throw Error(ErrorCode::InvalidModel, this->nameOf(key) + " " + reason);

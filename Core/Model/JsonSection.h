@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -71,6 +72,9 @@ public:
     throw Error(ErrorCode::Unsupported,
                 this->nameOf(key) + " is '" + wanted + "'; supported are " + supported);
   }
+
+  /// Refuses a key that is none of `known`, which it lists.
+  void allowOnly(std::initializer_list<const char*> known) const;
 
   [[noreturn]] void refuse(const char* key, const std::string& reason) const;
 

@@ -6,6 +6,8 @@
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/Model.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -36,8 +38,7 @@ struct TruthCase
         Values(ReadArray<double>(INR_TRUTH_DIR "/" + name + ".truth"))
   {
     std::ifstream file(INR_TRUTH_DIR "/" + name + ".json");
-    const std::string text((std::istreambuf_iterator<char>(file)), {});
-    this->Source.description = inr::ParseDescription(text);
+    this->Source.description = inr::ParseDescription(nlohmann::json::parse(file));
     const auto parameters = ReadArray<float>(INR_TRUTH_DIR "/" + name + ".params");
     this->Source.parameters.assign(parameters.begin(), parameters.end());
   }

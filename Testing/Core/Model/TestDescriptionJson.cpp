@@ -8,6 +8,8 @@
 using inr::Description;
 using inr::ErrorCode;
 using inr::ParseDescription;
+using inr::ParseModelConfig;
+using nlohmann::json;
 
 namespace {
 
@@ -15,7 +17,7 @@ namespace {
 std::pair<ErrorCode, std::string> Refusal(const std::string& text)
 {
   try {
-    ParseDescription(text);
+    ParseModelConfig(text);
   } catch (const inr::Error& error) {
     return {error.code(), error.what()};
   }
@@ -34,13 +36,13 @@ void ExpectRefused(const std::string& text, ErrorCode code, const std::string& m
 
 TEST(DescriptionJson, ReadsTheExampleWithComments)
 {
-  const Description description = ParseDescription(std::string(R"({
+  const Description description = ParseModelConfig(R"({
     "optimizer": {"otype": "Adam"}, // ignored
     /* "network": {"otype": "CutlassMLP", "activation": "Sine"}, */
     "encoding": {"otype": "HashGrid", "n_levels": 8, "n_features_per_level": 8,
                  "log2_hashmap_size": 19, "base_resolution": 16},
     "network": {"otype": "FullyFusedMLP", "activation": "ReLU", "output_activation": "None",
-                "n_neurons": 64, "n_hidden_layers": 4}})"));
+                "n_neurons": 64, "n_hidden_layers": 4}})");
   EXPECT_EQ(inr::Layout(description).parameterCount, 23380992u);
 }
 
@@ -52,7 +54,7 @@ TEST(DescriptionJson, SaysOfNumbersThatAreNoneWhereTheyStand)
 
 TEST(DescriptionJson, DefaultsAreThoseOfTinyCudaNn)
 {
-  const Description description = ParseDescription(std::string("{}"));
+  const Description description = ParseDescription(json::object());
   EXPECT_EQ(description.grid.type, inr::GridType::Hash);
   EXPECT_EQ(description.grid.levels, 16);
   EXPECT_EQ(description.grid.features, 2);
@@ -67,11 +69,11 @@ TEST(DescriptionJson, DefaultsAreThoseOfTinyCudaNn)
 
 TEST(DescriptionJson, NamesIgnoreCaseAndHaveSynonyms)
 {
-  const Description description = ParseDescription(std::string(
+  const Description description = ParseModelConfig(
       R"({"encoding": {"otype": "grid", "type": "TILED", "interpolation": "smoothstep",
                        "hash": "rng", "n_features": 12, "n_features_per_level": 4},
           "network": {"otype": "megakernelmlp", "n_neurons": 32, "n_hidden_layers": 2,
-                      "activation": "SINE", "output_activation": "squareplus"}})"));
+                      "activation": "SINE", "output_activation": "squareplus"}})");
   EXPECT_EQ(description.grid.type, inr::GridType::Tiled);
   EXPECT_EQ(description.grid.interpolation, inr::GridInterpolation::Smoothstep);
   EXPECT_EQ(description.grid.hash, inr::HashFunction::Rng);
@@ -83,7 +85,7 @@ TEST(DescriptionJson, NamesIgnoreCaseAndHaveSynonyms)
 TEST(DescriptionJson, WholeNumbersMayBeDoubles)
 {
   const Description description =
-      ParseDescription(std::string(R"({"encoding": {"n_levels": 4.0, "per_level_scale": 2}})"));
+      ParseModelConfig(R"({"encoding": {"n_levels": 4.0, "per_level_scale": 2}, "network": {}})");
   EXPECT_EQ(description.grid.levels, 4);
 }
 
@@ -91,29 +93,49 @@ TEST(DescriptionJson, RefusalsNameTheKey)
 {
   ExpectRefused("{", ErrorCode::Malformed, "not JSON");
   ExpectRefused("[]", ErrorCode::InvalidModel, "not an object");
-  ExpectRefused(R"({"encoding": 3})", ErrorCode::InvalidModel, "'encoding'");
-  ExpectRefused(R"({"encoding": {"otype": "Frequency"}})", ErrorCode::Unsupported,
+  ExpectRefused(R"({"encoding": 3, "network": {}})", ErrorCode::InvalidModel, "'encoding'");
+  ExpectRefused(R"({"encoding": {"otype": "Frequency"}, "network": {}})", ErrorCode::Unsupported,
                 "'encoding.otype' is 'Frequency'");
-  ExpectRefused(R"({"network": {"otype": "CutlassResNet"}})", ErrorCode::Unsupported,
-                "'network.otype'");
-  ExpectRefused(R"({"network": {"activation": "Mish"}})", ErrorCode::Unsupported,
+  ExpectRefused(R"({"network": {"otype": "CutlassResNet"}, "encoding": {}})",
+                ErrorCode::Unsupported, "'network.otype'");
+  ExpectRefused(R"({"network": {"activation": "Mish"}, "encoding": {}})", ErrorCode::Unsupported,
                 "'network.activation'");
-  ExpectRefused(R"({"network": {"activation": 1}})", ErrorCode::InvalidModel,
+  ExpectRefused(R"({"network": {"activation": 1}, "encoding": {}})", ErrorCode::InvalidModel,
                 "'network.activation'");
-  ExpectRefused(R"({"encoding": {"n_levels": 2.5}})", ErrorCode::InvalidModel,
+  ExpectRefused(R"({"encoding": {"n_levels": 2.5}, "network": {}})", ErrorCode::InvalidModel,
                 "'encoding.n_levels'");
-  ExpectRefused(R"({"encoding": {"n_levels": "8"}})", ErrorCode::InvalidModel,
+  ExpectRefused(R"({"encoding": {"n_levels": "8"}, "network": {}})", ErrorCode::InvalidModel,
                 "'encoding.n_levels'");
-  ExpectRefused(R"({"encoding": {"n_levels": 1e300}})", ErrorCode::InvalidModel,
+  ExpectRefused(R"({"encoding": {"n_levels": 1e300}, "network": {}})", ErrorCode::InvalidModel,
                 "'encoding.n_levels'");
-  ExpectRefused(R"({"encoding": {"n_levels": 99999}})", ErrorCode::InvalidModel, "grid levels");
-  ExpectRefused(R"({"encoding": {"n_levels": 2, "n_features": 4}})", ErrorCode::InvalidModel,
-                "'encoding.n_features'");
-  ExpectRefused(R"({"encoding": {"n_features": 5}})", ErrorCode::InvalidModel, "multiple");
-  ExpectRefused(R"({"network": {"otype": "FullyFusedMLP", "n_neurons": 48}})",
+  ExpectRefused(R"({"encoding": {"n_levels": 99999}, "network": {}})", ErrorCode::InvalidModel,
+                "grid levels");
+  ExpectRefused(R"({"encoding": {"n_levels": 2, "n_features": 4}, "network": {}})",
+                ErrorCode::InvalidModel, "'encoding.n_features'");
+  ExpectRefused(R"({"encoding": {"n_features": 5}, "network": {}})", ErrorCode::InvalidModel,
+                "multiple");
+  ExpectRefused(R"({"network": {"otype": "FullyFusedMLP", "n_neurons": 48}, "encoding": {}})",
                 ErrorCode::InvalidModel, "'network.n_neurons'");
-  ExpectRefused(R"({"network": {"otype": "FullyFusedMLP", "n_neurons": 64, "n_hidden_layers": 0}})",
-                ErrorCode::InvalidModel, "'network.n_hidden_layers'");
+  ExpectRefused(
+      R"({"network": {"otype": "FullyFusedMLP", "n_neurons": 64, "n_hidden_layers": 0},
+          "encoding": {}})",
+      ErrorCode::InvalidModel, "'network.n_hidden_layers'");
+}
+
+// Files come from other programs, which may say more; what a user misspells must not stand for its
+// default without a word.
+TEST(DescriptionJson, RefusesUnknownKeysOfUsersOnly)
+{
+  const auto refused = [](const std::string& text, const std::string& mention) {
+    ExpectRefused(text, ErrorCode::InvalidModel, mention);
+    EXPECT_NO_THROW(ParseDescription(json::parse(text)));
+  };
+  refused(R"({"encodng": {"n_levels": 4}, "netwok": {}})",
+          "'encodng' is not known; what may be here is encoding, network, loss, optimizer");
+  refused(R"({"encoding": {"n_level": 4}, "network": {}})", "'encoding.n_level' is not known");
+  refused(R"({"encoding": {}, "network": {"neurons": 16}})", "'network.neurons' is not known");
+  refused("{}", "'encoding' is missing");
+  refused(R"({"encoding": {}})", "'network' is missing");
 }
 
 TEST(DescriptionJson, WritesWhatItReads)

@@ -339,8 +339,10 @@ TEST_F(Writer, RefusesSettingsThatMakeNoSense)
   const auto image = MakeImage({4, 4, 4}, VTK_FLOAT, 0, 1);
   this->Algorithm->SetModelConfig("{ not JSON");
   this->expectRefusal(image, "JSON");
-  this->Algorithm->SetModelConfig(R"({"encoding": {"otype": "Frequency"}})");
+  this->Algorithm->SetModelConfig(R"({"encoding": {"otype": "Frequency"}, "network": {}})");
   this->expectRefusal(image, "Frequency");
+  this->Algorithm->SetModelConfig(R"({"encodng": {"n_levels": 4}, "netwok": {}})");
+  this->expectRefusal(image, "'encodng' is not known");
   this->Algorithm->SetModelConfig(nullptr);
   this->Algorithm->SetTimeLimit(0);
   this->Algorithm->SetMaximumSteps(0);
