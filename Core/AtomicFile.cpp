@@ -102,16 +102,24 @@ AtomicFile::~AtomicFile()
   }
 }
 
-// A fixed mode of 0666 leaves the permissions to the user's umask, which mkstemp would not.
 void AtomicFile::create()
 {
+  struct stat replaced
+  {};
+  const bool replaces = stat(this->Target.c_str(), &replaced) == 0;
+  // A new file's permissions are left to the user's umask, which mkstemp would not do; another's
+  // are kept, so that what was private stays so.
+  const mode_t mode = replaces ? replaced.st_mode & 0777 : 0666;
   constexpr int Attempts = 1000;
   const std::string stem = TemporaryStem(this->Target, getpid());
   for (int attempt = 0; attempt < Attempts; ++attempt) {
     std::string name = stem + std::to_string(attempt) + ".tmp";
-    this->Descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    this->Descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (this->Descriptor >= 0) {
       this->Temporary = std::move(name); // takes no memory, of which there may be none
+      if (replaces) { // the umask may have taken some; where it cannot be undone, that is safe
+        (void)fchmod(this->Descriptor, mode);
+      }
       return;
     }
     if (errno != EEXIST) {

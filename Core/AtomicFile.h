@@ -7,8 +7,9 @@
 namespace inr {
 
 /// A file that appears under its name whole or not at all: it is written under a temporary name in
-/// the same folder, and `commit` renames it. Without a commit the destructor removes it, and
-/// whatever had the name before stays untouched.
+/// the same folder, and `commit` renames it. It has the permissions of the file that it replaces,
+/// if any. Without a commit the destructor removes it, and whatever had the name before stays
+/// untouched.
 class AtomicFile
 {
 public:

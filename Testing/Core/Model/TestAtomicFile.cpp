@@ -69,6 +69,17 @@ TEST_F(AtomicFileTest, CommitReplacesTheTarget)
   EXPECT_EQ(this->entries(), 1);
 }
 
+TEST_F(AtomicFileTest, KeepsThePermissionsOfWhatItReplaces)
+{
+  const std::string path = this->path("a");
+  Write(path, "old");
+  for (const int mode : {0600, 0666}) { // narrower and wider than what the usual umask gives
+    fs::permissions(path, fs::perms(mode));
+    Write(path, "new");
+    EXPECT_EQ(fs::status(path).permissions(), fs::perms(mode));
+  }
+}
+
 TEST_F(AtomicFileTest, WithoutCommitNothingChanges)
 {
   Write(this->path("a"), "old");
