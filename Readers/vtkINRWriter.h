@@ -32,6 +32,7 @@
 
 #include <cstdint>    // for byte counts
 #include <functional> // for observers
+#include <limits>     // for infinity, which Write refuses
 #include <memory>     // for Internals
 #include <string>     // for messages
 #include <vector>     // for time steps
@@ -68,14 +69,14 @@ public:
   /// the file's may differ by some hundredths, or more where TargetRatio is set, too, and of
   /// localised data, above all where they are read in pieces or shared out to processes. A warning
   /// tells of a file that is 0.1 dB below or more. 0 (default) = no target.
-  vtkSetClampMacro(TargetPSNR, double, 0, VTK_DOUBLE_MAX);
+  vtkSetClampMacro(TargetPSNR, double, 0, std::numeric_limits<double>::infinity());
   vtkGetMacro(TargetPSNR, double);
   ///@}
 
   ///@{
   /// Choose a model whose file is this many times smaller than the data, or somewhat more, down to
   /// a file of a few KiB; 0 (default) = by the volume's size.
-  vtkSetClampMacro(TargetRatio, double, 0, VTK_DOUBLE_MAX);
+  vtkSetClampMacro(TargetRatio, double, 0, std::numeric_limits<double>::infinity());
   vtkGetMacro(TargetRatio, double);
   ///@}
 
@@ -94,7 +95,7 @@ public:
   /// which takes as long as decoding all the voxels: without them the file would be wrong about its
   /// data, and how much time to leave for them nobody knows beforehand. So the same limit gives the
   /// same quality, wherever the data come from; AbortExecute and signals end them, too.
-  vtkSetClampMacro(TimeLimit, double, 0, VTK_DOUBLE_MAX);
+  vtkSetClampMacro(TimeLimit, double, 0, std::numeric_limits<double>::infinity());
   vtkGetMacro(TimeLimit, double);
   ///@}
 
