@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Renders a model file with VTK alone, no ParaView.
 
-    PYTHONPATH=build/lib/python python3 Examples/vtk-python/view.py MODEL.inr PICTURE.png
+    PYTHONPATH=build/lib/python /usr/bin/python3 Examples/vtk-python/view.py MODEL.inr PICTURE.png
 
-Without a display put Testing/with-display.sh in front of python3.
+With Debian's Python, which the modules are built for. Without a display put
+Testing/with-display.sh in front of it.
 """
 import sys
 
