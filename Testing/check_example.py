@@ -38,6 +38,7 @@ print(text)
 assert status == 0, status
 if picture.endswith(".png"):
     covered = covered_part()
+    assert re.search(r"\.png: .* on \w", text), "it does not say what drew"
 else:  # no library of ours in Python reads OpenEXR; the program says what it drew
     assert os.path.getsize(picture) > 10000, os.path.getsize(picture)
     covered = float(re.search(r"(\d+) % covered", text)[1]) / 100

@@ -46,4 +46,5 @@ shown.SetScalarBarVisibility(view, False)
 ResetCamera(view)
 view.GetActiveCamera().Azimuth(30)
 SaveScreenshot(picture_file, view)
+shown.UpdatePropertyInformation()  # else it tells what was before
 print(f"{picture_file}: drawn on {shown.GetPropertyValue('BackendInUse')}")
