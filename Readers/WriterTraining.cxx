@@ -72,6 +72,24 @@ void vtkINRWriter::WarnOfWhole(const std::string& source)
                   << this->MemoryLimitInBytes() / MiB << " MiB.");
 }
 
+/// Where the limit made the default model smaller.
+void vtkINRWriter::WarnOfSmallModel(const inr::Model& model, const inr::TrainingOptions& options)
+{
+  if (options.description || options.targetRatio > 0) {
+    return; // that is the one
+  }
+  const inr::VolumeInfo& volume = model.volume;
+  const inr::Description usual =
+      inr::ChooseDescription(volume.dims, volume.type, 0, options.storedAs, options.macroCellSize);
+  if (!(model.description == usual)) {
+    vtkWarningMacro("The MemoryLimit of "
+                    << this->MemoryLimitInBytes() / MiB << " MiB left '" << this->Internal->Target
+                    << "' a model of " << inr::Layout(model.description).parameterCount
+                    << " parameters instead of " << inr::Layout(usual).parameterCount
+                    << ", which costs quality; raise it to have the usual one.");
+  }
+}
+
 inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
                                               const inr::TrainingOptions& options,
                                               const ControllerGroup& group,
@@ -178,6 +196,9 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   checkpoint.remove(group.rank());
   this->UpdateProgress(1.0);
   this->Internal->Previous = model->volume.time ? model : nullptr;
+  if (reading.inPieces() && group.rank() == 0) {
+    this->WarnOfSmallModel(*model, options);
+  }
   if (model->training->nonFinite > 0 && group.rank() == 0) {
     vtkWarningMacro(
         "Array '" << input.info.arrayName << "' has " << model->training->nonFinite

@@ -118,12 +118,14 @@ public:
   ///@}
 
   ///@{
-  /// MiB that training may take. An input that is not in memory yet and would fill more than half
-  /// of it is never read as a whole but in pieces, two or three times; the default model is made to
-  /// fit. Sources often do not tell of all their arrays: where four times of what one tells would
-  /// fill more than half of the limit, it is asked for one voxel first. 0 (default) = half of the
-  /// machine's memory, or of what a batch system or container lets the process have of it. Several
-  /// processes share it on each machine.
+  /// MiB for an input that is not in memory yet, and its training. What would fill more than half
+  /// of it is never read as a whole but in pieces, two or three times, and the default model is
+  /// made to fit; a warning says where that made it smaller. An input that is in memory, or fits,
+  /// is trained as a whole by a model of any size, which the limit does not change. Sources often
+  /// do not tell of all their arrays: where four times of what one tells would fill more than half
+  /// of the limit, it is asked for one voxel first. 0 (default) = half of the machine's memory, or
+  /// of what a batch system or container lets the process have of it. Several processes share it on
+  /// each machine.
   ///
   ///     writer = servermanager.writers.INRWriter(Input=source, FileName="model.inr",
   ///                                              MemoryLimit=1024)
@@ -298,6 +300,7 @@ private:
   std::int64_t MemoryLimitInBytes() const;
   inr::TrainingOptions MakeOptions() const;
   void WarnOfWhole(const std::string& source);
+  void WarnOfSmallModel(const inr::Model& model, const inr::TrainingOptions& options);
   std::shared_ptr<const inr::Model>
   TrainInPieces(const TrainingInput& first, const inr::TrainingOptions& options,
                 const ControllerGroup& group,

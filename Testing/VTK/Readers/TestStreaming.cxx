@@ -221,6 +221,26 @@ TEST_F(Streaming, CountsArraysThatItIsToldOfOrNot)
   }
 }
 
+TEST_F(Streaming, WarnsWhereTheLimitMakesTheModelSmaller)
+{
+  this->Source->Extent[5] = 19;
+  this->Source->MoreArrays = 15;
+  this->Source->TellsOfArrays = true;
+  this->Writer->SetModelConfig(nullptr);
+  this->Writer->SetMaximumSteps(2);
+  for (const int limit : {140, 116}) { // both too small for all that the source gives
+    SCOPED_TRACE(limit);
+    this->Writer->SetMemoryLimit(limit);
+    const MessageCapture messages;
+    this->Writer->Write();
+    EXPECT_TRUE(messages.errors().empty()) << messages.text();
+    ASSERT_EQ(messages.warnings().size(), limit == 140 ? 0u : 1u);
+    if (limit == 116) {
+      EXPECT_NE(messages.warnings()[0].find("The MemoryLimit of 116 MiB left"), std::string::npos);
+    }
+  }
+}
+
 TEST_F(Streaming, WarnsOfASourceThatGivesNoParts)
 {
   this->Source->GivesParts = false;
