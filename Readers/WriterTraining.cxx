@@ -72,6 +72,23 @@ void vtkINRWriter::WarnOfWhole(const std::string& source)
                   << this->MemoryLimitInBytes() / MiB << " MiB.");
 }
 
+/// Where that is not what TargetRatio asks for.
+void vtkINRWriter::WarnOfLargeFile(const inr::Model& model)
+{
+  constexpr double wellBelow = 0.9;
+  const bool isAsked = !(this->ModelConfig && *this->ModelConfig); // which overrides it
+  if (isAsked && this->Ratio < wellBelow * this->TargetRatio) {
+    vtkWarningMacro("The file '" << this->Internal->Target << "' is " << this->Ratio
+                                 << " times smaller than the data, not " << this->TargetRatio
+                                 << " times (TargetRatio): a model of " << model.parameters.size()
+                                 << " parameters and the ranges of "
+                                 << model.macroCells.ranges.size() << " macro-cells take more"
+                                 << (this->MacroCellSize > 0
+                                         ? "; a larger MacroCellSize gives fewer ranges."
+                                         : "."));
+  }
+}
+
 /// Where the limit made the default model smaller.
 void vtkINRWriter::WarnOfSmallModel(const inr::Model& model, const inr::TrainingOptions& options)
 {
@@ -196,6 +213,9 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   checkpoint.remove(group.rank());
   this->UpdateProgress(1.0);
   this->Internal->Previous = model->volume.time ? model : nullptr;
+  if (group.rank() == 0) {
+    this->WarnOfLargeFile(*model);
+  }
   if (reading.inPieces() && group.rank() == 0) {
     this->WarnOfSmallModel(*model, options);
   }

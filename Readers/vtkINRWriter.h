@@ -75,7 +75,8 @@ public:
 
   ///@{
   /// Choose a model whose file is this many times smaller than the data, or somewhat more, down to
-  /// a file of a few KiB; 0 (default) = by the volume's size.
+  /// a file of a few KiB, or more with small macro-cells; a warning says where it is too large. 0
+  /// (default) = by the volume's size.
   vtkSetClampMacro(TargetRatio, double, 0, std::numeric_limits<double>::infinity());
   vtkGetMacro(TargetRatio, double);
   ///@}
@@ -300,6 +301,7 @@ private:
   std::int64_t MemoryLimitInBytes() const;
   inr::TrainingOptions MakeOptions() const;
   void WarnOfWhole(const std::string& source);
+  void WarnOfLargeFile(const inr::Model& model);
   void WarnOfSmallModel(const inr::Model& model, const inr::TrainingOptions& options);
   std::shared_ptr<const inr::Model>
   TrainInPieces(const TrainingInput& first, const inr::TrainingOptions& options,

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Training/ModelSize.h"
+
 #include "Core/Training/Trainer.h"
 
 #include <algorithm>
@@ -45,10 +47,10 @@ double ParameterBudget(const glm::i64vec3& dims, ScalarType type, double ratio,
   if (ratio <= 0.0) {
     return std::min(DefaultParameters(voxels), bytes / SmallestRatio / DefaultBytes);
   }
-  const std::int64_t cells =
-      CountMacroCells(dims, macroCellSize > 0 ? macroCellSize : DefaultMacroCellSize(dims));
-  const double bytesPerCell = storedAs == ParameterType::Quantised ? 2.0 : 8.0;
-  const double cellBytes = bytesPerCell * static_cast<double>(cells);
+  const int edge = macroCellSize > 0 ? macroCellSize : DefaultMacroCellSize(dims);
+  const std::int64_t cells = CountMacroCells(dims, edge);
+  const double cellBytes = storedAs == ParameterType::Quantised ? ExpectedRangeBytes(edge, cells)
+                                                                : 8.0 * static_cast<double>(cells);
   return (bytes / ratio - cellBytes - FramingBytes) / BytesPerParameter(storedAs);
 }
 

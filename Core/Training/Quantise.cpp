@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/Quantise.h"
 
-#include "Core/Model/CompactBlobs.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
+#include "Core/Training/ModelSize.h"
 
 #include <algorithm>
 #include <cmath>
@@ -207,7 +207,8 @@ QuantiseLimits LimitsForRatio(const Model& model, double ratio)
     const double bytes =
         dims.x * dims.y * dims.z * static_cast<double>(ScalarSize(model.volume.type)) / ratio;
     const auto cells = static_cast<std::int64_t>(model.macroCells.ranges.size());
-    const double others = static_cast<double>(PlainRangeBytes(cells) + qualityBytes);
+    const double edge = model.macroCells.spacing.x * dims.x;
+    const double others = ExpectedRangeBytes(edge, cells) + qualityBytes;
     limits.fileSize = static_cast<std::int64_t>(std::clamp(bytes - others, 1.0, 0x1p31));
   }
   return limits;

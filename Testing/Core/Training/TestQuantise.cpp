@@ -270,9 +270,11 @@ TEST_F(Quantising, EvaluatesTheNetworkOnAllThreads)
 }
 
 /// Bytes of the file of a model that was trained at a ratio, over the bytes asked for.
-template <class T> double Share(const Field<T>& field, double ratio, std::uint64_t steps = 60)
+template <class T>
+double Share(const Field<T>& field, double ratio, std::uint64_t steps = 60, int macroCellSize = 0)
 {
   inr::TrainingOptions options = Steps(steps);
+  options.macroCellSize = macroCellSize;
   options.targetRatio = ratio;
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
   const double bytes = static_cast<double>(field.values.size() * sizeof(T));
@@ -300,6 +302,17 @@ TEST(TargetRatio, IsKept)
     const double share = Share(noise, ratio);
     EXPECT_LE(share, 1.0) << ratio;
     EXPECT_GT(share, 0.2) << ratio;
+  }
+}
+
+// Ranges of small cells are packed to a part of what they are.
+TEST(TargetRatio, IsUsedWithSmallCells)
+{
+  const Field<float> field = Waves<float>({40, 40, 40}, inr::ScalarType::Float32, 0, 1);
+  for (const auto& [edge, ratio] : {std::pair(1, 3.0), {2, 8.0}}) {
+    const double share = Share(field, ratio, 200, edge);
+    EXPECT_LE(share, 1.0) << edge;
+    EXPECT_GT(share, 0.4) << edge;
   }
 }
 

@@ -233,6 +233,27 @@ TEST_F(Writer, WritesCompactFilesUnlessToldOtherwise)
   EXPECT_NEAR(LargestError(image, this->decode()), this->Algorithm->GetMaximumError(), 1e-6);
 }
 
+TEST_F(Writer, WarnsOfAFileThatIsLargerThanAskedFor)
+{
+  const auto image = MakeImage({32, 32, 32}, VTK_FLOAT, 0, 1);
+  this->Algorithm->SetModelConfig(nullptr);
+  this->Algorithm->SetMaximumSteps(2);
+  const auto warning = [&](double ratio, int macroCellSize) {
+    this->Algorithm->SetTargetRatio(ratio);
+    this->Algorithm->SetMacroCellSize(macroCellSize);
+    const MessageCapture messages;
+    this->write(image);
+    EXPECT_TRUE(messages.errors().empty()) << messages.text();
+    return messages.warnings().empty() ? "" : messages.warnings()[0];
+  };
+  EXPECT_EQ(warning(5, 0), "");
+  EXPECT_NE(warning(1e4, 0).find("not 10000 times (TargetRatio)"), std::string::npos);
+  EXPECT_NE(warning(40, 1).find("32768 macro-cells"), std::string::npos);
+  EXPECT_NE(warning(40, 1).find("a larger MacroCellSize"), std::string::npos);
+  this->Algorithm->SetModelConfig(SmallModel);
+  EXPECT_EQ(warning(1e4, 0), "");
+}
+
 TEST_F(Writer, WarnsOfValuesThatAreNoNumbers)
 {
   const auto image = MakeImage({9, 8, 7}, VTK_FLOAT, 0, 1);
