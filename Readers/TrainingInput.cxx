@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Scalars.h"
+#include "vtkINRWriter.h"
 
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
@@ -15,7 +16,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace {
@@ -78,7 +78,7 @@ std::vector<vtkAbstractArray*> VolumesAmong(vtkDataSetAttributes& data)
   std::vector<vtkAbstractArray*> volumes;
   for (int k = 0; k < data.GetNumberOfArrays(); ++k) {
     vtkAbstractArray* array = data.GetAbstractArray(k);
-    if (!IsMask(*array)) {
+    if (!vtkINRWriter::IsMask(array->GetName())) {
       volumes.push_back(array);
     }
   }
@@ -139,18 +139,11 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
   return input;
 }
 
-bool IsMask(vtkAbstractArray& array)
-{
-  const char* name = array.GetName();
-  return name && (name == std::string_view(vtkDataSetAttributes::GhostArrayName()) ||
-                  name == std::string_view("vtkValidPointMask")); // by vtkProbeFilter
-}
-
 vtkAbstractArray* DefaultArray(vtkDataSetAttributes& data)
 {
   const std::vector<vtkAbstractArray*> arrays = VolumesAmong(data);
   vtkAbstractArray* active = data.GetScalars();
-  if (active && !IsMask(*active)) {
+  if (active && !vtkINRWriter::IsMask(active->GetName())) {
     return active;
   }
   return arrays.size() == 1 ? arrays.front() : nullptr;

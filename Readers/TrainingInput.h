@@ -29,10 +29,6 @@ struct TrainingInput
 /// Throws inr::Error(InvalidArgument) that says what is wrong with the array.
 TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values);
 
-/// Does the array tell which points other arrays have no value at (vtkGhostType,
-/// vtkValidPointMask)?
-bool IsMask(vtkAbstractArray& array);
-
 /// What is saved when nobody chooses: the active scalars or the only array, masks left out; else
 /// null.
 vtkAbstractArray* DefaultArray(vtkDataSetAttributes& data);

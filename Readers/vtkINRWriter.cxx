@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -245,6 +246,12 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
   this->Train(input, signals, group);
 }
 
+bool vtkINRWriter::IsMask(const char* name)
+{
+  return name && (name == std::string_view(vtkDataSetAttributes::GhostArrayName()) ||
+                  name == std::string_view("vtkValidPointMask")); // by vtkProbeFilter
+}
+
 TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
 {
   auto* image = vtkImageData::SafeDownCast(data);
@@ -257,7 +264,7 @@ TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
   vtkAbstractArray* array = this->GetInputAbstractArrayToProcess(0, image, association);
   // Where nobody has seen the data, nobody could choose.
   const char* chosen = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-  if (!(chosen && *chosen) && (!array || IsMask(*array))) {
+  if (!(chosen && *chosen) && (!array || IsMask(array->GetName()))) {
     array = DefaultArray(*image->GetPointData());
   }
   if (!array) {

@@ -260,6 +260,9 @@ public:
   vtkGetMacro(ExchangeSeconds, double);
   ///@}
 
+  /// Is an array of this name (may be null) one that tells where others have no values?
+  static bool IsMask(const char* name);
+
   /// 1, or 0 after an error. What is read is looked at before.
   int Write() override;
 
