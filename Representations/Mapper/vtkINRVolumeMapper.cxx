@@ -277,7 +277,10 @@ const char* vtkINRVolumeMapper::GetBackendInUse() const
   return this->Self->Painter.last().backend.c_str();
 }
 
-double vtkINRVolumeMapper::TakeRefinementPause() { return this->Self->Painter.stills().takePause(); }
+double vtkINRVolumeMapper::TakeRefinementPause()
+{
+  return this->Self->Painter.stills().takePause();
+}
 
 bool vtkINRVolumeMapper::MayRefine(vtkRenderWindow* window)
 {
