@@ -86,7 +86,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   }
   picture.depict(this->depicted(frame, renderer, volume));
   picture.last().seconds = SecondsSince(start);
-  this->Stills.followUp(picture, frame.mode, renderer->GetRenderWindow(), settings.shownElsewhere);
+  this->Stills.followUp(picture, renderer->GetRenderWindow(), settings);
   return problem;
 }
 

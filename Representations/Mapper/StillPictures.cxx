@@ -41,13 +41,14 @@ StillPictures::StillPictures(PictureStore& pictures, std::function<bool()> mayRe
       })
 {}
 
-void StillPictures::followUp(ViewPicture& picture, RenderMode mode, vtkRenderWindow* window,
-                             bool shownElsewhere)
+void StillPictures::followUp(ViewPicture& picture, vtkRenderWindow* window,
+                             const PaintSettings& settings)
 {
   if (IsInteractive(window)) {
     this->Timer.postpone(); // what follows an interactive picture is the application's business
     return;
   }
+  const bool shownElsewhere = settings.shownElsewhere && !settings.forSelection;
   if (!shownElsewhere && !RefinementTimer::canRefine(window)) {
     return; // captured; what is on the screen goes on afterwards
   }
@@ -61,7 +62,7 @@ void StillPictures::followUp(ViewPicture& picture, RenderMode mode, vtkRenderWin
     return;
   }
   // Bricks are decoded in the pause, too; paths are traced within pictures only.
-  const double share = mode == RenderMode::PathTracing ? 0.25 : 1;
+  const double share = settings.mode == RenderMode::PathTracing ? 0.25 : 1;
   const double pause = std::clamp(share * last.seconds, 0.02, 0.5);
   if (shownElsewhere) {
     this->Pause = std::max(this->Pause, pause); // of both eyes

@@ -28,9 +28,8 @@ public:
   /// `pictures` must outlive it; for `mayRefine` see RefinementTimer.
   StillPictures(PictureStore& pictures, std::function<bool()> mayRefine);
 
-  /// After one was drawn, of rays or of paths.
-  void followUp(ViewPicture& picture, RenderMode mode, vtkRenderWindow* window,
-                bool shownElsewhere);
+  /// After one was drawn into `window`.
+  void followUp(ViewPicture& picture, vtkRenderWindow* window, const PaintSettings& settings);
 
   /// Seconds until what was drawn since this was asked before, and is shown elsewhere, is to be
   /// drawn again; 0: it is complete, or there is none.

@@ -110,8 +110,9 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
     }
   } else if (request == vtkPVView::REQUEST_RENDER()) {
-    this->Refines = false;
-    this->GetMapper()->SetForSelection(IsSelecting(this->GetView()));
+    const bool isSelecting = IsSelecting(this->GetView());
+    this->Refines = this->Refines && isSelecting;
+    this->GetMapper()->SetForSelection(isSelecting);
     this->Client->update();
     this->TakeDelivery(in);
     static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());
@@ -192,7 +193,8 @@ void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out
   // of another port. Of several volumes it would take both pieces' box, which meets other ones.
   const auto shown =
       inr::ShownVolumes(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
-  const bool leads = !shown.empty() && shown.front() == this->Actor;
+  // Of a solid colour, ParaView hides the volume until the picture after this.
+  const bool leads = shown.empty() || shown.front() == this->Actor;
   double piece[6];
   std::copy_n(this->DataBounds, 6, piece);
   this->GetMapper()->GetPieceBounds(piece);

@@ -41,7 +41,7 @@ void vtkSMINRRepresentationProxy::ViewUpdated(vtkSMProxy* view)
   this->View = view;
   view->AddObserver(vtkCommand::StartEvent, this->RenderCommand);
   view->AddObserver(vtkCommand::EndEvent, this->RenderCommand);
-  if (this->IsDrawnElsewhere()) { // a view is updated for a picture that has begun
+  if (this->IsDrawnElsewhere()) { // the view's first picture has begun already
     this->Announce();
   }
 }
@@ -62,7 +62,7 @@ bool vtkSMINRRepresentationProxy::IsDrawnElsewhere()
 {
   vtkSMSession* session = this->GetSession();
   const bool hasServer = session && (session->GetProcessRoles() & vtkPVSession::RENDER_SERVER) == 0;
-  return hasServer && this->Here() && !this->Here()->DrawsHere();
+  return hasServer && !session->IsMultiClients() && this->Here() && !this->Here()->DrawsHere();
 }
 
 void vtkSMINRRepresentationProxy::OnRender(vtkObject*, unsigned long event, void* self,

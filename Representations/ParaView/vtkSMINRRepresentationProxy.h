@@ -38,6 +38,8 @@ private:
   void operator=(const vtkSMINRRepresentationProxy&) = delete;
 
   vtkINRVolumeRepresentation* Here();
+  /// By a server that no other client asks for pictures, too, which may be complete ones: the
+  /// latest picture, or the first, which may turn out to be drawn here.
   bool IsDrawnElsewhere();
   void Forget();
   static void OnRender(vtkObject* view, unsigned long event, void* self, void* isInteractive);

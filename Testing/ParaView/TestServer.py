@@ -6,7 +6,7 @@ import sys
 
 from inrvolume import vtkINRContour, vtkINRReader
 from paraview import simple
-from pvtest import MODEL, check, connect, picture, show_model
+from pvtest import ARRAY, MODEL, check, connect, picture, show_model
 
 connect(sys.argv[1])
 view, display = show_model()
@@ -24,6 +24,15 @@ check(value("CacheHitRate") == 1, "a still picture has misses:", value("CacheHit
 check(value("CacheUsed") > 0, "no cache in use")
 check(value("FrameTime") > 0, "no time taken")
 check(value("BackendInUse").startswith("CPU "), "drawn by", value("BackendInUse"))
+
+# Away and back: where several processes have pieces, some volume has to say where these are.
+before = picture(view, "server")
+simple.ColorBy(display, None)  # which no volume can be drawn in
+simple.Render(view)
+check(value("Converged") == 0, "what is not drawn has converged")
+simple.ColorBy(display, ("POINTS", ARRAY))
+display.SetScalarBarVisibility(view, False)
+check(abs(picture(view, "server-again") - before).max() < 2.5 / 255, "another picture than before")
 
 # A new cache, and a picture in a limited time: so many bricks, however fast they come.
 display.BrickSize = 12
