@@ -137,7 +137,7 @@ TEST_F(Writer, GoesOnWithMeasuringWhenItWasStoppedThere)
     Stopper stopper(this->Algorithm);
     stopper.limit = 0.9;
     this->write(image);
-    EXPECT_TRUE(messages.onlyError(".checkpoint' is kept")) << messages.text();
+    EXPECT_TRUE(messages.onlyError("; its 80 steps are kept in ")) << messages.text();
   }
   vtkIdType trained = 0;
   vtkNew<vtkCallbackCommand> command;
