@@ -73,6 +73,11 @@ std::vector<int> ProcessOrder(vtkRenderer* renderer)
   return isOfAll ? order : std::vector<int>();
 }
 
+bool HasSize(vtkVolume* volume)
+{
+  return std::abs(volume->GetMatrix()->Determinant()) > 0; // nor is it no number
+}
+
 std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer)
 {
   std::vector<vtkVolume*> shown;
@@ -80,8 +85,7 @@ std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer)
   vtkVolumeCollection* volumes = renderer->GetVolumes();
   volumes->InitTraversal(place);
   while (vtkVolume* volume = volumes->GetNextVolume(place)) {
-    const bool hasSize = std::abs(volume->GetMatrix()->Determinant()) > 0; // nor is it no number
-    if (volume->GetVisibility() != 0 && hasSize && vtkINRLODVolume::SafeDownCast(volume)) {
+    if (volume->GetVisibility() != 0 && HasSize(volume) && vtkINRLODVolume::SafeDownCast(volume)) {
       shown.push_back(volume);
     }
   }

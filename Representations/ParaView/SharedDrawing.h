@@ -20,8 +20,10 @@ void DrawEverywhere(vtkRenderer* renderer);
 /// the others; empty where none are, or not as one picture. They need not ask each other.
 std::vector<int> ProcessOrder(vtkRenderer* renderer);
 
-/// The INR volumes that `renderer` shows, in the same order in all processes; those that a scale of
-/// zero makes flat are not seen.
+/// Whether it can be seen: a scale of zero makes it flat.
+bool HasSize(vtkVolume* volume);
+
+/// The INR volumes that `renderer` shows, in the same order in all processes.
 std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer);
 
 /// Whether the axes of an image in a volume with that matrix are not the world's, so that boxes

@@ -193,8 +193,8 @@ void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out
   // of another port. Of several volumes it would take both pieces' box, which meets other ones.
   const auto shown =
       inr::ShownVolumes(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
-  // Of a solid colour, ParaView hides the volume until the picture after this.
-  const bool leads = shown.empty() || shown.front() == this->Actor;
+  // Of a solid colour before, ParaView still hides it; it is to be drawn again in this picture.
+  const bool leads = shown.empty() ? inr::HasSize(this->Actor) : shown.front() == this->Actor.Get();
   double piece[6];
   std::copy_n(this->DataBounds, 6, piece);
   this->GetMapper()->GetPieceBounds(piece);
