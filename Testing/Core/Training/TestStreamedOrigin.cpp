@@ -128,13 +128,17 @@ TEST_F(StreamedOriginResumed, IsThatOfBeforeInAGroup)
   const std::vector<Outcome> whole = TrainTogether(2, options, {}, {}, this->Data);
   bool surveyed = false;
   const auto stop = [&](int rank, const inr::TrainingProgress& now) {
-    surveyed |= rank == 0 && now.phase == inr::TrainingPhase::Reading;
+    if (rank == 0) { // its thread's alone
+      surveyed = surveyed || now.phase == inr::TrainingPhase::Reading;
+    }
     return now.steps < 20;
   };
   ExpectErrors(TrainTogether(2, this->Options, {}, stop, this->Data), "stopped");
   EXPECT_TRUE(std::exchange(surveyed, false));
   const auto watch = [&](int rank, const inr::TrainingProgress& now) {
-    surveyed |= rank == 0 && now.phase == inr::TrainingPhase::Reading;
+    if (rank == 0) { // its thread's alone
+      surveyed = surveyed || now.phase == inr::TrainingPhase::Reading;
+    }
     return true;
   };
   const std::vector<Outcome> resumed = TrainTogether(2, this->Options, {}, watch, this->Data);
