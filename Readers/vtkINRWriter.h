@@ -92,7 +92,7 @@ public:
   ///
   /// Neither of what comes before, the first reading of an input that is read in pieces, which
   /// gives the range of values, nor of what comes after, packing (as long as decoding two to ten
-  /// million voxels, and a fifth of a second per million parameters) and measuring the quality,
+  /// million voxels, and a third of a second per million parameters) and measuring the quality,
   /// which takes as long as decoding all the voxels: without them the file would be wrong about its
   /// data, and how much time to leave for them nobody knows beforehand. So the same limit gives the
   /// same quality, wherever the data come from; AbortExecute and signals end them, too.

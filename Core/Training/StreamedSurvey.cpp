@@ -55,8 +55,8 @@ bool StreamedVolume::needsOrigin() const
   return ScalarSize(this->Reader.type()) == sizeof(double);
 }
 
-/// The first finite value of all will do: what counts is that it is near the others. Before it is
-/// known, no sample is finite.
+/// The smallest value of the first blocks that have a finite one will do: what counts is that it is
+/// near the others. Before it is known, no sample is finite.
 void StreamedVolume::fixOrigin(const VolumePiece& piece)
 {
   if (!this->needsOrigin() || this->HasOrigin) {

@@ -11,8 +11,9 @@ while [ "$1" != -- ]; do
   shift
 done
 shift
-start_server "$pvserver" "${launcher[@]}"
+port=$((11000 + $$ % 20000))
+start_server "--server-port=$port" "${launcher[@]}" "$pvserver"
 "$(dirname "$0")/gui-test.sh" "$@" --server-url="cs://localhost:$port"
 status=$?
-[ "$status" -eq 0 ] || cat "$log"
+[ "$status" -eq 0 ] || cat "$logs"/*
 exit "$status"

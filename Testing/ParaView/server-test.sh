@@ -6,8 +6,9 @@ set -u
 source "$(dirname "$0")/servers.sh"
 script=$1 pvpython=$2 pvserver=$3 processes=$4
 shift 4
-start_server "$pvserver" "$@"
+port=$((11000 + $$ % 20000))
+start_server "--server-port=$port" "$@" "$pvserver"
 timeout --kill-after=10 200 "$pvpython" "$script" "$port" "$processes" "$@" "$pvserver"
 status=$?
-[ "$status" -eq 0 ] || cat "$log"
+[ "$status" -eq 0 ] || cat "$logs"/*
 exit "$status"
