@@ -2,6 +2,8 @@
 //
 // Compact files with frames, steps and versions that are not as they should be.
 #include "Core/Model/Compression.h"
+#include "Core/Model/ModelBytes.h"
+#include "Core/Model/ModelFile.h"
 #include "Testing/Core/Model/CompactFile.h"
 
 #include <cmath>
@@ -87,6 +89,18 @@ TEST_F(Frames, MayEndBlocksAnywhere)
     const auto plain = inr::Decompress(frame, 3000, "bytes");
     EXPECT_EQ(std::string(reinterpret_cast<const char*>(plain.get()), 3000), bytes);
   }
+}
+
+TEST_F(Frames, ThatSomebodyWaitsForAreNotPackedAsSmallAsCanBe)
+{
+  std::string bytes; // of two values, whose order says nothing
+  for (std::size_t k = 0; k < 100000; ++k) {
+    bytes += static_cast<char>(inr::RandomBits(1, k) & inr::RandomBits(2, k) & 3);
+  }
+  const std::size_t small = inr::Compress(bytes, {}, inr::Packing::Small).size();
+  EXPECT_LT(small, inr::Compress(bytes, {}, inr::Packing::Fast).size());
+  const inr::ModelPointer model = CompactModel();
+  EXPECT_NE(inr::ModelToBytes(*model).size(), static_cast<std::size_t>(inr::ModelFileSize(*model)));
 }
 
 TEST_F(Frames, OfOtherSizesAreRefused)
