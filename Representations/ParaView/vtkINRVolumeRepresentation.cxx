@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRVolumeRepresentation.h"
 
-#include "ClientWatch.h"
 #include "MachineShare.h"
 #include "ModelDelivery.h"
+#include "PictureRefinement.h"
 #include "SharedDrawing.h"
 #include "VolumePlacement.h"
 #include "WhyBlank.h"
 #include "vtkAlgorithmOutput.h"
-#include "vtkCommunicator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkINRLODVolume.h"
@@ -43,19 +42,6 @@ bool HasPieces()
          processes->GetNumberOfProcesses() > 1;
 }
 
-/// Whether the view is drawn for a selection, which it tells subclasses only.
-bool IsSelecting(vtkView* view)
-{
-  struct Subclass : vtkPVRenderView
-  {
-    static bool isSelecting(vtkPVRenderView* view)
-    {
-      return (view->*&Subclass::GetMakingSelection)();
-    }
-  };
-  return Subclass::isSelecting(vtkPVRenderView::SafeDownCast(view));
-}
-
 /// Whether another process may have to draw what this one has; of several that have all the model,
 /// one sends it.
 bool MaySend()
@@ -70,15 +56,14 @@ bool MaySend()
 } // namespace
 
 vtkINRVolumeRepresentation::vtkINRVolumeRepresentation()
-    : Client(std::make_unique<inr::ClientWatch>()), Model(std::make_unique<inr::ModelDelivery>()),
+    : Model(std::make_unique<inr::ModelDelivery>()),
       Placement(std::make_unique<inr::VolumePlacement>())
 {
   this->VolumeMapper.TakeReference(vtkINRVolumeMapper::New());
   this->Actor.TakeReference(vtkINRLODVolume::New());
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
-  this->VolumeMapper->AddObserver(vtkINRVolumeMapper::RefineEvent, this,
-                                  &vtkINRVolumeRepresentation::OnRefine);
+  this->Refinement = std::make_unique<inr::PictureRefinement>(*this->GetMapper());
   this->Status->SetVolumeMapper(this->GetMapper());
   this->Status->VisibilityOff();
 }
@@ -110,10 +95,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
       vtkPVRenderView::SetRequiresDistributedRenderingLOD(in, this, true);
     }
   } else if (request == vtkPVView::REQUEST_RENDER()) {
-    const bool isSelecting = IsSelecting(this->GetView());
-    this->Refines = this->Refines && isSelecting;
-    this->GetMapper()->SetForSelection(isSelecting);
-    this->Client->update();
+    this->Refinement->begin(*vtkPVRenderView::SafeDownCast(this->GetView()));
     this->TakeDelivery(in);
     static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());
     this->UpdateMapper();
@@ -298,13 +280,6 @@ void vtkINRVolumeRepresentation::ReportOpacityArray()
   this->WantsOpacityArray = false; // said once
 }
 
-void vtkINRVolumeRepresentation::OnRefine(vtkObject*, unsigned long, void* mayRefine)
-{
-  if (this->Client->isBusy()) {
-    *static_cast<bool*>(mayRefine) = false;
-  }
-}
-
 bool vtkINRVolumeRepresentation::AddToView(vtkView* view)
 {
   auto* renderView = vtkPVRenderView::SafeDownCast(view);
@@ -345,172 +320,16 @@ vtkINRVolumeMapper* vtkINRVolumeRepresentation::GetMapper()
   return static_cast<vtkINRVolumeMapper*>(this->VolumeMapper.Get());
 }
 
-void vtkINRVolumeRepresentation::SetRenderMode(int mode) { this->GetMapper()->SetRenderMode(mode); }
-
-void vtkINRVolumeRepresentation::SetSamplesPerPixel(int paths)
-{
-  this->GetMapper()->SetSamplesPerPixel(paths);
-}
-
-void vtkINRVolumeRepresentation::SetScatteringAlbedo(double albedo)
-{
-  this->GetMapper()->SetScatteringAlbedo(albedo);
-}
-
-void vtkINRVolumeRepresentation::SetAnisotropy(double meanCosine)
-{
-  this->GetMapper()->SetAnisotropy(meanCosine);
-}
-
-void vtkINRVolumeRepresentation::SetMaximumBounces(int bounces)
-{
-  this->GetMapper()->SetMaximumBounces(bounces);
-}
-
-void vtkINRVolumeRepresentation::SetScalarOpacityUnitDistance(double distance)
-{
-  if (!(distance < 0)) {
-    this->Superclass::SetScalarOpacityUnitDistance(distance);
-  }
-}
-
-void vtkINRVolumeRepresentation::SetAmbientLight(double red, double green, double blue)
-{
-  this->GetMapper()->SetAmbientLight(red, green, blue);
-}
-
-void vtkINRVolumeRepresentation::SetSampleDistance(double voxels)
-{
-  this->GetMapper()->SetSampleDistance(voxels);
-}
-
-void vtkINRVolumeRepresentation::SetAdaptiveSampling(bool on)
-{
-  this->GetMapper()->SetAdaptiveSampling(on);
-}
-
-void vtkINRVolumeRepresentation::SetPreIntegration(bool on)
-{
-  this->GetMapper()->SetPreIntegration(on);
-}
-
-void vtkINRVolumeRepresentation::SetLevelOfDetailScale(double scale)
-{
-  this->GetMapper()->SetLevelOfDetailScale(scale);
-}
-
-void vtkINRVolumeRepresentation::SetErrorTolerance(double tolerance)
-{
-  this->GetMapper()->SetErrorTolerance(tolerance);
-}
-
-void vtkINRVolumeRepresentation::SetBackend(int backend) { this->GetMapper()->SetBackend(backend); }
-
-void vtkINRVolumeRepresentation::SetCacheMode(int mode) { this->GetMapper()->SetCacheMode(mode); }
-
-void vtkINRVolumeRepresentation::SetCacheSize(int mebibytes) { this->CacheSize = mebibytes; }
-
-void vtkINRVolumeRepresentation::SetInferencePrecision(int precision)
-{
-  this->GetMapper()->SetInferencePrecision(precision);
-}
-
-void vtkINRVolumeRepresentation::SetCachePrecision(int precision)
-{
-  this->GetMapper()->SetCachePrecision(precision);
-}
-
-void vtkINRVolumeRepresentation::SetBrickSize(int voxels)
-{
-  this->GetMapper()->SetBrickSize(voxels);
-}
-
-void vtkINRVolumeRepresentation::SetMaximumRequests(int bricks)
-{
-  this->GetMapper()->SetMaximumRequests(bricks);
-}
-
-void vtkINRVolumeRepresentation::SetPriorityRanking(bool on)
-{
-  this->GetMapper()->SetPriorityRanking(on);
-}
-
-void vtkINRVolumeRepresentation::SetPreloading(bool on) { this->GetMapper()->SetPreloading(on); }
-
-void vtkINRVolumeRepresentation::SetStillTimeLimit(double seconds)
-{
-  this->GetMapper()->SetStillTimeLimit(seconds);
-}
-
-void vtkINRVolumeRepresentation::SetNumberOfThreads(int threads)
-{
-  this->NumberOfThreads = threads;
-}
-
-void vtkINRVolumeRepresentation::SetSeed(int seed) { this->GetMapper()->SetSeed(seed); }
-
-void vtkINRVolumeRepresentation::SetDeterministic(bool on)
-{
-  this->GetMapper()->SetDeterministic(on);
-}
-
-void vtkINRVolumeRepresentation::SetSampleChannels(bool on)
-{
-  this->GetMapper()->SetSampleChannels(on);
-}
-
-bool vtkINRVolumeRepresentation::GetConverged()
-{
-  return this->IsShown() && this->GetMapper()->GetConverged() && !this->Refines;
-}
-
-void vtkINRVolumeRepresentation::SetShownElsewhere(bool on)
-{
-  this->GetMapper()->SetShownElsewhere(on);
-}
-
-double vtkINRVolumeRepresentation::GetRefinementPause()
-{
-  const double own = this->GetMapper()->TakeRefinementPause();
-  double longest = own;
-  vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
-  if (processes && processes->GetNumberOfProcesses() > 1) {
-    processes->AllReduce(&own, &longest, 1, vtkCommunicator::MAX_OP);
-  }
-  this->Refines = longest > 0;
-  return longest;
-}
+double vtkINRVolumeRepresentation::GetRefinementPause() { return this->Refinement->pauseOfAll(); }
 
 bool vtkINRVolumeRepresentation::MayRefine()
 {
-  auto* view = vtkPVRenderView::SafeDownCast(this->GetView());
-  return view && vtkINRVolumeMapper::MayRefine(view->GetRenderWindow());
+  return inr::PictureRefinement::isPossible(vtkPVRenderView::SafeDownCast(this->GetView()));
 }
 
 void vtkINRVolumeRepresentation::RefineLater(double pause)
 {
-  auto* view = vtkPVRenderView::SafeDownCast(this->GetView());
-  if (view) {
-    this->Client->update();
-    this->GetMapper()->RefineLater(view->GetRenderWindow(), pause);
-  }
-}
-
-double vtkINRVolumeRepresentation::GetCacheHitRate()
-{
-  return this->IsShown() ? this->GetMapper()->GetCacheHitRate() : 0.0;
-}
-
-double vtkINRVolumeRepresentation::GetCacheUsed() { return this->GetMapper()->GetCacheUsed(); }
-
-double vtkINRVolumeRepresentation::GetFrameTime()
-{
-  return this->IsShown() ? this->GetMapper()->GetFrameTime() : 0.0;
-}
-
-const char* vtkINRVolumeRepresentation::GetBackendInUse()
-{
-  return this->GetMapper()->GetBackendInUse();
+  this->Refinement->later(vtkPVRenderView::SafeDownCast(this->GetView()), pause);
 }
 
 void vtkINRVolumeRepresentation::PrintSelf(ostream& os, vtkIndent indent)

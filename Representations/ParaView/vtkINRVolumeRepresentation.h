@@ -17,7 +17,7 @@
 #include "vtkImageVolumeRepresentation.h"
 #include "vtkNew.h" // for Carrier
 
-#include <memory> // for Client
+#include <memory> // for Refinement
 #include <string> // for LastProblem
 
 class vtkINRStatusActor;
@@ -26,8 +26,8 @@ class vtkMultiProcessController;
 class vtkPolyData;
 
 namespace inr {
-class ClientWatch;
 class ModelDelivery;
+class PictureRefinement;
 class VolumePlacement;
 struct MachineShare;
 } // namespace inr
@@ -130,13 +130,12 @@ private:
   bool IsGroup(); ///< of data sets
   void ReportColouring();
   void ReportOpacityArray();
-  void OnRefine(vtkObject* mapper, unsigned long event, void* mayRefine);
 
   bool WantsOpacityArray = false;
   int NumberOfThreads = 0;
   int CacheSize = 0;                        ///< MiB
   std::unique_ptr<inr::MachineShare> Share; ///< for 0 of these; null = not known yet
-  std::unique_ptr<inr::ClientWatch> Client;
+  std::unique_ptr<inr::PictureRefinement> Refinement;
   std::unique_ptr<inr::ModelDelivery> Model;
   vtkNew<vtkPolyData> Carrier; ///< of the model to where it is drawn, if that is elsewhere
   std::unique_ptr<inr::VolumePlacement> Placement;
@@ -147,7 +146,6 @@ private:
   vtkNew<vtkINRStatusActor> Status;
   bool ShowStatus = false;
   bool SharedReported = false;
-  bool Refines = false; ///< in a server: a picture goes on, of this process or another
 };
 
 #endif
