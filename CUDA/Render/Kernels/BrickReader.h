@@ -4,7 +4,7 @@
 #include "CUDA/Render/Kernels/BrickSampling.h"
 #include "Core/Render/Bricks/BrickWay.h"
 #include "Core/Render/Bricks/OnMiss.h"
-#include "Core/Render/Marching/SampleWalker.h"
+#include "Core/Render/Marching/StepLattice.h"
 
 #include <cmath>
 

@@ -7,6 +7,7 @@
 
 #include "CUDA/Render/Kernels/BrickGradient.h"
 #include "CUDA/Render/Kernels/CompositeSamples.h"
+#include "Core/Render/Marching/StepLattice.h"
 #include "Core/Render/Marching/StepTable.h"
 
 #include <cstdint>

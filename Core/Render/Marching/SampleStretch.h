@@ -34,4 +34,16 @@ struct SampleStretch
   int level = 0;        ///< of a closed one, that samples come from
 };
 
+/// Samples that are looked ahead for when one is found: up to the end of a block of so many.
+constexpr double SamplesAhead = 128;
+
+/// Where a stretch begins, in steps.
+struct StretchStart
+{
+  double begin;      ///< of what its first sample stands for
+  double firstPlace; ///< that sample's
+  double rayEnd;
+  double reach; ///< of the stretch before
+};
+
 } // namespace inr

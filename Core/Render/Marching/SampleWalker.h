@@ -2,36 +2,21 @@
 #pragma once
 
 #include "Core/HostDevice.h"
-#include "Core/Render/MacroCells/CellBlock.h"
+#include "Core/Render/MacroCells/CellWalker.h"
 #include "Core/Render/MacroCells/SeenSpan.h"
+#include "Core/Render/Marching/ClosedStretch.h"
 #include "Core/Render/Marching/MarchSettings.h"
+#include "Core/Render/Marching/OpenStretch.h"
 #include "Core/Render/Marching/SampleStretch.h"
+#include "Core/Render/Marching/StepLattice.h"
 #include "Core/Render/Rays/LevelOfDetail.h"
 
 #include <glm/common.hpp>
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 namespace inr {
-
-/// 2^power, for the exponents of ordinary numbers.
-INR_HOST_DEVICE inline double PowerOfTwo(int power)
-{
-  const auto bits = static_cast<std::uint64_t>(1023 + power) << 52;
-  double value;
-  std::memcpy(&value, &bits, sizeof(value));
-  return value;
-}
-
-/// How many of 0, 1, 2 ... are below `end`; at least 1, at most `most`.
-INR_HOST_DEVICE inline int CountBelow(double end, double most)
-{
-  const double enough = glm::min(end, most);
-  const int whole = static_cast<int>(enough);
-  return glm::max(1, whole + (static_cast<double>(whole) < enough ? 1 : 0));
-}
 
 /// Where the samples of a ray are: every 2^l steps where it deserves level l of the cache and the
 /// one before; up to four such at once where little can be seen; nowhere in cells that are
@@ -138,12 +123,6 @@ public:
 
 private:
   static constexpr double Plenty = 1024; ///< more samples than anybody asks for at once
-  /// Steps: a cell that a ray passes in fewer gets no stretch of its own between cells that have
-  /// all samples, but all samples, too. Of 256x256 pixels of fog with wires, frames took as long
-  /// with 1, 6, 12 and 24 as far as could be told (5 %), and 0, 0.2, 0.8 and 3 % more samples; 11 %
-  /// without any such stretch.
-  static constexpr double WorthAStretch = 12;
-  static constexpr double BlockLength = 128; ///< samples that are looked ahead for
 
   /// To the next sample of the whole ray that may be seen.
   INR_HOST_DEVICE bool moveAlongRay(const MarchSettings& settings)
@@ -156,11 +135,7 @@ private:
       this->moveDetail(settings);
       this->Cells.moveTo(this->firstPlace() * settings.step);
       if (this->Cells.extinction() > 0.0f || this->isLeaving(settings)) {
-        if (settings.cellSampling != nullptr) {
-          this->beginClosedStretch(settings);
-        } else {
-          this->beginStretch(settings);
-        }
+        this->beginStretch(settings);
         return true;
       }
       const double last = glm::min(glm::min(this->End, this->PieceEnd), this->SeenEnd);
@@ -294,124 +269,15 @@ private:
 
   INR_HOST_DEVICE void beginStretch(const MarchSettings& settings)
   {
-    const bool matters = this->Cells.extinction() > 0.0f;
-    const int level = this->Detail.coarsest();
-    const double length = settings.step * PowerOfTwo(level);
-    const double depth = length * settings.unitsPerT;
-    const int faint = FaintSamples(settings, this->Cells.extinction() * depth);
-    const double end = this->Detail.exit();
-    ValueRange range = this->Cells.range();
-    double exit = this->Cells.exit();
-    // As far as the end of a block of the lattice: further ones the ray may never see.
-    const double block = BlockLength * length;
-    const double begin = static_cast<double>(this->Next) * settings.step;
-    const double enough = glm::min((std::floor(begin / block) + 1.0) * block,
-                                   glm::min(end, this->End * settings.step));
-    // What an extreme can skip is found cell by cell.
-    const bool joins = matters && !settings.projector.isExtreme();
-    bool leaves = false;
-    while (joins && exit < enough) {
-      this->Cells.moveTo(exit);
-      const float extinction = this->Cells.extinction();
-      leaves = extinction <= 0.0f;
-      if (leaves || FaintSamples(settings, extinction * depth) != faint) {
-        break;
-      }
-      range.extend(this->Cells.range());
-      exit = this->Cells.exit();
-    }
-    const double stepsPerT = 1.0 / settings.step;
-    const double reach = matters ? exit * stepsPerT : this->Stretch.reach;
-    double last = matters ? reach : std::nextafter(this->firstPlace(), this->End + 1);
-    if (leaves && settings.looksAtBothEnds() && this->Cells.exit() >= exit + length) {
-      // With the sample that isLeaving() would be said of.
-      range.extend(this->Cells.range());
-      last += PowerOfTwo(level);
-    }
-    this->Stretch = SampleStretch();
-    this->Stretch.exit = last;
-    this->Stretch.levelEnd = end * stepsPerT;
-    this->Stretch.power = level;
-    this->Stretch.faint = faint;
-    this->Stretch.range = range;
-    this->Stretch.reach = reach;
-  }
-
-  /// The same where cells say where their samples come from. A block of the lattice has the finest
-  /// level of all cells that it meets, and the shortest steps; blocks of the same make a stretch,
-  /// up to the end of a larger block.
-  INR_HOST_DEVICE void beginClosedStretch(const MarchSettings& settings)
-  {
-    const double block = PowerOfTwo(LargestCellPower);
-    const auto begin = static_cast<double>(this->Next);
-    const double enough =
-        glm::min((std::floor(begin / BlockLength) + 1.0) * BlockLength, this->End);
-    if (settings.cellSampling[this->Cells.index()].power == 0) { // so has the block
-      this->beginFinestStretch(enough, settings);
+    const StretchStart start{static_cast<double>(this->Next), this->firstPlace(), this->End,
+                             this->Stretch.reach};
+    if (settings.cellSampling == nullptr) {
+      this->Stretch = FindOpenStretch(this->Cells, this->Detail, start, settings);
       return;
     }
-    double end = (std::floor(begin / block) + 1.0) * block;
-    CellWalker ahead = this->Cells;
-    CellBlock first = MeetCells(ahead, settings.cellSampling, end * settings.step);
-    if (first.power == 0) {
-      this->beginFinestStretch(enough, settings);
-      return;
-    }
-    this->Cells = ahead;
-    while (end < enough) {
-      if (ahead.exit() >= (end + block) * settings.step) { // in a cell that has been met
-        if (ahead.extinction() <= 0.0f) {
-          break;
-        }
-        end += block;
-        continue;
-      }
-      ahead.moveTo(end * settings.step);
-      const CellBlock next = MeetCells(ahead, settings.cellSampling, (end + block) * settings.step);
-      if (next.level < first.level || next.power < first.power || !next.matters) {
-        break;
-      }
-      this->Cells = ahead;
-      first.range.extend(next.range);
-      end += block;
-    }
-    this->closeStretch(first, end);
-  }
-
-  /// One of single steps, which begins in a cell that matters: as far as all do, to the end of the
-  /// block in which one begins that needs fewer.
-  INR_HOST_DEVICE void beginFinestStretch(double enough, const MarchSettings& settings)
-  {
-    const double block = PowerOfTwo(LargestCellPower);
-    CellBlock cells;
-    cells.range.extend(this->Cells.range());
-    double exit = this->Cells.exit() / settings.step;
-    while (exit < enough) {
-      this->Cells.moveTo(this->Cells.exit());
-      if (this->Cells.extinction() <= 0.0f) {
-        break;
-      }
-      const double way = this->Cells.exit() / settings.step - exit;
-      if (settings.cellSampling[this->Cells.index()].power > 0 && way >= WorthAStretch) {
-        enough = glm::min(enough, (std::floor(exit / block) + 1.0) * block);
-      }
-      cells.range.extend(this->Cells.range());
-      exit = this->Cells.exit() / settings.step;
-    }
-    cells.level = cells.power = 0;
-    this->closeStretch(cells, glm::min(exit, enough));
-  }
-
-  INR_HOST_DEVICE void closeStretch(const CellBlock& cells, double end)
-  {
-    this->Detail.fix(cells.level);
-    this->Stretch = SampleStretch();
-    this->Stretch.exit = this->Stretch.reach = end;
+    this->Stretch = FindClosedStretch(this->Cells, start, settings);
+    this->Detail.fix(this->Stretch.level);
     this->Stretch.levelEnd = this->Detail.exit();
-    this->Stretch.power = cells.power;
-    this->Stretch.range = cells.range;
-    this->Stretch.closed = true;
-    this->Stretch.level = cells.level;
   }
 
   LevelOfDetail Detail;
