@@ -2,6 +2,7 @@
 #include "Core/Render/Bricks/SamplePlacer.h"
 
 #include "Core/Render/Bricks/SampleBits.h"
+#include "Core/Render/Marching/StepLattice.h"
 #include "Core/Render/Marching/StepTable.h"
 
 #include <algorithm>
@@ -27,12 +28,6 @@ double ShortestBlockOf(const BrickFormat& format)
   return shortest;
 }
 
-void ShowKnown(const BlockSet& known, ShownBlocks& shown)
-{
-  shown.kind = known.isAll() ? ShownBlocks::Kind::All : ShownBlocks::Kind::Some;
-  std::copy(known.words.begin(), known.words.end(), shown.words);
-}
-
 /// Part of a run's samples, of which there are `count` with those left out, that are on its coarser
 /// path.
 float MeanFraction(const SampleRun& run, int count)
@@ -45,7 +40,7 @@ float MeanFraction(const SampleRun& run, int count)
 } // namespace
 
 SamplePlacer::SamplePlacer(const CachedScene& scene, OnMiss onMiss, MarchNotes& notes)
-    : Scene(scene), Missing(onMiss), Notes(notes),
+    : Scene(scene), Notes(notes), Bricks(scene, onMiss, notes),
       LooksAtBothEnds(scene.settings.looksAtBothEnds()),
       MayGoBack(this->LooksAtBothEnds || scene.shading != nullptr),
       DitherMask(scene.settings.projector.findsSurfaces() ? 0 : ~std::int64_t{0}),
@@ -58,9 +53,7 @@ void SamplePlacer::begin(const CachedRay& ray)
   this->Room = FirstRoom;
   this->Ended = false;
   this->Waiting = false;
-  this->Awaited.reset();
-  this->Ways[0].forget();
-  this->Ways[1].forget();
+  this->Bricks.begin();
   if (this->Scene.settings.crops) {
     this->Cropped.emplace(this->Scene.settings.cropping, ray.ray, this->Scene.settings.step);
   }
@@ -68,11 +61,7 @@ void SamplePlacer::begin(const CachedRay& ray)
 
 void SamplePlacer::finish(const CachedRay& ray)
 {
-  this->close(this->Runs[0], ray.color.transmittance);
-  this->close(this->Runs[1], ray.color.transmittance);
-  if (this->Awaited && !this->Ended) { // what made a ray opaque needs nothing behind it
-    this->Notes.requests.add(*this->Awaited, 1.0f);
-  }
+  this->Bricks.finish(ray.color.transmittance, this->Ended);
   this->Notes.statistics.work.cells += ray.samples.visited() - this->Visited;
 }
 
@@ -99,7 +88,7 @@ void SamplePlacer::goBackTo(int sample, const SampleWalker& before, CachedRay& r
   for (int k = sample; k < this->Placed.count; ++k) {
     this->Notes.levelSum -= this->Placed.originOf(k).level;
   }
-  this->Awaited.reset(); // it waits for something nearer
+  this->Bricks.turnBack();
   this->Waiting = true;
   this->Ended = false;
 }
@@ -109,8 +98,7 @@ __attribute__((flatten)) void SamplePlacer::place(CachedRay& ray)
 {
   this->Placed.clear();
   this->Ahead = 0;
-  this->Runs[0].setPlace(-1);
-  this->Runs[1].setPlace(-1);
+  this->Bricks.leaveBatch();
   const MarchSettings& settings = this->Scene.settings;
   while (this->Placed.count < this->Room && !this->Ended && !this->Waiting) {
     if (!ray.samples.moveToVisible(settings)) {
@@ -125,7 +113,8 @@ __attribute__((flatten)) void SamplePlacer::place(CachedRay& ray)
       continue;
     }
     const double place = static_cast<double>(ray.samples.next()) + ray.samples.offset(alike);
-    const RunPair runs = this->runsFor(ray, place);
+    const RunPair runs =
+        this->Bricks.at(ray.ray, ray.samples.detail(), ray.color.transmittance, place);
     if (runs.fine == nullptr || runs.coarse == nullptr) {
       this->Waiting = true;
       return;
@@ -248,13 +237,6 @@ inline void SamplePlacer::countUse(const CachedRay& ray, const AlikeSamples& ali
   runs.coarse->count(count - fine);
 }
 
-SamplePlacer::RunPair SamplePlacer::runsFor(const CachedRay& ray, double place)
-{
-  const LevelOfDetail& detail = ray.samples.detail();
-  BrickRun* fine = this->runFor(ray, detail.level(), place);
-  return {fine, detail.isDithered() ? this->runFor(ray, detail.level() + 1, place) : fine};
-}
-
 bool SamplePlacer::looksTooFar(const RunPair& runs) const
 {
   // So many samples behind the first one it may turn out that the ray is opaque.
@@ -361,80 +343,6 @@ void SamplePlacer::add(CachedRay& ray, AlikeSamples& alike, const RunPair& runs,
   this->addRun(ray, alike, taken, bits, runs);
   this->Notes.statistics.hidden += count - taken;
   this->countUse(ray, alike, bits.taken, runs);
-}
-
-BrickRun* SamplePlacer::runFor(const CachedRay& ray, int level, double place)
-{
-  BrickRun& run = this->Runs[level & 1];
-  if (run.covers(level, place)) {
-    return &run;
-  }
-  this->close(run, ray.color.transmittance);
-  return this->open(run, ray.ray, level, place) ? &run : nullptr;
-}
-
-bool SamplePlacer::open(BrickRun& run, const Ray& ray, int level, double place)
-{
-  const BrickCache& cache = this->Scene.bricks.cache();
-  const Hierarchy& hierarchy = cache.hierarchy();
-  const double t = place * this->Scene.settings.step;
-  BrickWay& wanted = this->Ways[level & 1];
-  if (wanted.level() != level) {
-    wanted = BrickWay(hierarchy.view(), level, ray);
-  }
-  wanted.moveTo(t);
-  const BrickKey key = wanted.brick();
-  std::int32_t slot = this->Scene.bricks.find(key);
-  if (slot >= 0) {
-    run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
-  } else if (this->Missing == OnMiss::Stop) {
-    this->Awaited = key;
-    return false;
-  } else {
-    slot = this->openCoarser(run, ray, wanted, t);
-  }
-  cache.touch(slot);
-  if (!run.exact()) { // a coarser brick may hide what is there, but what is not known is invisible
-    ShowKnown(cache.blocks().known(slot), run.shown());
-  } else if (this->Scene.blocks != nullptr) {
-    this->Scene.blocks->find(slot, run.shown());
-  }
-  return true;
-}
-
-std::int32_t SamplePlacer::openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted,
-                                       double t)
-{
-  const BrickCache& cache = this->Scene.bricks.cache();
-  const Hierarchy& hierarchy = cache.hierarchy();
-  BrickKey wish = wanted.brick();
-  for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
-    BrickWay served(hierarchy.view(), level, ray);
-    served.moveTo(t);
-    const std::int32_t slot = this->Scene.bricks.find(served.brick());
-    if (slot >= 0) {
-      run.open(wanted, served, cache.view(slot), this->Scene.settings.step);
-      if (this->Missing == OnMiss::Approach) {
-        run.wishFor(wish);
-      }
-      return slot;
-    }
-    wish = hierarchy.view().isOnTheWay(level) ? served.brick() : wish;
-  }
-}
-
-void SamplePlacer::close(BrickRun& run, float transmittance)
-{
-  this->Notes.statistics.samples += run.count();
-  if (run.count() > 0) {
-    this->Notes.statistics.levels.add({run.servedLevel(), run.servedLevel()});
-    this->Notes.levelSum += static_cast<double>(std::int64_t{run.count()} * run.servedLevel());
-  }
-  if (run.count() > 0 && !run.exact()) {
-    this->Notes.statistics.missed += run.count();
-    this->Notes.requests.add(run.wish(), static_cast<float>(run.count()) * transmittance);
-  }
-  run.close();
 }
 
 void SamplePlacer::enlist(BrickRun& run)

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Bricks/BrickRun.h"
-#include "Core/Render/Bricks/BrickWay.h"
 #include "Core/Render/Bricks/CachedRay.h"
 #include "Core/Render/Bricks/MarchNotes.h"
 #include "Core/Render/Bricks/OnMiss.h"
 #include "Core/Render/Bricks/PlacedSamples.h"
+#include "Core/Render/Bricks/RayBricks.h"
 #include "Core/Render/Rays/CroppedWay.h"
 
 #include <cstdint>
@@ -55,15 +54,6 @@ public:
 private:
   /// Whether the first of alike samples is; leaves those in `alike` of which the same is true.
   bool isCropped(const CachedRay& ray, AlikeSamples& alike) const;
-  /// The bricks that such samples are read from, of the finer level and of the coarser one, which
-  /// may be the same; null where the ray has to wait.
-  struct RunPair
-  {
-    BrickRun* fine;
-    BrickRun* coarse;
-  };
-  RunPair runsFor(const CachedRay& ray, double place);
-  BrickRun* runFor(const CachedRay& ray, int level, double place);
   /// Whether samples in these would make the batch longer than what one knows of the ray is good
   /// for.
   bool looksTooFar(const RunPair& runs) const;
@@ -103,15 +93,11 @@ private:
   /// The number that chooses between two levels for a sample. A surface would be torn where one
   /// sample is of this and the next of that level, so of its rays all have the same.
   std::int64_t ditherOf(std::int64_t interval) const { return interval & this->DitherMask; }
-  bool open(BrickRun& run, const Ray& ray, int level, double place);
-  /// What is there instead of a brick that is not: the slot.
-  std::int32_t openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted, double t);
-  void close(BrickRun& run, float transmittance);
   void enlist(BrickRun& run);
 
   const CachedScene& Scene;
-  OnMiss Missing;
   MarchNotes& Notes;
+  RayBricks Bricks;
   bool LooksAtBothEnds;    ///< of samples
   bool MayGoBack;          ///< as what is found at samples may want bricks that are not there
   std::int64_t DitherMask; ///< of sample numbers
@@ -119,11 +105,8 @@ private:
 
   int Room = 0;             ///< samples that the batch is for
   std::int64_t Visited = 0; ///< macro-cells, by the present ray before it was begun
-  int Ahead = 0;    ///< samples, those left out included, from the batch's first to where it ends
-  BrickWay Ways[2]; ///< of even and of odd levels, along the present ray
-  BrickRun Runs[2]; ///< of even and of odd levels: dithering alternates between two neighbours
+  int Ahead = 0; ///< samples, those left out included, from the batch's first to where it ends
   std::optional<CroppedWay> Cropped;
-  std::optional<BrickKey> Awaited; ///< by the next sample
   bool Waiting = false;
   bool Ended = false;
   PlacedSamples Placed;
