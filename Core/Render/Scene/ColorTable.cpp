@@ -48,12 +48,36 @@ float Finite(Wide value)
   return static_cast<float>(std::clamp(value, -largest, largest));
 }
 
-/// By what values are divided before their logarithm is taken: 1 but for what float cannot hold.
-Wide LogarithmicUnit(const VolumeInfo& volume)
+/// A logarithmic table over a range as narrow as that, compared with its lowest value, is as good
+/// as linear: they are nowhere further apart than an eighth of it, and a float that holds the value
+/// has no more digits left for where in the range it is.
+constexpr double NarrowRange = 1e-3;
+
+bool IsNarrow(const TransferFunction& function)
 {
-  const double largest = std::max(std::abs(volume.low), std::abs(volume.high));
-  const bool isOrdinary = largest > 1e-30 && largest < 1e30;
-  return isOrdinary || largest <= 0 ? 1.0L : Wide{largest};
+  return Wide{function.high} - function.low < NarrowRange * Wide{function.low};
+}
+
+/// By what values are divided before their logarithm is taken: the table's lowest one, whose
+/// logarithm is 0 then, unless float cannot hold the others.
+Wide LogarithmicUnit(const TransferFunction& function, const VolumeInfo& volume)
+{
+  constexpr Wide most = 1e30L;
+  const Wide largest = std::max(std::abs(volume.low), std::abs(volume.high));
+  return largest < most * function.low || largest <= 0 ? Wide{function.low} : largest;
+}
+
+/// So that no rounding takes the volume's highest value for one above the table, here or where
+/// logarithms are rounded otherwise.
+void KeepInside(ColorLookup& lookup)
+{
+  constexpr float spare = 4e-7f;
+  const float last = static_cast<float>(lookup.count - 1) * (1 - spare);
+  const float top = lookup.coordinate(1.0f);
+  if (top > last) {
+    lookup.scale *= last / top;
+    lookup.bias *= last / top;
+  }
 }
 
 /// How normalised values of a volume become table coordinates; see ColorLookup::coordinate.
@@ -61,18 +85,22 @@ void MapValues(const TransferFunction& function, const VolumeInfo& volume, Color
 {
   const Wide last = static_cast<Wide>(function.table.size() - 1);
   const Wide width = Wide{volume.high} - volume.low;
-  if (!function.logarithmic) {
+  lookup.logarithmic = function.logarithmic && !IsNarrow(function);
+  if (!lookup.logarithmic) {
     const Wide range = Wide{function.high} - function.low;
     lookup.scale = Finite(last * (width / range));
     lookup.bias = Finite(last * ((Wide{volume.low} - function.low) / range));
     return;
   }
-  const Wide unit = LogarithmicUnit(volume);
+  const Wide unit = LogarithmicUnit(function, volume);
   const Wide scale = last / std::log(Wide{function.high} / function.low);
   lookup.scale = Finite(scale);
   lookup.bias = Finite(-scale * std::log(function.low / unit));
   lookup.valueLow = Finite(volume.low / unit);
   lookup.valueScale = Finite(width / unit);
+  if (volume.high <= function.high) {
+    KeepInside(lookup);
+  }
 }
 
 } // namespace
@@ -85,7 +113,6 @@ ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volum
   ColorLookup& lookup = this->Lookup;
   lookup.entries = this->Entries.data();
   lookup.count = static_cast<int>(this->Entries.size());
-  lookup.logarithmic = function.logarithmic;
   lookup.below = function.below;
   lookup.above = function.above;
   MapValues(function, volume, lookup);

@@ -21,7 +21,7 @@ struct ColorLookup
   float scale = 0; ///< table coordinate = scale * x + bias, x = y or log(valueLow + valueScale * y)
   float bias = 0;
   bool logarithmic = false;
-  float valueLow = 0; ///< in units of the volume's largest value where float cannot hold that
+  float valueLow = 0; ///< over the table's lowest value, or the volume's largest
   float valueScale = 0;
   glm::vec4 below{0};
   glm::vec4 above{0};

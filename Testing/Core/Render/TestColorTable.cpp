@@ -104,6 +104,40 @@ TEST(ColorTable, TakesLogarithmsOfWhatFloatCannotHold)
   }
 }
 
+TEST(ColorTable, LogarithmsHoldOverNarrowRanges)
+{
+  inr::TransferFunction function;
+  function.logarithmic = true;
+  function.table = {glm::vec4(0), glm::vec4(0.5f), glm::vec4(1)};
+  function.low = 1e5;
+  for (const double width : {1.0, 1e-1, 1e-2, 2e-3, 5e-4, 1e-5, 1e-9}) {
+    function.high = function.low * (1 + width);
+    const inr::ColorTable table(function, Range(function.low, function.high));
+    for (int k = 0; k <= 100; ++k) {
+      const double value = function.low + 0.01 * k * (function.high - function.low);
+      const double truth = std::log(value / function.low) / std::log(function.high / function.low);
+      EXPECT_NEAR(table.lookup().at(0.01f * static_cast<float>(k)).x, truth, 2e-4) << width;
+    }
+  }
+}
+
+TEST(ColorTable, TheEndsOfItsRangeAreInATable)
+{
+  inr::TransferFunction function;
+  function.table.assign(256, glm::vec4(0.5f));
+  function.below = function.above = glm::vec4(0);
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    function.logarithmic = seed % 2 == 0;
+    function.low = std::pow(10.0, 6 * inr::RandomUnit(seed, 0) - 3);
+    function.high = function.low * (1 + std::pow(10.0, 9 * inr::RandomUnit(seed, 1) - 4));
+    const inr::ColorTable table(function, Range(function.low, function.high));
+    for (const float end : {0.0f, 1.0f}) {
+      EXPECT_EQ(table.lookup().at(end).w, 0.5f)
+          << function.low << " to " << function.high << ", logarithmic " << function.logarithmic;
+    }
+  }
+}
+
 TEST(ColorTable, MajorantBoundsEveryValueOfARange)
 {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
