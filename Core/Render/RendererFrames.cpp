@@ -5,6 +5,7 @@
 #include "Core/Render/Paths/CachedPaths.h"
 #include "Core/Render/RendererImplementation.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -29,7 +30,8 @@ MarchWay Renderer::Implementation::wayOf(const Frame& frame)
   settings.dims = glm::dvec3(this->Volume.dims);
   settings.step = frame.sampleDistance;
   settings.adaptive = frame.adaptiveSampling && frame.blending.mode == BlendMode::Composite;
-  settings.unitsPerT = way.geometry.lengthPerUnit() / frame.unitDistance;
+  constexpr double opaque = 1e30; // samples of which are as long as float holds
+  settings.unitsPerT = std::min(way.geometry.lengthPerUnit() / frame.unitDistance, opaque);
   settings.projector = this->projector();
   if (frame.preIntegration) {
     if (!this->PreIntegrated) {

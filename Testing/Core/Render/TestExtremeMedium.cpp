@@ -6,6 +6,10 @@
 #include "Core/Image/Metrics.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 namespace {
 
 constexpr double Length = 32; ///< of a ray through the volume, voxels
@@ -82,6 +86,27 @@ TEST_P(ExtremeMedium, HasAnyUnitDistance)
   EXPECT_NEAR(faint, truth, 0.01 * truth);
   EXPECT_EQ(this->alpha(Waves, UniformMedium(1.0f), 1e6, 0.5), 1.0);
   EXPECT_EQ(this->alpha(Waves, UniformMedium(0.0f), 1e-6, 0.5), 0.0);
+}
+
+TEST_P(ExtremeMedium, IsOfNumbersWhereSamplesAreLongerThanFloatHolds)
+{
+  const bool isLit = this->isShadedCache() || this->GetParam() == Way::ShadedNetwork;
+  for (const auto mode : {inr::BlendMode::Composite, inr::BlendMode::Additive}) {
+    inr::Renderer renderer = this->renderer(Waves, Colours());
+    inr::Frame frame = Oblique(glm::dvec3(Dims), 24);
+    frame.blending.mode = mode;
+    frame.shading = isLit && mode == inr::BlendMode::Composite
+                        ? std::optional(inr::Material{1, 0, 0, 1})
+                        : std::nullopt;
+    for (const double unitDistance : {1e-37, 1e-42, 1e-300}) {
+      frame.unitDistance = unitDistance;
+      const inr::Image picture = Render(renderer, frame);
+      EXPECT_TRUE(std::all_of(picture.pixels.begin(), picture.pixels.end(), [](float value) {
+        return std::isfinite(value);
+      })) << unitDistance;
+      EXPECT_EQ(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 1.0f);
+    }
+  }
 }
 
 TEST_P(ExtremeMedium, MayRiseInAStep)
