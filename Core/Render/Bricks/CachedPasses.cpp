@@ -130,18 +130,11 @@ void CompletePass::resume(ActiveTile& tile, CachedMarcher& marcher, const PassOu
   tile.waiting.erase(rest, tile.waiting.end());
 }
 
-WorkDone CompletePass::advance(const Arena& arena, const std::function<bool()>& keepGoing,
-                               const PassOutput& output, RequestRanking& requests)
+/// The first tiles at hand, one to each of `notes`.
+void CompletePass::marchTiles(const Arena& arena, const std::function<bool()>& keepGoing,
+                              const PassOutput& output, std::vector<TileNotes>& notes)
 {
-  while (this->Active.size() < this->Window && this->Next < this->Tiles.count()) {
-    this->Active.push_back({this->Next++, false, {}});
-  }
-  const std::size_t most = this->Alone ? 1 : this->Window;
-  const auto count = static_cast<std::int64_t>(std::min(this->Active.size(), most));
-  const std::int64_t before = CamePast(this->Statistics);
-  std::vector<FrameStatistics> statistics(static_cast<std::size_t>(count));
-  std::vector<RequestList> lists(static_cast<std::size_t>(count));
-  ForEachTile(arena, count, keepGoing, [&](std::int64_t k) {
+  ForEachTile(arena, static_cast<std::int64_t>(notes.size()), keepGoing, [&](std::int64_t k) {
     const auto index = static_cast<std::size_t>(k);
     ActiveTile& tile = this->Active[index];
     CachedMarcher marcher(this->Scene, OnMiss::Stop);
@@ -150,15 +143,33 @@ WorkDone CompletePass::advance(const Arena& arena, const std::function<bool()>& 
     } else {
       this->start(tile, marcher, output);
     }
-    statistics[index] = marcher.statistics();
-    lists[index] = std::move(marcher.requests());
+    notes[index] = {marcher.statistics(), std::move(marcher.requests())};
   });
-  WorkDone work;
-  for (std::size_t k = 0; k < lists.size(); ++k) {
-    work.add(statistics[k].work);
-    this->Statistics.add(statistics[k]);
-    requests.add(lists[k]);
+}
+
+WorkDone CompletePass::advance(const Arena& arena, const std::function<bool()>& keepGoing,
+                               const PassOutput& output, RequestRanking& requests)
+{
+  while (this->Active.size() < this->Window && this->Next < this->Tiles.count()) {
+    this->Active.push_back({this->Next++, false, {}});
   }
+  const std::int64_t before = CamePast(this->Statistics);
+  std::vector<TileNotes> notes(std::min(this->Active.size(), this->Alone ? 1 : this->Window));
+  WorkDone work;
+  const auto take = [&] {
+    for (const TileNotes& tile : notes) {
+      work.add(tile.statistics.work);
+      this->Statistics.add(tile.statistics);
+      requests.add(tile.requests);
+    }
+  };
+  try {
+    this->marchTiles(arena, keepGoing, output, notes);
+  } catch (...) { // cancelled: tiles that have come further go on from there
+    take();
+    throw;
+  }
+  take();
   this->Alone = this->Alone && CamePast(this->Statistics) == before && !requests.empty();
   const auto finished = [](const ActiveTile& tile) { return tile.waiting.empty(); };
   this->Active.erase(std::remove_if(this->Active.begin(), this->Active.end(), finished),

@@ -63,7 +63,15 @@ private:
     std::vector<WaitingRay> waiting;
   };
 
+  struct TileNotes ///< of a round
+  {
+    FrameStatistics statistics;
+    RequestList requests;
+  };
+
   static Tiling Size(const CachedScene& scene) { return {scene.frame.width, scene.frame.height}; }
+  void marchTiles(const Arena& arena, const std::function<bool()>& keepGoing,
+                  const PassOutput& output, std::vector<TileNotes>& notes);
   void start(ActiveTile& tile, CachedMarcher& marcher, const PassOutput& output) const;
   void resume(ActiveTile& tile, CachedMarcher& marcher, const PassOutput& output) const;
 

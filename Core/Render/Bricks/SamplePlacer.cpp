@@ -171,9 +171,10 @@ inline void SamplePlacer::addRun(const CachedRay& ray, const AlikeSamples& alike
   const SampleWalker& samples = ray.samples;
   const SampleStretch& stretch = samples.stretch();
   const BrickRun& fine = *runs.fine;
-  // A coarser brick than the one wanted may hold anything.
-  const bool exact = fine.exact() && runs.coarse->exact();
-  const ValueRange range = exact ? stretch.range : ValueRange{0.0f, 1.0f};
+  // A coarser brick than the one wanted may hold anything. Where one of two is as wanted, and all
+  // samples may turn out to be from that one, they count as such; the others are missed anyway.
+  const bool mayBeExact = fine.exact() || runs.coarse->exact();
+  const ValueRange range = mayBeExact ? stretch.range : ValueRange{0.0f, 1.0f};
   SampleRun& run = this->Placed.batch.runs[this->Placed.runs];
   this->placeRun(ray, alike, runs, run);
   run.path[0] = fine.place();

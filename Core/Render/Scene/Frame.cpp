@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Scene/Frame.h"
 
-#include <algorithm>
+#include <cstring>
 
 namespace inr {
 
@@ -12,8 +12,9 @@ bool HaveSameDepth(const Frame& a, const Frame& b)
   if (a.opaqueDepth == nullptr || b.opaqueDepth == nullptr) {
     return a.opaqueDepth == b.opaqueDepth;
   }
-  const auto pixels = static_cast<std::ptrdiff_t>(a.width) * a.height;
-  return std::equal(a.opaqueDepth, a.opaqueDepth + pixels, b.opaqueDepth);
+  const auto pixels = static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height);
+  // By their bits, as a depth that is no number would equal nothing.
+  return std::memcmp(a.opaqueDepth, b.opaqueDepth, pixels * sizeof(float)) == 0;
 }
 
 bool IsSame(const std::shared_ptr<const TranslucentLayers>& a,

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace inr {
 
@@ -41,6 +42,16 @@ void CheckSize(const Frame& frame)
                                          std::to_string(frame.height) +
                                          " pixels; render it in tiles of at most 2^28");
   }
+}
+
+/// What is no number equals nothing, not even itself: a picture would never be known again.
+void CheckPlanes(const std::vector<glm::dvec4>& planes, const char* message)
+{
+  Require(std::all_of(planes.begin(), planes.end(),
+                      [](const glm::dvec4& plane) {
+                        return IsFinite(glm::dvec3(plane)) && std::isfinite(plane.w);
+                      }),
+          message);
 }
 
 void CheckSampling(const Frame& frame)
@@ -131,6 +142,8 @@ void RequireValid(const Frame& frame)
   const bool traces = frame.mode == RenderMode::PathTracing;
   CheckSize(frame);
   CheckSampling(frame);
+  CheckPlanes(frame.clippingPlanes, "clipping planes must consist of finite numbers");
+  CheckPlanes(frame.piece, "the planes of a piece must consist of finite numbers");
   Check(frame.blending, frame.mode);
   if (frame.cropping) {
     Check(*frame.cropping, frame.mode);

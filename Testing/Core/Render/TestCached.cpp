@@ -4,12 +4,16 @@
 // be its storage format's error and nothing else.
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
+#include "Testing/Core/Render/FieldCells.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <memory>
+#include <vector>
 
 namespace {
 
@@ -114,6 +118,38 @@ TEST(Cached, FramesInALimitedTimeCountWhatMixedLevelsLack)
   EXPECT_EQ(image.pixels, truth.pixels);
 }
 
+// Of ranges that do not hold, samples are moved into those that there are: whichever level they
+// come from, and whatever was there when the other one was not.
+TEST(Cached, FramesInALimitedTimeMoveMixedLevelsIntoTheSameRanges)
+{
+  const glm::i64vec3 dims(60, 56, 52);
+  inr::MacroCells cells = CellsOf(Waves, dims, 8);
+  for (inr::ValueRange& range : cells.ranges) {
+    const float less = 0.2f * (range.high - range.low);
+    range = {range.low + less, range.high - less};
+  }
+  cells.provenance = inr::MacroCellProvenance::File;
+  inr::RendererOptions options;
+  options.threads = 1;
+  options.cache = Options(inr::CachePrecision::Float32, 9);
+  options.cache.background = false;
+  options.cache.maximumRequests = 3;
+  inr::Frame frame = Oblique(glm::dvec3(dims), 60);
+  frame.levelOfDetailScale = 1.2;
+  inr::Image pictures[2];
+  for (const bool inTime : {false, true}) {
+    frame.timeLimit = inTime ? 1e-9 : 0.0;
+    inr::Renderer renderer(std::make_shared<FieldEvaluator>(Waves), VolumeOf(dims), cells, options);
+    renderer.setTransferFunction(Colours());
+    int frames = 1;
+    while (!renderer.render(frame, pictures[inTime ? 1 : 0]).complete && frames < 1000) {
+      ++frames;
+    }
+    EXPECT_EQ(frames > 10, inTime);
+  }
+  EXPECT_EQ(pictures[1].pixels, pictures[0].pixels);
+}
+
 TEST(Cached, FramesInALimitedTimeEndEvenWhereTheCacheIsTooSmall)
 {
   const glm::i64vec3 dims(90, 70, 80);
@@ -138,6 +174,59 @@ TEST(Cached, FramesInALimitedTimeEndEvenWhereTheCacheIsTooSmall)
 
   frame.clipToWorld[0][0] *= 1.01; // another picture starts anew
   EXPECT_FALSE(hurried.render(frame, image).complete);
+}
+
+TEST(Cached, CountsWhatWasDoneBeforeACallWasCancelled)
+{
+  const glm::i64vec3 dims(90, 70, 80);
+  inr::Frame frame = Oblique(glm::dvec3(dims), 150);
+  frame.timeLimit = 1;
+  inr::RendererOptions options;
+  options.threads = 1;
+  options.deterministic = true; // so much work to a frame
+  options.cache = Options(inr::CachePrecision::Bits16, 16);
+  options.cache.bytes = 200000; // some twenty bricks of more than a hundred
+  inr::Renderer renderer(std::make_shared<FieldEvaluator>(Waves), VolumeOf(dims), {}, options);
+  renderer.setTransferFunction(Colours());
+  inr::Image image;
+  inr::Image taken;
+  inr::FrameStatistics statistics;
+  int cancelled = 0;
+  for (int calls = 0; !statistics.complete || calls == 0; ++calls) {
+    ASSERT_LT(calls, 1000);
+    int asked = 0;
+    try {
+      statistics = renderer.render(
+          frame, image, nullptr, [&] { return calls % 2 == 0 || ++asked < 4; }, &taken);
+    } catch (const inr::Error&) {
+      ++cancelled;
+    }
+  }
+  EXPECT_GT(cancelled, 3);
+  double sum = 0;
+  for (std::size_t k = 0; k < taken.pixels.size(); k += 2) {
+    sum += taken.pixels[k];
+  }
+  EXPECT_EQ(static_cast<double>(statistics.samples), sum);
+}
+
+TEST(Cached, FramesInALimitedTimeKnowADepthThatIsNoNumber)
+{
+  const glm::i64vec3 dims(90, 70, 80);
+  inr::Frame frame = Oblique(glm::dvec3(dims), 60);
+  std::vector<float> depth(static_cast<std::size_t>(frame.width) * frame.height, 1.0f);
+  depth[depth.size() / 2] = std::nanf("");
+  frame.opaqueDepth = depth.data();
+  frame.timeLimit = 1e-9;
+  inr::CacheOptions options = Options(inr::CachePrecision::Bits16, 16);
+  options.bytes = 200000;
+  inr::Renderer renderer = CachedRenderer(dims, Waves, options);
+  inr::Image image;
+  int frames = 0;
+  while (!renderer.render(frame, image).complete && frames < 3000) {
+    ++frames;
+  }
+  EXPECT_LT(frames, 3000);
 }
 
 TEST(Cached, CoarseLevelsStayInRegister)

@@ -155,6 +155,9 @@ TEST(Geometry, RefusesImpossibleFrames)
   refused([](inr::Frame& frame) { frame.levelOfDetailScale = -1; });
   refused([](inr::Frame& frame) { frame.timeLimit = std::nan(""); });
   refused([](inr::Frame& frame) { frame.unitDistance = std::nan(""); });
+  refused([](inr::Frame& frame) { frame.clippingPlanes.emplace_back(0, 0, std::nan(""), 1); });
+  refused([](inr::Frame& frame) { frame.clippingPlanes.emplace_back(1, 0, 0, HUGE_VAL); });
+  refused([](inr::Frame& frame) { frame.piece.emplace_back(1, 0, 0, std::nan("")); });
   refused([](inr::Frame& frame) { frame.worldToIndex = glm::dmat4(0.0); });
   refused([](inr::Frame& frame) { frame.clipToWorld[1][1] = HUGE_VAL; });
   EXPECT_NO_THROW(Render(renderer, ParallelFrame(2, {0, 0}, {8, 8}, -5, 15)));
