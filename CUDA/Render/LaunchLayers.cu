@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Device/LaunchDefinition.cuh"
+#include "CUDA/Render/Kernels/LaunchedRender.h"
+
+INR_LAYERS_KERNELS(INR_INSTANTIATE);
