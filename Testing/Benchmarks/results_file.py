@@ -6,6 +6,7 @@ import os
 import platform
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent / "results"
@@ -31,9 +32,13 @@ def commit():
     the sources without their history has it from INR_COMMIT."""
     if "INR_COMMIT" in os.environ:
         return os.environ["INR_COMMIT"]
-    changes = output("git", "status", "--porcelain", "--untracked-files=no", "--", ":/",
-                     ":(exclude)results")
-    return output("git", "rev-parse", "--short", "HEAD") + ("-dirty" if changes else "")
+    try:
+        changes = output("git", "status", "--porcelain", "--untracked-files=no", "--", ":/",
+                         ":(exclude)results")
+        return output("git", "rev-parse", "--short", "HEAD") + ("-dirty" if changes else "")
+    except (OSError, subprocess.CalledProcessError) as error:
+        sys.exit(f"git does not say what is measured; set INR_COMMIT to it: "
+                 f"{getattr(error, 'stderr', None) or error}")
 
 
 def compiler():
@@ -51,6 +56,10 @@ def context():
     }
 
 
+# Asked for before anything is measured: what cannot be told would lose the results at the end.
+CONTEXT = context()
+
+
 def result(name, value, unit, better, note="", **more):
     return {"name": name, "value": value, "unit": unit, "better": better, "note": note, **more}
 
@@ -64,13 +73,13 @@ def path_of(topic, about):
 
 def last(topic):
     """The results that this machine's file has, none where there is no file."""
-    path = path_of(topic, context())
+    path = path_of(topic, CONTEXT)
     return json.loads(path.read_text())["results"] if path.exists() else []
 
 
 def write(topic, results, **more):
     """Writes and returns the path; see path_of. `more` for the context may name a `gpu`."""
-    about = {**context(), **more}
+    about = {**CONTEXT, **more}
     path = path_of(topic, about)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps({"context": about, "results": results}, indent=1) + "\n")
