@@ -83,7 +83,7 @@ small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuLitMixedLevels:Kernels/Dr
 small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuLayered:Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuSurfacesLit'
 small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuIntegratedLayered'
 small+=':Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuLitLayered:Kernels/WaitingFor.NeedsNoMoreThanTheSmallestCache/GpuSurfaces'
-small+=':Kernels/DrawingSettings.RoundsWhatItKeepsAsTheCpuDoes/Gpu*'
+small+=':Kernels/DrawingSettings.RoundsWhatItKeepsAsTheCpuDoes/Gpu*:Kernels/NetworkPaths.AreThoseOfTheCpu/GpuPlain'
 small+=':Kernels/Training.AgreesForEveryShape/Gpu:Kernels/Training.UpdatesAreCoresOwn/Gpu'
 for tool in memcheck racecheck synccheck; do
   echo "== compute-sanitizer $tool"

@@ -99,15 +99,19 @@ INSTANTIATE_TEST_SUITE_P(Kernels, NetworkDrawingOf,
                                           testing::ValuesIn(MarchedCases())),
                          CaseInAPlace::nameOf);
 
-class NetworkPaths : public testing::TestWithParam<bool>
+class NetworkPaths : public CaseInAPlace
 {};
 
-INSTANTIATE_TEST_SUITE_P(Kernels, NetworkPaths, testing::Bool(),
-                         [](const auto& info) { return info.param ? "Layered" : "Plain"; });
+INSTANTIATE_TEST_SUITE_P(Kernels, NetworkPaths,
+                         testing::Combine(testing::Values(Place::Host, Place::Gpu),
+                                          testing::Values(Case{"Plain", [](inr::Frame&) {}},
+                                                          Case{"Layered", AddLayers})),
+                         CaseInAPlace::nameOf);
 
 /// Paths meet the same random numbers; a few may part ways for rounding.
 TEST_P(NetworkPaths, AreThoseOfTheCpu)
 {
+  const auto& [place, which] = GetParam();
   inr::Frame frame = PlainFrame();
   frame.mode = inr::RenderMode::PathTracing;
   frame.samplesPerPixel = 3;
@@ -116,12 +120,10 @@ TEST_P(NetworkPaths, AreThoseOfTheCpu)
   frame.clippingPlanes = {PlaneAcross({1, 0.3, -0.2})};
   frame.opaqueDepth = SomeDepth().data();
   LightUp(frame);
-  if (GetParam()) {
-    AddLayers(frame);
-  }
+  which.change(frame);
   const Drawn truth = Draw(frame, Uncached(nullptr));
   ASSERT_TRUE(ShowsSomething(truth.rgba));
-  const Drawn drawn = Draw(frame, Uncached(Device()));
+  const Drawn drawn = Draw(frame, Uncached(DeviceIn(place)));
   EXPECT_TRUE(drawn.statistics.accelerated);
   EXPECT_LT(Others(drawn.rgba, truth.rgba, 1e-3f), 0.01);
   EXPECT_LT(Others(drawn.depth, truth.depth, 1e-4f), 0.01);
