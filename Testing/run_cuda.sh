@@ -9,6 +9,7 @@
 #
 # Ends with "N passed, N failed, N skipped". Its status is 0 when nothing failed, 1 when something
 # did, and 77 when nothing failed but there is no GPU: then the kernels have run on the host only.
+# It builds for the first GPU that CUDA_VISIBLE_DEVICES leaves.
 # In a copy of the sources without their history, set INR_COMMIT to what they are of.
 set -uo pipefail
 
@@ -33,15 +34,41 @@ count() {
 }
 
 export CUDA_DEVICE_ORDER=PCI_BUS_ID # as nvidia-smi counts
-# Code for this machine's GPU alone, where nvidia-smi can say which that is.
-capability=$(nvidia-smi --query-gpu=compute_cap --format=csv,noheader 2> /dev/null | head -n 1 | tr -d '. ')
 gpu=
+
+# Of the GPUs that CUDA's programs see here, a line each, without a dot. What is wrong stands there, too.
+capabilities() {
+  local query=(timeout 60 nvidia-smi --query-gpu=compute_cap --format=csv,noheader) id
+  if [ -z "${CUDA_VISIBLE_DEVICES+set}" ]; then
+    "${query[@]}"
+  else
+    for id in ${CUDA_VISIBLE_DEVICES//,/ }; do
+      "${query[@]}" -i "$id" || break # nor do the programs see those behind it
+    done
+  fi 2> /dev/null | tr -d '. '
+}
+
+# The first of them that CMake/INRCuda.cmake builds for, with the nvcc that it finds; or nothing.
+capability() {
+  local known one
+  known=$(PATH=${CUDA_PATH:+$CUDA_PATH/bin:}$PATH:/usr/local/cuda/bin nvcc --list-gpu-code 2> /dev/null)
+  while read -r one; do
+    if [[ $one =~ ^[0-9]+$ ]] && [ "$one" -ge 75 ] && grep -qx "sm_$one" <<< "$known"; then
+      echo "$one"
+      return
+    fi
+  done < <(capabilities)
+}
 
 echo "== Building"
 if command -v apt-get > /dev/null; then
   bash CMake/install-debian-packages.sh core || echo "== Going on with what there is"
 fi
-if ! { cmake --preset cuda ${capability:+-DINR_CUDA_ARCHITECTURES="$capability"} &&
+# Code for this machine's GPU alone; else the default, whatever an earlier run has built for.
+architectures=(-U INR_CUDA_ARCHITECTURES)
+found=$(capability)
+[ -z "$found" ] || architectures=(-D "INR_CUDA_ARCHITECTURES=$found")
+if ! { cmake --preset cuda "${architectures[@]}" &&
        cmake --build --preset cuda --target test_cuda bench_cuda bench_cuda_frames \
          bench_cuda_training; } > "$build.log" 2>&1; then
   tail -n 60 "$build.log"
