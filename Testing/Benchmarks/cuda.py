@@ -3,18 +3,21 @@
 """Runs bench_cuda, bench_cuda_frames and bench_cuda_training on this machine's GPU and writes cuda.json; see
 Testing/run_cuda.sh.
 
-    Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA FAILED_CONFORMANCE_TESTS
+    Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA [FAILED_CONFORMANCE_TESTS]
 
-When one of them fails, what there is is written all the same, and the status is not 0.
+When one of them fails, or takes more than INR_TIME_LIMIT seconds (1800), what there is is written all the
+same, and the status is not 0.
 """
 import json
 import os
 import subprocess
 import sys
+import time
 
 import results_file
 
 HALF = "cuda half"
+LIMIT = os.environ.get("INR_TIME_LIMIT", "1800")  # seconds for each
 
 
 def floor_rate(floors, ceilings):
@@ -64,9 +67,10 @@ def run(folder, program, problems):
     """The JSON objects that a benchmark prints, one a line. What keeps it from its end is added to
     `problems`; what it had printed by then counts."""
     found = []
+    begun = time.monotonic()
     try:
-        with subprocess.Popen([os.path.join(folder, program)], stdout=subprocess.PIPE,
-                              text=True) as process:
+        with subprocess.Popen(["timeout", "--kill-after=10", LIMIT, os.path.join(folder, program)],
+                              stdout=subprocess.PIPE, text=True) as process:
             for line in process.stdout:
                 try:
                     found.append(json.loads(line))
@@ -75,20 +79,23 @@ def run(folder, program, problems):
                 else:
                     print(f"{program}: {line.strip()}", flush=True)
         if process.returncode != 0:
-            problems.append(f"{program} ended with status {process.returncode}")
+            late = time.monotonic() - begun >= int(LIMIT)
+            problems.append(f"{program} was not at its end after {LIMIT} s" if late else
+                            f"{program} ended with status {process.returncode}")
     except OSError as error:
         problems.append(f"{program} could not be run: {error}")
     return found
 
 
 def main():
-    folder, failed = sys.argv[1:]
+    folder, *failed = sys.argv[1:]
     problems = []
     measured = run(folder, "bench_cuda", problems)
     devices = [line["device"] for line in measured if "device" in line]
     if not devices:  # whose results would it be
         sys.exit(f"no results are written: {'; '.join(problems) or 'bench_cuda names no device'}")
-    results = [results_file.result("conformance failed", int(failed), "", "lower", "tests", target=0)]
+    results = [results_file.result("conformance failed", int(count), "", "lower", "tests", target=0)
+               for count in failed]
     results += inference(measured)
     results += noted(run(folder, "bench_cuda_frames", problems), FRAMES)
     results += noted(run(folder, "bench_cuda_training", problems), TRAINING)

@@ -1,14 +1,14 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# TestRunCuda.sh: Testing/run_cuda.sh on made-up machines: what it builds for, what it says of tests
-# that fail, and its status. Nothing is compiled or installed, and no GPU asked.
+# TestRunCuda.sh: Testing/run_cuda.sh on made-up machines: what it builds for, what it says of parts
+# that fail or hang, and its status. Nothing is compiled or installed, and no GPU asked.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 mkdir -p "$folder/bin" "$folder/Testing"
 cp "$(dirname "$0")/../run_cuda.sh" "$folder/Testing"
 cd "$folder"
-unset CUDA_PATH CUDA_VISIBLE_DEVICES
+unset CUDA_PATH CUDA_VISIBLE_DEVICES INR_TIME_LIMIT GPU GPU_0 GPU_1 FAILS HANGS BROKEN FOUND_BY
 export PATH=$folder/bin:$PATH
 
 # made FILE: an executable of what is read.
@@ -32,6 +32,7 @@ case "$*" in
 esac
 END
 made bench_cuda << 'END'
+[ -z "${BROKEN:-}" ] || exit "$BROKEN"
 [ -n "${GPU:-}" ] || { echo "there is none" >&2; exit 77; }
 echo "$GPU"
 END
@@ -40,20 +41,28 @@ made bin/python3 <<< 'echo "benchmark: $*"'
 made test_cuda << 'END'
 echo "[       OK ] A.Passes (1 ms)"
 [ -z "${FAILS:-}" ] || echo "[  FAILED  ] B.Fails/Gpu, where GetParam() = Gpu (1 ms)"
-echo "[  SKIPPED ] C.HasNoGpu (1 ms)"
+echo "[ RUN      ] C.Hangs"
+[ -z "${HANGS:-}" ] || sleep 60
+echo "[  SKIPPED ] C.Hangs (1 ms)"
 echo "[==========] 3 tests from 3 test suites ran. (3 ms total)"
 [ -z "${FAILS:-}" ]
 END
 
-# expect STATUS TEXT [ENVIRONMENT...]: how the script ends, and that it asks CMake for, or says, this.
+# expect STATUS TEXT [ENVIRONMENT...] [-- PART...]: how the script ends, and that it asks CMake for, or
+# says, this.
 expect() {
-  local status=$1 text=$2 ended=0
+  local status=$1 text=$2 ended=0 environment=()
   shift 2
+  while [ $# -gt 0 ] && [ "$1" != -- ]; do
+    environment+=("$1")
+    shift
+  done
+  shift || true
   rm -rf build-cuda
   : > asked.txt
-  env "$@" bash Testing/run_cuda.sh > said.txt 2>&1 || ended=$?
+  env "${environment[@]}" bash Testing/run_cuda.sh "$@" > said.txt 2>&1 || ended=$?
   if [ "$ended" -ne "$status" ] || ! cat asked.txt said.txt | tr '\n' '|' | grep -qF -e "$text"; then
-    echo "$*: status $ended in place of $status, or it lacks '$text':" >&2
+    echo "${environment[*]} $*: status $ended in place of $status, or it lacks '$text':" >&2
     cat asked.txt said.txt >&2
     exit 1
   fi
@@ -72,5 +81,12 @@ expect 0 "$default" GPU=B GPU_0=9.0 CUDA_VISIBLE_DEVICES=MIG-2,0
 expect 77 "$default" GPU_0=9.0 CUDA_VISIBLE_DEVICES=
 
 expect 0 "6 passed, 0 failed, 1 skipped" GPU=B
-expect 1 "5 passed, 1 failed, 1 skipped" GPU=B FOUND_BY=racecheck
-expect 1 "6 passed, 1 failed, 1 skipped" GPU=B FAILS=1
+expect 0 "benchmark: Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA 0|== compute-sanitizer memcheck" GPU=B
+expect 1 "== FAILED: B.Fails/Gpu|6 passed, 1 failed, 1 skipped" GPU=B FAILS=1
+expect 1 "== FAILED: bench_cuda --device, status 3|2 passed, 1 failed, 5 skipped" BROKEN=3
+expect 1 "== FAILED: compute-sanitizer racecheck|5 passed, 1 failed" GPU=B FOUND_BY=racecheck
+expect 1 "== FAILED: test_cuda, status 124, not at its end after 1 s: C.Hangs|6 passed, 1 failed, 0 skipped" \
+  GPU=B HANGS=1 INR_TIME_LIMIT=1
+expect 0 "|4 passed, 0 failed, 0 skipped" GPU=B -- sanitizers
+expect 0 "benchmark: Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA|2 passed" GPU=B -- benchmark
+expect 2 "There is no part 'tests'" -- tests
