@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The kernels that are launched, for an Each(Kernel) that instantiates one: by nvcc, and for the
-// tests, which run them on the host.
+// tests, which run them on the host. For nvcc each list, and that of each number of tiles, is a
+// module of its own, for the reason that LaunchedRender.h gives: a model needs one of them.
 #pragma once
 
 #include "CUDA/Inference/Kernels/BrickKernels.h"
@@ -17,22 +18,12 @@ template <int Tiles> using WideBricks = FusedBricks<Tiles, FloatNumbers>;
 } // namespace cuda
 } // namespace inr
 
-#define INR_INFERENCE_KERNELS(Each)                                                                \
+#define INR_PLAIN_KERNELS(Each)                                                                    \
   Each(inr::cuda::FloatPoints);                                                                    \
-  Each(inr::cuda::FloatBricks);                                                                    \
-  Each(inr::cuda::HalfPoints<1>);                                                                  \
-  Each(inr::cuda::HalfPoints<2>);                                                                  \
-  Each(inr::cuda::HalfPoints<4>);                                                                  \
-  Each(inr::cuda::HalfPoints<8>);                                                                  \
-  Each(inr::cuda::HalfBricks<1>);                                                                  \
-  Each(inr::cuda::HalfBricks<2>);                                                                  \
-  Each(inr::cuda::HalfBricks<4>);                                                                  \
-  Each(inr::cuda::HalfBricks<8>);                                                                  \
-  Each(inr::cuda::WidePoints<1>);                                                                  \
-  Each(inr::cuda::WidePoints<2>);                                                                  \
-  Each(inr::cuda::WidePoints<4>);                                                                  \
-  Each(inr::cuda::WidePoints<8>);                                                                  \
-  Each(inr::cuda::WideBricks<1>);                                                                  \
-  Each(inr::cuda::WideBricks<2>);                                                                  \
-  Each(inr::cuda::WideBricks<4>);                                                                  \
-  Each(inr::cuda::WideBricks<8>)
+  Each(inr::cuda::FloatBricks)
+
+#define INR_FUSED_KERNELS(Each, Tiles)                                                             \
+  Each(inr::cuda::HalfPoints<Tiles>);                                                              \
+  Each(inr::cuda::HalfBricks<Tiles>);                                                              \
+  Each(inr::cuda::WidePoints<Tiles>);                                                              \
+  Each(inr::cuda::WideBricks<Tiles>)

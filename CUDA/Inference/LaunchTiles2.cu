@@ -2,4 +2,4 @@
 #include "CUDA/Device/LaunchDefinition.cuh"
 #include "CUDA/Inference/Kernels/LaunchedInference.h"
 
-INR_INFERENCE_KERNELS(INR_INSTANTIATE);
+INR_FUSED_KERNELS(INR_INSTANTIATE, 2);
