@@ -19,6 +19,10 @@ build=build-cuda
 tests=$build/Testing/CUDA/test_cuda
 benchmark=$build/Testing/CUDA/bench_cuda
 export INR_TIME_LIMIT=${INR_TIME_LIMIT:-1800} # for cuda.py, too
+[[ $INR_TIME_LIMIT =~ ^[1-9][0-9]*$ ]] || {
+  echo "INR_TIME_LIMIT is '$INR_TIME_LIMIT'; it has to be a number of seconds, from 1 on" >&2
+  exit 2
+}
 gpu=
 passed=0
 failed=0
@@ -71,8 +75,14 @@ limited() {
   local log=$1 begun=$SECONDS status
   shift
   where=
-  timeout --kill-after=10 "$INR_TIME_LIMIT" "$@" > "$log" 2>&1
+  # Not in the foreground, or what the program itself has started would go on; so what ends this
+  # script is handed on.
+  timeout --kill-after=10 "$INR_TIME_LIMIT" "$@" > "$log" 2>&1 &
+  local child=$!
+  trap 'kill "$child"; exit 1' INT TERM HUP
+  wait "$child"
   status=$?
+  trap - INT TERM HUP
   if [ "$status" -ne 0 ] && [ $((SECONDS - begun)) -ge "$INR_TIME_LIMIT" ]; then
     where=", not at its end after $INR_TIME_LIMIT s: $(sed -n 's/^\[ RUN      \] //p' "$log" | tail -n 1)"
   fi
@@ -83,7 +93,7 @@ export CUDA_DEVICE_ORDER=PCI_BUS_ID # as nvidia-smi counts
 
 # Of the GPUs that CUDA's programs see here, a line each, without a dot. What is wrong stands there, too.
 capabilities() {
-  local query=(timeout 60 nvidia-smi --query-gpu=compute_cap --format=csv,noheader) id
+  local query=(timeout --foreground 60 nvidia-smi --query-gpu=compute_cap --format=csv,noheader) id
   if [ -z "${CUDA_VISIBLE_DEVICES+set}" ]; then
     "${query[@]}"
   else
@@ -123,7 +133,7 @@ fi
 rm -f "$build.log"
 passed=1
 
-gpu=$(timeout --kill-after=10 60 "$benchmark" --device 2> "$build/no-gpu.txt")
+gpu=$(timeout --foreground --kill-after=10 60 "$benchmark" --device 2> "$build/no-gpu.txt")
 status=$?
 if [ "$status" -eq 0 ]; then
   echo "== GPU: $gpu"

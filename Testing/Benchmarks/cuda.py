@@ -69,7 +69,8 @@ def run(folder, program, problems):
     found = []
     begun = time.monotonic()
     try:
-        with subprocess.Popen(["timeout", "--kill-after=10", LIMIT, os.path.join(folder, program)],
+        with subprocess.Popen(["timeout", "--foreground", "--kill-after=10", LIMIT,
+                               os.path.join(folder, program)],
                               stdout=subprocess.PIPE, text=True) as process:
             for line in process.stdout:
                 try:

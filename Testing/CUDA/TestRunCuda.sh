@@ -42,7 +42,7 @@ made test_cuda << 'END'
 echo "[       OK ] A.Passes (1 ms)"
 [ -z "${FAILS:-}" ] || echo "[  FAILED  ] B.Fails/Gpu, where GetParam() = Gpu (1 ms)"
 echo "[ RUN      ] C.Hangs"
-[ -z "${HANGS:-}" ] || sleep 60
+[ -z "${HANGS:-}" ] || { echo $$ > hangs.txt && sleep 60; }
 echo "[  SKIPPED ] C.Hangs (1 ms)"
 echo "[==========] 3 tests from 3 test suites ran. (3 ms total)"
 [ -z "${FAILS:-}" ]
@@ -85,8 +85,25 @@ expect 0 "benchmark: Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA 0|== com
 expect 1 "== FAILED: B.Fails/Gpu|6 passed, 1 failed, 1 skipped" GPU=B FAILS=1
 expect 1 "== FAILED: bench_cuda --device, status 3|2 passed, 1 failed, 5 skipped" BROKEN=3
 expect 1 "== FAILED: compute-sanitizer racecheck|5 passed, 1 failed" GPU=B FOUND_BY=racecheck
-expect 1 "== FAILED: test_cuda, status 124, not at its end after 1 s: C.Hangs|6 passed, 1 failed, 0 skipped" \
-  GPU=B HANGS=1 INR_TIME_LIMIT=1
+expect 1 "== FAILED: test_cuda, status 124, not at its end after 3 s: C.Hangs|6 passed, 1 failed, 0 skipped" \
+  GPU=B HANGS=1 INR_TIME_LIMIT=3
 expect 0 "|4 passed, 0 failed, 0 skipped" GPU=B -- sanitizers
 expect 0 "benchmark: Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA|2 passed" GPU=B -- benchmark
 expect 2 "There is no part 'tests'" -- tests
+expect 2 "INR_TIME_LIMIT is '30m'" INR_TIME_LIMIT=30m
+
+# What ends the script ends what it has begun.
+rm -f hangs.txt
+env GPU=B HANGS=1 bash Testing/run_cuda.sh conformance > said.txt 2>&1 &
+for ((tries = 0; tries < 300; ++tries)); do
+  [ ! -s hangs.txt ] || break
+  sleep 0.1
+done
+kill $!
+! wait $!
+for ((tries = 0; tries < 200; ++tries)); do
+  kill -0 "$(cat hangs.txt)" 2> /dev/null || exit 0
+  sleep 0.1
+done
+echo "What hangs goes on after the script was ended" >&2
+exit 1

@@ -17,7 +17,7 @@ mkdir -p "$work"
 trap 'echo "failed: line $LINENO of Testing/Wheel/run.sh"' ERR
 
 # What a copy of the sources without their history cannot tell.
-INR_COMMIT=${INR_COMMIT:-$(cd Testing/Benchmarks && python3 -c 'import results_file; print(results_file.commit())')}
+INR_COMMIT=${INR_COMMIT:-$(cd Testing/Benchmarks && INR_COMPILER=not-asked python3 -c 'import results_file; print(results_file.commit())')}
 export INR_COMMIT
 
 # Elsewhere than on Debian 13, the rest runs there, with the sources in /inrvolume.
