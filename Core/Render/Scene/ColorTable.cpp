@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace inr {
 
@@ -48,9 +49,9 @@ float Finite(Wide value)
   return static_cast<float>(std::clamp(value, -largest, largest));
 }
 
-/// A logarithmic table over a range as narrow as that, compared with its lowest value, is as good
-/// as linear: they are nowhere further apart than an eighth of it, and a float that holds the value
-/// has no more digits left for where in the range it is.
+/// A logarithmic table over a range as narrow as that, compared with its lowest value, is drawn as
+/// a linear one: they differ by 1.25e-4 of the table at most, about what floats leave of logarithms
+/// of numbers so close to 1.
 constexpr double NarrowRange = 1e-3;
 
 bool IsNarrow(const TransferFunction& function)
@@ -59,47 +60,76 @@ bool IsNarrow(const TransferFunction& function)
 }
 
 /// By what values are divided before their logarithm is taken: the table's lowest one, whose
-/// logarithm is 0 then, unless float cannot hold the others.
+/// logarithm is 0 then, or, where float cannot hold the others, the largest.
 Wide LogarithmicUnit(const TransferFunction& function, const VolumeInfo& volume)
 {
-  constexpr Wide most = 1e30L;
+  constexpr Wide most = 1e29L; // and there may be as much on either side of 0
   const Wide largest = std::max(std::abs(volume.low), std::abs(volume.high));
   return largest < most * function.low || largest <= 0 ? Wide{function.low} : largest;
 }
 
 /// So that no rounding takes the volume's highest value for one above the table, here or where
-/// logarithms are rounded otherwise.
-void KeepInside(ColorLookup& lookup)
+/// logarithms are rounded otherwise. Logarithmic tables are by up to 4e-7 of their length shorter
+/// for that.
+void KeepHighInside(ColorLookup& lookup)
 {
-  constexpr float spare = 4e-7f;
-  const float last = static_cast<float>(lookup.count - 1) * (1 - spare);
-  const float top = lookup.coordinate(1.0f);
-  if (top > last) {
-    lookup.scale *= last / top;
-    lookup.bias *= last / top;
+  const auto last = static_cast<float>(lookup.count - 1);
+  if (lookup.logarithmic) {
+    const float end = last * (1 - 4e-7f);
+    const float shorter = end / std::max(lookup.coordinate(1.0f), end);
+    lookup.scale *= shorter;
+    lookup.bias *= shorter;
+    return;
   }
+  lookup.bias = std::min(lookup.bias, last);
+  lookup.scale -= std::max(lookup.coordinate(1.0f) - last, 0.0f);
+  while (lookup.coordinate(1.0f) > last) {
+    lookup.scale = std::nextafter(lookup.scale, -std::numeric_limits<float>::infinity());
+  }
+}
+
+/// Nor its lowest one for one below: the last digit or two of the bias are enough for that.
+void KeepLowInside(ColorLookup& lookup)
+{
+  // Further below, it is beyond what float holds.
+  while (lookup.coordinate(0.0f) < 0.0f && lookup.coordinate(0.0f) > -1.0f) {
+    lookup.bias = std::nextafter(lookup.bias, std::numeric_limits<float>::infinity());
+  }
+}
+
+void MapLinearly(const TransferFunction& function, const VolumeInfo& volume, ColorLookup& lookup)
+{
+  const Wide last = static_cast<Wide>(lookup.count - 1);
+  const Wide range = Wide{function.high} - function.low;
+  lookup.scale = Finite(last * ((Wide{volume.high} - volume.low) / range));
+  lookup.bias = Finite(last * ((Wide{volume.low} - function.low) / range));
+}
+
+void MapLogarithms(const TransferFunction& function, const VolumeInfo& volume, ColorLookup& lookup)
+{
+  const Wide unit = LogarithmicUnit(function, volume);
+  const Wide last = static_cast<Wide>(lookup.count - 1);
+  const Wide scale = last / std::log(Wide{function.high} / function.low);
+  lookup.scale = Finite(scale);
+  lookup.bias = Finite(-scale * std::log(function.low / unit));
+  lookup.valueLow = Finite(volume.low / unit);
+  lookup.valueScale = Finite((Wide{volume.high} - volume.low) / unit);
 }
 
 /// How normalised values of a volume become table coordinates; see ColorLookup::coordinate.
 void MapValues(const TransferFunction& function, const VolumeInfo& volume, ColorLookup& lookup)
 {
-  const Wide last = static_cast<Wide>(function.table.size() - 1);
-  const Wide width = Wide{volume.high} - volume.low;
   lookup.logarithmic = function.logarithmic && !IsNarrow(function);
-  if (!lookup.logarithmic) {
-    const Wide range = Wide{function.high} - function.low;
-    lookup.scale = Finite(last * (width / range));
-    lookup.bias = Finite(last * ((Wide{volume.low} - function.low) / range));
-    return;
+  if (lookup.logarithmic) {
+    MapLogarithms(function, volume, lookup);
+  } else {
+    MapLinearly(function, volume, lookup);
   }
-  const Wide unit = LogarithmicUnit(function, volume);
-  const Wide scale = last / std::log(Wide{function.high} / function.low);
-  lookup.scale = Finite(scale);
-  lookup.bias = Finite(-scale * std::log(function.low / unit));
-  lookup.valueLow = Finite(volume.low / unit);
-  lookup.valueScale = Finite(width / unit);
   if (volume.high <= function.high) {
-    KeepInside(lookup);
+    KeepHighInside(lookup);
+  }
+  if (volume.low >= function.low) {
+    KeepLowInside(lookup);
   }
 }
 

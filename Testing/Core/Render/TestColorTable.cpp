@@ -96,6 +96,8 @@ TEST(ColorTable, TakesLogarithmsOfWhatFloatCannotHold)
   for (const double unit : {1e-306, 1e-200, 1.0, 1e300}) {
     function.low = 1e-3 * unit;
     function.high = unit;
+    const inr::ColorTable signs(function, Range(-unit, unit));
+    EXPECT_NEAR(signs.lookup().at(0.55f).w, 2.0f / 3, 1e-5) << unit; // value unit/10
     const inr::ColorTable table(function, Range(0, 2 * unit));
     EXPECT_NEAR(table.lookup().at(0.5e-3f).w, 0.0f, 1e-5) << unit;
     EXPECT_NEAR(table.lookup().at(0.5e-2f).w, 1.0f / 3, 1e-5) << unit;
@@ -126,15 +128,23 @@ TEST(ColorTable, TheEndsOfItsRangeAreInATable)
   inr::TransferFunction function;
   function.table.assign(256, glm::vec4(0.5f));
   function.below = function.above = glm::vec4(0);
-  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+  for (std::uint64_t seed = 0; seed < 6000; ++seed) {
     function.logarithmic = seed % 2 == 0;
     function.low = std::pow(10.0, 6 * inr::RandomUnit(seed, 0) - 3);
-    function.high = function.low * (1 + std::pow(10.0, 9 * inr::RandomUnit(seed, 1) - 4));
-    const inr::ColorTable table(function, Range(function.low, function.high));
-    for (const float end : {0.0f, 1.0f}) {
-      EXPECT_EQ(table.lookup().at(end).w, 0.5f)
-          << function.low << " to " << function.high << ", logarithmic " << function.logarithmic;
-    }
+    // From narrow to more decades than there are between floats.
+    function.high = function.low * (1 + std::pow(10.0, 40 * inr::RandomUnit(seed, 1) - 5));
+    const double beyond = (function.high - function.low) * 1000 * inr::RandomUnit(seed, 2);
+    const auto tell = [&] {
+      return testing::Message() << function.low << " to " << function.high << ", logarithmic "
+                                << function.logarithmic << ", beyond " << beyond;
+    };
+    const auto at = [&](double low, double high, float y) {
+      return inr::ColorTable(function, Range(low, high)).lookup().at(y).w;
+    };
+    EXPECT_EQ(at(function.low, function.high, 0), 0.5f) << tell();
+    EXPECT_EQ(at(function.low, function.high, 1), 0.5f) << tell();
+    EXPECT_EQ(at(function.low - beyond, function.high, 1), 0.5f) << tell();
+    EXPECT_EQ(at(function.low, function.high + beyond, 0), 0.5f) << tell();
   }
 }
 
