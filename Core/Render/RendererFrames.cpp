@@ -30,7 +30,7 @@ MarchWay Renderer::Implementation::wayOf(const Frame& frame)
   settings.dims = glm::dvec3(this->Volume.dims);
   settings.step = frame.sampleDistance;
   settings.adaptive = frame.adaptiveSampling && frame.blending.mode == BlendMode::Composite;
-  constexpr double opaque = 1e30; // samples of which are as long as float holds
+  constexpr double opaque = 1e30; // so that float holds the lengths of the longest samples
   settings.unitsPerT = std::min(way.geometry.lengthPerUnit() / frame.unitDistance, opaque);
   settings.projector = this->projector();
   if (frame.preIntegration) {

@@ -130,7 +130,6 @@ void CompletePass::resume(ActiveTile& tile, CachedMarcher& marcher, const PassOu
   tile.waiting.erase(rest, tile.waiting.end());
 }
 
-/// The first tiles at hand, one to each of `notes`.
 void CompletePass::marchTiles(const Arena& arena, const std::function<bool()>& keepGoing,
                               const PassOutput& output, std::vector<TileNotes>& notes)
 {

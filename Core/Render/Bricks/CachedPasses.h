@@ -70,6 +70,7 @@ private:
   };
 
   static Tiling Size(const CachedScene& scene) { return {scene.frame.width, scene.frame.height}; }
+  /// The first tiles at hand, one to each of `notes`.
   void marchTiles(const Arena& arena, const std::function<bool()>& keepGoing,
                   const PassOutput& output, std::vector<TileNotes>& notes);
   void start(ActiveTile& tile, CachedMarcher& marcher, const PassOutput& output) const;

@@ -12,6 +12,7 @@
 
 namespace inr {
 
+/// One through such cells, whose last sample's steps end at `end` or before; without its levelEnd.
 INR_HOST_DEVICE inline SampleStretch CloseStretch(const CellBlock& cells, double end)
 {
   SampleStretch stretch;

@@ -44,7 +44,8 @@ void CheckSize(const Frame& frame)
   }
 }
 
-/// What is no number equals nothing, not even itself: a picture would never be known again.
+// What is no number equals nothing, not even itself: a picture would never be known again.
+
 void CheckPlanes(const std::vector<glm::dvec4>& planes, const char* message)
 {
   Require(std::all_of(planes.begin(), planes.end(),
@@ -108,21 +109,24 @@ void Check(const PathOptions& options)
 
 void Check(const Light& light)
 {
-  Require(IsNonNegative(light.color), "a light's colour must be finite, not negative");
+  // Of all that it is compared by, whether its kind has a use for it or not.
+  Require(IsFinite(light.position) && IsFinite(light.direction) && IsFinite(light.color) &&
+              IsFinite(light.attenuation) && std::isfinite(light.coneAngle) &&
+              std::isfinite(light.exponent),
+          "a light's position, direction, colour, attenuation, cone angle and exponent must be "
+          "finite");
+  Require(IsNonNegative(light.color), "a light's colour must not be negative");
   if (light.kind != LightKind::Point) {
-    Require(IsFinite(light.direction) && glm::length(light.direction) > 0,
-            "a light must shine into some direction");
+    Require(glm::length(light.direction) > 0, "a light must shine into some direction");
   }
   if (light.kind != LightKind::Directional) {
-    Require(IsFinite(light.position), "a light's position must be finite");
     Require(IsNonNegative(light.attenuation) && glm::length(light.attenuation) > 0,
-            "a light's attenuation must be finite and not negative, and not 0 altogether");
+            "a light's attenuation must not be negative, and not 0 altogether");
   }
   if (light.kind == LightKind::Spot) {
     Require(light.coneAngle > 0 && light.coneAngle <= 90,
             "a spot light's cone angle must be above 0 and at most 90 degrees");
-    Require(std::isfinite(light.exponent) && light.exponent >= 0,
-            "a spot light's exponent must be finite, not negative");
+    Require(light.exponent >= 0, "a spot light's exponent must not be negative");
   }
 }
 

@@ -23,10 +23,7 @@ struct TranslucentLayers
     std::vector<float> depth;      ///< window-space, in [0, 1]; 1 = none here, nor further behind
     std::vector<glm::vec4> colors; ///< premultiplied RGBA in [0, 1]
 
-    bool operator==(const Layer& other) const
-    {
-      return this->depth == other.depth && this->colors == other.colors;
-    }
+    bool operator==(const Layer& other) const;
   };
   std::vector<Layer> layers;
 

@@ -61,12 +61,12 @@ inline inr::Frame SharedView(bool other)
   return frame;
 }
 
-constexpr std::int64_t Enough = 64 << 20;
-constexpr std::int64_t HalfOfAView = 500000; ///< some fifty bricks
+constexpr std::int64_t EnoughToShare = 64 << 20;
+constexpr std::int64_t HalfOfASharedView = 500000; ///< some fifty bricks
 
 inline std::vector<float> DrawnAlone(const CountedWaves& field, inr::Frame frame)
 {
   frame.timeLimit = 0;
-  inr::Renderer renderer = field.renderer(SharedCache(Enough, false));
+  inr::Renderer renderer = field.renderer(SharedCache(EnoughToShare, false));
   return Render(renderer, frame).pixels;
 }

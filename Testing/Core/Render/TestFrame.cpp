@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <set>
 #include <string>
@@ -268,6 +269,15 @@ TEST(Frame, HasPartsThatAreOthersWithAnotherValueOfAnyField)
   ExpectDifferent<inr::TranslucentLayers::Layer>(
       {{0.5f}, {glm::vec4(0.5f)}},
       {{"depth", [](auto& l) { l.depth[0] = 1; }}, {"colors", [](auto& l) { l.colors[0].w = 1; }}});
+}
+
+TEST(Frame, HasLayersThatAreKnownAgainWhateverIsInThem)
+{
+  const auto layer = [] {
+    return inr::TranslucentLayers::Layer{{std::nanf("")}, {glm::vec4(std::nanf(""))}};
+  };
+  EXPECT_TRUE(layer() == layer());
+  EXPECT_FALSE((inr::TranslucentLayers{{layer()}}.fits(1)));
 }
 
 // A renderer is made anew when they change.

@@ -58,7 +58,7 @@ private:
 
 TEST(KeptBricks, OfEarlierStepsAreNotInferredAgain)
 {
-  Player player(SharedCache(Enough), 3);
+  Player player(SharedCache(EnoughToShare), 3);
   std::vector<std::vector<float>> first;
   for (std::size_t k = 0; k < 3; ++k) {
     first.push_back(player.show(k));
@@ -73,7 +73,7 @@ TEST(KeptBricks, OfEarlierStepsAreNotInferredAgain)
 
 TEST(KeptBricks, GoWithWhoKeepsThem)
 {
-  Player player(SharedCache(Enough), 2);
+  Player player(SharedCache(EnoughToShare), 2);
   player.show(0);
   const std::int64_t alone = player.shown().cacheBytes();
   player.show(1);
@@ -91,11 +91,11 @@ TEST(KeptBricks, OfTwoKeepersGoTogether)
   std::vector<std::shared_ptr<const inr::KeptBricks>> kept;
   for (int k = 0; k < 9; ++k) {
     const CountedWaves field(1 + 0.25f * static_cast<float>(k));
-    inr::Renderer renderer = field.renderer(SharedCache(HalfOfAView));
+    inr::Renderer renderer = field.renderer(SharedCache(HalfOfASharedView));
     kept.push_back(renderer.keepBricks());
     kept.push_back(renderer.keepBricks());
     Render(renderer, SharedView(false));
-    EXPECT_LE(renderer.cacheBytes(), HalfOfAView) << k;
+    EXPECT_LE(renderer.cacheBytes(), HalfOfASharedView) << k;
   }
 }
 
@@ -112,7 +112,7 @@ TEST(KeptBricks, AreNotLoadedForARendererThatHasGone)
   });
   inr::RendererOptions options;
   options.threads = 1;
-  options.cache = SharedCache(Enough);
+  options.cache = SharedCache(EnoughToShare);
   std::optional<inr::Renderer> renderer;
   renderer.emplace(field, VolumeOf(SharedDims), inr::MacroCells(), options);
   renderer->setTransferFunction(Colours());
@@ -138,13 +138,13 @@ TEST(KeptBricks, AreNotLoadedForARendererThatHasGone)
 
 TEST(KeptBricks, MakeRoomWhereTheBudgetIsSmall)
 {
-  Player player(SharedCache(HalfOfAView), 9); // whose least needs are more than all of it
+  Player player(SharedCache(HalfOfASharedView), 9); // whose least needs are more than all of it
   for (std::size_t k = 0; k < 18; ++k) {
     const std::vector<float> truth = player.alone(k % 9);
     const std::int64_t asked = player.asked();
     EXPECT_EQ(player.show(k % 9), truth) << k;
     EXPECT_GT(player.asked(), asked) << k;
-    EXPECT_LE(player.shown().cacheBytes(), HalfOfAView) << k;
+    EXPECT_LE(player.shown().cacheBytes(), HalfOfASharedView) << k;
   }
 }
 

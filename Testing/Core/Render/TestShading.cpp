@@ -191,7 +191,9 @@ TEST(Shading, RefusesLightsThatAreNone)
   endless.attenuation = glm::dvec3(0.0);
   inr::Light colorless;
   colorless.color.y = std::nanf("");
-  for (const inr::Light& light : {aimless, endless, colorless}) {
+  inr::Light placeless; // which it does not need, but is known by
+  placeless.position.x = std::nan("");
+  for (const inr::Light& light : {aimless, endless, colorless, placeless}) {
     inr::Frame frame = Lit(glm::dvec3(dims));
     frame.lights = {light};
     EXPECT_THROW(Render(renderer, frame), inr::Error);

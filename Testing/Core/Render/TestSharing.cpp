@@ -22,13 +22,13 @@ namespace {
 TEST(Sharing, ABrickIsInferredOnceForAllViewsOfAVolume)
 {
   const CountedWaves field(1);
-  inr::Renderer first = field.renderer(SharedCache(Enough));
+  inr::Renderer first = field.renderer(SharedCache(EnoughToShare));
   inr::Frame part = SharedView(false);
   part.clippingPlanes = {glm::dvec4(-1, 0, 0, 30)};
   const inr::Image image = Render(first, part);
   const std::int64_t asked = field.asked();
   const std::int64_t bytes = first.cacheBytes();
-  inr::Renderer second = field.renderer(SharedCache(Enough), 2);
+  inr::Renderer second = field.renderer(SharedCache(EnoughToShare), 2);
   EXPECT_EQ(Render(second, part).pixels, image.pixels);
   EXPECT_EQ(field.asked(), asked);
   EXPECT_EQ(second.cacheBytes(), bytes);
@@ -37,7 +37,7 @@ TEST(Sharing, ABrickIsInferredOnceForAllViewsOfAVolume)
     const std::vector<float> other = Render(second, SharedView(true)).pixels;
     EXPECT_GT(field.asked(), asked);
     const std::int64_t all = field.asked();
-    second = field.renderer(SharedCache(Enough));
+    second = field.renderer(SharedCache(EnoughToShare));
     EXPECT_EQ(Render(first, SharedView(true)).pixels, other);
     EXPECT_EQ(field.asked(), all);
   }
@@ -46,11 +46,11 @@ TEST(Sharing, ABrickIsInferredOnceForAllViewsOfAVolume)
 TEST(Sharing, BricksOutliveARendererThatIsReplaced)
 {
   const CountedWaves field(1);
-  inr::Renderer renderer = field.renderer(SharedCache(Enough));
+  inr::Renderer renderer = field.renderer(SharedCache(EnoughToShare));
   Render(renderer, SharedView(false));
   const std::int64_t bricks = renderer.cachedBricks();
   const std::int64_t asked = field.asked();
-  inr::CacheOptions others = SharedCache(Enough);
+  inr::CacheOptions others = SharedCache(EnoughToShare);
   others.ranking = !others.ranking;
   others.preloading = !others.preloading;
   others.maximumRequests = 7;
@@ -70,7 +70,7 @@ TEST(Sharing, OfOneFieldButNotOfTwoSetsOfRanges)
   std::fill(wide.ranges.begin(), wide.ranges.end(), inr::ValueRange{0.0f, 1.0f});
   inr::RendererOptions options;
   options.threads = 1;
-  options.cache = SharedCache(Enough, false);
+  options.cache = SharedCache(EnoughToShare, false);
   options.cache.precision = inr::CachePrecision::Bits8;
   const auto drawn = [&](const inr::MacroCells& cells) {
     inr::Renderer renderer(field, VolumeOf(SharedDims), cells, options);
@@ -92,7 +92,7 @@ TEST(Sharing, OfOneModelButNotOfTwo)
   model->volume.dims = SharedDims;
   const auto copy = std::make_shared<inr::Model>(*model);
   inr::RendererOptions options;
-  options.cache = SharedCache(Enough);
+  options.cache = SharedCache(EnoughToShare);
   const auto bytesWith = [&](const inr::ModelPointer& of, inr::Renderer& before) {
     inr::Renderer renderer(of, options);
     renderer.setTransferFunction(Colours());
@@ -160,16 +160,16 @@ INSTANTIATE_TEST_SUITE_P(TimeLimits, SharingInTurns, testing::Values(0, 1e-9, 0.
                                       : std::string("None");
                          });
 
-TEST_P(SharingInTurns, EachHasItsPictureWhereBothFit) { this->alternate({}, Enough); }
+TEST_P(SharingInTurns, EachHasItsPictureWhereBothFit) { this->alternate({}, EnoughToShare); }
 
-TEST_P(SharingInTurns, EachHasItsPictureWhereNoneFits) { this->alternate({}, HalfOfAView); }
+TEST_P(SharingInTurns, EachHasItsPictureWhereNoneFits) { this->alternate({}, HalfOfASharedView); }
 
 TEST_P(SharingInTurns, EachHasItsPictureWhereOneFitsButNotBoth)
 {
   const CountedWaves field(1);
   std::int64_t bytes = 0;
   {
-    inr::Renderer alone = field.renderer(SharedCache(Enough, false));
+    inr::Renderer alone = field.renderer(SharedCache(EnoughToShare, false));
     Render(alone, SharedView(true));
     bytes = alone.cacheBytes();
   }
@@ -181,7 +181,7 @@ TEST_P(SharingInTurns, EachHasItsShadedPicture)
   inr::Frame lit;
   lit.shading = inr::Material{};
   lit.lights.resize(1);
-  this->alternate(lit, HalfOfAView);
+  this->alternate(lit, HalfOfASharedView);
 }
 
 TEST(Sharing, PathsComeToAnEndWhateverTheOtherTakes)
@@ -193,7 +193,7 @@ TEST(Sharing, PathsComeToAnEndWhateverTheOtherTakes)
   const std::vector<float> truth[2] = {DrawnAlone(fields[0], frame), DrawnAlone(fields[1], frame)};
   for (const double timeLimit : {0.0, 1e-9, 0.002}) {
     frame.timeLimit = timeLimit;
-    for (const std::int64_t bytes : {Enough, 2 * HalfOfAView}) {
+    for (const std::int64_t bytes : {EnoughToShare, 2 * HalfOfASharedView}) {
       inr::Renderer renderers[2] = {fields[0].renderer(SharedCache(bytes)),
                                     fields[1].renderer(SharedCache(bytes))};
       bool complete[2] = {false, false};
@@ -203,7 +203,7 @@ TEST(Sharing, PathsComeToAnEndWhateverTheOtherTakes)
         complete[1] = renderers[1].render(frame, images[1]).complete;
       }
       EXPECT_TRUE(complete[0] && complete[1]);
-      if (bytes == Enough) {
+      if (bytes == EnoughToShare) {
         EXPECT_EQ(images[0].pixels, truth[0]);
         EXPECT_EQ(images[1].pixels, truth[1]);
       }
@@ -216,7 +216,7 @@ TEST(Sharing, PathsComeToAnEndWhateverTheOtherTakes)
 TEST(Sharing, ViewsOfOneRendererGoOnByTurns)
 {
   const CountedWaves field(1);
-  inr::Renderer renderer = field.renderer(SharedCache(HalfOfAView, false));
+  inr::Renderer renderer = field.renderer(SharedCache(HalfOfASharedView, false));
   inr::Frame frames[] = {SharedView(false), SharedView(true)};
   inr::Image images[2];
   bool complete[2] = {false, false};
@@ -240,18 +240,18 @@ TEST(Sharing, ViewsOfOneRendererGoOnByTurns)
 TEST(Sharing, ASmallCacheBesideALargeOneCompletesItsPicture)
 {
   const CountedWaves fields[2] = {CountedWaves(1), CountedWaves(0.7f)};
-  inr::Renderer large = fields[0].renderer(SharedCache(Enough));
-  inr::Renderer small = fields[1].renderer(SharedCache(HalfOfAView));
+  inr::Renderer large = fields[0].renderer(SharedCache(EnoughToShare));
+  inr::Renderer small = fields[1].renderer(SharedCache(HalfOfASharedView));
   Render(large, SharedView(false));
   EXPECT_EQ(Render(small, SharedView(false)).pixels, DrawnAlone(fields[1], SharedView(false)));
-  EXPECT_LE(large.cacheBytes(), Enough);
-  EXPECT_GT(large.cacheBytes(), 2 * HalfOfAView);
+  EXPECT_LE(large.cacheBytes(), EnoughToShare);
+  EXPECT_GT(large.cacheBytes(), 2 * HalfOfASharedView);
 }
 
 TEST(Sharing, AnotherMayRenderOrGoInTheMiddleOfAPicture)
 {
   const CountedWaves fields[2] = {CountedWaves(1), CountedWaves(0.7f)};
-  const std::int64_t bytes = HalfOfAView;
+  const std::int64_t bytes = HalfOfASharedView;
   inr::Renderer renderer = fields[0].renderer(SharedCache(bytes));
   auto other = std::make_unique<inr::Renderer>(fields[1].renderer(SharedCache(bytes)));
   inr::Renderer same = fields[0].renderer(SharedCache(bytes));
@@ -284,8 +284,8 @@ TEST(Sharing, AnotherMayRenderOrGoInTheMiddleOfAPicture)
 TEST(Sharing, AnotherIsRefusedInTheMiddleOnAnyThread)
 {
   const CountedWaves field(1);
-  inr::Renderer renderer = field.renderer(SharedCache(HalfOfAView), 4);
-  inr::Renderer same = field.renderer(SharedCache(HalfOfAView), 4);
+  inr::Renderer renderer = field.renderer(SharedCache(HalfOfASharedView), 4);
+  inr::Renderer same = field.renderer(SharedCache(HalfOfASharedView), 4);
   std::mutex mutex;
   int refused = 0;
   const auto self = std::this_thread::get_id();
@@ -320,7 +320,7 @@ TEST(Sharing, OneThatComesInTheMidstTakesRoom)
 {
   const CountedWaves fields[2] = {CountedWaves(1), CountedWaves(0.7f)};
   for (const inr::RenderMode mode : {inr::RenderMode::RayMarching, inr::RenderMode::PathTracing}) {
-    inr::Renderer renderer = fields[0].renderer(SharedCache(HalfOfAView));
+    inr::Renderer renderer = fields[0].renderer(SharedCache(HalfOfASharedView));
     for (int k = 0; k < 20; ++k) {
       inr::Frame frame = SharedView(false);
       frame.mode = mode;
@@ -329,7 +329,7 @@ TEST(Sharing, OneThatComesInTheMidstTakesRoom)
       std::optional<inr::Renderer> other;
       const auto come = [&] {
         if (!other && k > 4) {
-          other.emplace(fields[1].renderer(SharedCache(HalfOfAView)));
+          other.emplace(fields[1].renderer(SharedCache(HalfOfASharedView)));
         }
         return true;
       };
@@ -350,7 +350,7 @@ TEST(Sharing, RenderersOnSeveralThreadsHaveTheirPictures)
   const auto work = [&](std::size_t seed) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t at = (seed + k) % 2;
-      inr::Renderer renderer = fields[at].renderer(SharedCache(HalfOfAView));
+      inr::Renderer renderer = fields[at].renderer(SharedCache(HalfOfASharedView));
       inr::Frame frame = SharedView(false);
       frame.timeLimit = k == 1 ? 0.0 : 0.01;
       inr::Image image;
@@ -366,7 +366,7 @@ TEST(Sharing, RenderersOnSeveralThreadsHaveTheirPictures)
   first.join();
   second.join();
   constexpr std::int64_t tables = 1000; // of who comes while all of it is in use
-  EXPECT_LE(most, HalfOfAView + tables);
+  EXPECT_LE(most, HalfOfASharedView + tables);
 }
 
 } // namespace
