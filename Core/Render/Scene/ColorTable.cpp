@@ -69,8 +69,8 @@ Wide LogarithmicUnit(const TransferFunction& function, const VolumeInfo& volume)
 }
 
 /// So that no rounding takes the volume's highest value for one above the table, here or where
-/// logarithms are rounded otherwise. Logarithmic tables are by up to 4e-7 of their length shorter
-/// for that.
+/// logarithms are rounded otherwise. Logarithmic tables that it ends with are shorter by 4e-7 of
+/// their length for that, and by what rounding had added.
 void KeepHighInside(ColorLookup& lookup)
 {
   const auto last = static_cast<float>(lookup.count - 1);
@@ -88,7 +88,7 @@ void KeepHighInside(ColorLookup& lookup)
   }
 }
 
-/// Nor its lowest one for one below: the last digit or two of the bias are enough for that.
+/// Nor its lowest one for one below.
 void KeepLowInside(ColorLookup& lookup)
 {
   // Further below, it is beyond what float holds.

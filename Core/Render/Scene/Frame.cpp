@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Scene/Frame.h"
 
-#include <cstring>
+#include "Core/Render/Scene/SameBits.h"
 
 namespace inr {
 
@@ -13,8 +13,7 @@ bool HaveSameDepth(const Frame& a, const Frame& b)
     return a.opaqueDepth == b.opaqueDepth;
   }
   const auto pixels = static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height);
-  // By their bits, as a depth that is no number would equal nothing.
-  return std::memcmp(a.opaqueDepth, b.opaqueDepth, pixels * sizeof(float)) == 0;
+  return HaveSameBits(a.opaqueDepth, b.opaqueDepth, pixels);
 }
 
 bool IsSame(const std::shared_ptr<const TranslucentLayers>& a,

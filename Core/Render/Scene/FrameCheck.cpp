@@ -44,8 +44,7 @@ void CheckSize(const Frame& frame)
   }
 }
 
-// What is no number equals nothing, not even itself: a picture would never be known again.
-
+/// See HaveSameBits for why they, too, have to be numbers.
 void CheckPlanes(const std::vector<glm::dvec4>& planes, const char* message)
 {
   Require(std::all_of(planes.begin(), planes.end(),

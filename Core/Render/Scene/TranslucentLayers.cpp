@@ -1,26 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Scene/TranslucentLayers.h"
 
+#include "Core/Render/Scene/SameBits.h"
+
 #include <cstddef>
-#include <cstring>
 #include <limits>
 
 namespace inr {
 
-namespace {
-
-template <class T> bool HaveSameBits(const std::vector<T>& a, const std::vector<T>& b)
-{
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
-} // namespace
-
-// By their bits, as what is no number would equal nothing.
 bool TranslucentLayers::Layer::operator==(const Layer& other) const
 {
-  return HaveSameBits(this->depth, other.depth) && HaveSameBits(this->colors, other.colors);
+  return this->depth.size() == other.depth.size() && this->colors.size() == other.colors.size() &&
+         HaveSameBits(this->depth.data(), other.depth.data(), this->depth.size()) &&
+         HaveSameBits(this->colors.data(), other.colors.data(), this->colors.size());
 }
 
 bool TranslucentLayers::fits(std::int64_t pixels) const

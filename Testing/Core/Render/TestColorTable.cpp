@@ -96,14 +96,17 @@ TEST(ColorTable, TakesLogarithmsOfWhatFloatCannotHold)
   for (const double unit : {1e-306, 1e-200, 1.0, 1e300}) {
     function.low = 1e-3 * unit;
     function.high = unit;
-    const inr::ColorTable signs(function, Range(-unit, unit));
-    EXPECT_NEAR(signs.lookup().at(0.55f).w, 2.0f / 3, 1e-5) << unit; // value unit/10
     const inr::ColorTable table(function, Range(0, 2 * unit));
     EXPECT_NEAR(table.lookup().at(0.5e-3f).w, 0.0f, 1e-5) << unit;
     EXPECT_NEAR(table.lookup().at(0.5e-2f).w, 1.0f / 3, 1e-5) << unit;
     EXPECT_NEAR(table.lookup().at(0.5f).w, 1.0f, 1e-5) << unit;
     EXPECT_EQ(table.lookup().at(0.0f).w, 0.0f) << unit;
   }
+  // As far below 0 as above, the volume is twice as wide as its largest value.
+  function.low = 1e-25;
+  function.high = 8e4;
+  const inr::ColorTable signs(function, Range(-8e4, 8e4));
+  EXPECT_NEAR(signs.lookup().at(0.75f).w, std::log(4e29) / std::log(8e29), 1e-5);
 }
 
 TEST(ColorTable, LogarithmsHoldOverNarrowRanges)
