@@ -53,4 +53,12 @@ private:
   std::int64_t ByteOffset;
 };
 
+/// Throws InvalidArgument, with `message`, where `condition` does not hold.
+inline void Require(bool condition, const char* message)
+{
+  if (!condition) {
+    throw Error(ErrorCode::InvalidArgument, message);
+  }
+}
+
 } // namespace inr

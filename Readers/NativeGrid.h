@@ -13,6 +13,9 @@ class vtkAlgorithm;
 class vtkDataObject;
 class vtkInformation;
 
+/// The whole extent of what is not there.
+constexpr int NoVoxels[6] = {0, -1, 0, -1, 0, -1};
+
 /// The native grid behind an image that presents an INR, placed as the image is now: a filter may
 /// have changed spacing, origin and extent. Voxel i of N stands at
 /// origin + direction * (i * spacing).

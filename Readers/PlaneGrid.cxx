@@ -113,7 +113,7 @@ struct Interval
 };
 
 /// The x that a convex outline has at heights from `low` to `high`.
-Interval Extent(const std::vector<glm::dvec2>& outline, double low, double high)
+Interval SpanOf(const std::vector<glm::dvec2>& outline, double low, double high)
 {
   Interval extent;
   for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -186,7 +186,7 @@ public:
     this->Upper = this->MakeRow(row + 1);
     this->NextRow = row + 1;
     const auto y = static_cast<double>(row);
-    const Interval span = Extent(this->Outline, y - Tolerance, y + 1 + Tolerance);
+    const Interval span = SpanOf(this->Outline, y - Tolerance, y + 1 + Tolerance);
     const auto first = static_cast<std::int64_t>(std::floor(span.first + Tolerance));
     const auto last = static_cast<std::int64_t>(std::ceil(span.last - Tolerance));
     for (std::int64_t x = first; x < last; ++x) {
@@ -215,7 +215,7 @@ private:
   Row MakeRow(std::int64_t y)
   {
     const auto height = static_cast<double>(y);
-    const Interval span = Extent(this->Outline, height - Tolerance, height + Tolerance);
+    const Interval span = SpanOf(this->Outline, height - Tolerance, height + Tolerance);
     Row row;
     row.y = y;
     row.firstId = static_cast<std::int64_t>(this->Mesh.points.size());

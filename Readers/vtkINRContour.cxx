@@ -35,7 +35,7 @@ vtkStandardNewMacro(vtkINRContour);
 namespace {
 
 /// Bricks between two looks at whether to stop.
-constexpr std::size_t BatchSize = 64;
+constexpr std::size_t BricksPerLook = 64;
 /// Of a level that somebody asks for: the list of them stays well below a GiB.
 constexpr std::int64_t MostBricks = std::int64_t{1} << 23;
 
@@ -226,7 +226,7 @@ bool vtkINRContour::Build(const NativeGrid& grid, const ContourBricks& bricks, B
 {
   const PatchMaker maker(grid.model, bricks, this->Values, this->ComputeNormals);
   double progress = 0;
-  for (auto keys = queue.Next(BatchSize); !keys.empty(); keys = queue.Next(BatchSize)) {
+  for (auto keys = queue.Next(BricksPerLook); !keys.empty(); keys = queue.Next(BricksPerLook)) {
     const auto patches = maker.Make(keys);
     for (std::size_t k = 0; k < keys.size(); ++k) {
       for (std::size_t value = 0; value < this->Values.size(); ++value) {

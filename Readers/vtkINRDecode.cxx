@@ -35,8 +35,6 @@ namespace {
 /// Rows of voxels that one thread decodes at a time.
 constexpr std::int64_t RowsPerTask = 8;
 
-constexpr int EmptyExtent[6] = {0, -1, 0, -1, 0, -1};
-
 /// The wanted voxels of a level's grid; an axis whose last voxel is below its first is whole.
 /// Throws inr::Error when none of them is in the grid.
 void LevelExtent(const glm::i64vec3& dims, const int wanted[6], int extent[6])
@@ -100,7 +98,7 @@ int vtkINRDecode::RequestInformation(vtkInformation*, vtkInformationVector**,
   } catch (const std::exception& error) { // inr::Error, or no memory
     vtkErrorMacro("Cannot decode: " << error.what());
   }
-  outInfo->Set(Pipeline::WHOLE_EXTENT(), EmptyExtent, 6);
+  outInfo->Set(Pipeline::WHOLE_EXTENT(), NoVoxels, 6);
   return 1;
 }
 

@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Render/CachedRenderer.h"
+#include "NativeGrid.h"
 #include "PresentedGrid.h"
 #include "RecentModels.h"
 #include "Scalars.h"
@@ -46,8 +47,6 @@ public:
 };
 
 namespace {
-
-constexpr int EmptyExtent[6] = {0, -1, 0, -1, 0, -1};
 
 void WholeExtent(const glm::ivec3& dims, int extent[6])
 {
@@ -180,7 +179,7 @@ int vtkINRReader::RequestInformation(vtkInformation*, vtkInformationVector**,
   try {
     this->ReadInformation(outInfo);
   } catch (const std::exception& error) { // inr::Error, or no memory
-    outInfo->Set(Pipeline::WHOLE_EXTENT(), EmptyExtent, 6);
+    outInfo->Set(Pipeline::WHOLE_EXTENT(), NoVoxels, 6);
     this->Fail(error.what());
   }
   return 1; // a failed request would add the pipeline's own error to ours

@@ -38,7 +38,7 @@ vtkStandardNewMacro(vtkINRSlice);
 namespace {
 
 /// Positions evaluated between two looks at whether to stop.
-constexpr std::int64_t BatchSize = std::int64_t{1} << 18;
+constexpr std::int64_t PositionsPerLook = std::int64_t{1} << 18;
 /// What a point takes with its cell while the output is made.
 constexpr double BytesPerPoint = 150;
 
@@ -127,8 +127,8 @@ vtkSmartPointer<vtkDataArray> ComputeValues(vtkAlgorithm& filter, const StopSign
 {
   auto values = vtkSmartPointer<Array>::New();
   values->SetNumberOfValues(count);
-  for (std::int64_t first = 0; first < count; first += BatchSize) {
-    const std::int64_t batch = std::min(BatchSize, count - first);
+  for (std::int64_t first = 0; first < count; first += PositionsPerLook) {
+    const std::int64_t batch = std::min(PositionsPerLook, count - first);
     source.Compute(first, batch, values->GetPointer(0));
     filter.UpdateProgress(static_cast<double>(first + batch) / static_cast<double>(count));
     if (signals.Received() || IsAborted(filter)) {

@@ -15,13 +15,6 @@ namespace inr {
 
 namespace {
 
-void Require(bool condition, const char* message)
-{
-  if (!condition) {
-    throw Error(ErrorCode::InvalidArgument, message);
-  }
-}
-
 bool IsFinite(const glm::dmat4& matrix)
 {
   for (int c = 0; c < 4; ++c) {

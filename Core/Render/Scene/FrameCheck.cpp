@@ -20,13 +20,6 @@ constexpr double SmallestStep = 1e-3;
 constexpr double LargestStep = 1e6;
 constexpr std::int64_t MaximumPixels = std::int64_t{1} << 28;
 
-void Require(bool condition, const char* message)
-{
-  if (!condition) {
-    throw Error(ErrorCode::InvalidArgument, message);
-  }
-}
-
 bool IsFinite(const glm::dvec3& v)
 {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
