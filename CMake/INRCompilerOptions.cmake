@@ -27,6 +27,10 @@ target_compile_options(inr_options INTERFACE
   "$<$<AND:$<COMPILE_LANGUAGE:C,CXX>,$<BOOL:${INR_WERROR}>>:-Werror>"
   "$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-ffp-contract=off;--fmad=false>"
   "$<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${INR_WERROR}>>:-Xcompiler=-Werror;--Werror=all-warnings>")
+# Where a compiler sees several files in one, what is in an unnamed namespace looks to it like a header's.
+if (CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(inr_options INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>")
+endif ()
 if (INR_SANITIZE)
   target_compile_options(inr_options INTERFACE
     -fsanitize=${INR_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -50,6 +50,8 @@ function (inr_add_build target isa flags)
     target_compile_options(${objects} PRIVATE ${INR_OPTIMISE} -Wno-psabi ${flags})
     target_compile_definitions(${objects} PRIVATE INR_ISA=${isa})
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+    # What becomes of a kernel is not to depend on what others a compiler sees beside it.
+    set_target_properties(${objects} PROPERTIES UNITY_BUILD OFF)
   endif ()
   list(TRANSFORM ARGN PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
   target_sources(${objects} PRIVATE ${ARGN})
