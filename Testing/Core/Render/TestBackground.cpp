@@ -266,7 +266,9 @@ bool IsAtWork()
 /// application does that just exits.
 void ExitWhileBricksLoad()
 {
-  const auto model = RandomModel(inr::Description{});
+  inr::Description description;
+  description.grid.log2HashmapSize = 14; // filling a larger one takes longer than all the rest
+  const auto model = RandomModel(description);
   model->volume.dims = glm::i64vec3(2000);
   inr::RendererOptions options;
   options.cache.bytes = 512 << 20;
