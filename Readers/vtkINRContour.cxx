@@ -112,10 +112,11 @@ struct vtkINRContour::Selection
 
 void vtkINRContour::SetValue(int k, double value)
 {
+  k = std::max(k, 0);
   if (k >= this->GetNumberOfContours()) {
     this->SetNumberOfContours(k + 1);
   }
-  double& mine = this->Values[static_cast<std::size_t>(std::max(k, 0))];
+  double& mine = this->Values[static_cast<std::size_t>(k)];
   if (mine != value) {
     mine = value;
     this->Modified();

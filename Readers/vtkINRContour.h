@@ -43,7 +43,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Isovalue number `k`, in data units. None by default.
+  /// Isovalue number `k`, in data units. None by default. Setting one beyond the last adds all up
+  /// to it; a negative `k` sets the first, and is 0 when asked for.
   void SetValue(int k, double value);
   double GetValue(int k);
   void SetNumberOfContours(int count);

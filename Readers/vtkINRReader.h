@@ -65,10 +65,10 @@ public:
   ///@}
 
   ///@{
-  /// The output is the finest grid of at most this many points that has exactly the native point
-  /// bounds. Default 2^24; 0 = the native grid. More than 2^28 points are never presented, since
-  /// stock filters would crash on them: then that many are, with a warning. A negative number is an
-  /// error.
+  /// The output is the finest grid of at most this many points, but at least two on every axis that
+  /// has two, that has exactly the native point bounds. Default 2^24; 0 = the native grid. More
+  /// than 2^28 points are never presented, since stock filters would crash on them: then that many
+  /// are, with a warning. A negative number is an error.
   vtkSetMacro(MaximumGridPoints, vtkIdType);
   vtkGetMacro(MaximumGridPoints, vtkIdType);
   ///@}

@@ -314,6 +314,14 @@ TEST_F(Contour, DecodesOnlyWhatTheRangesAskFor)
   EXPECT_TRUE(messages.errors().empty()) << messages.text();
 }
 
+TEST_F(Contour, HasNoIsovalueBeforeTheFirst)
+{
+  EXPECT_EQ(this->Filter->GetValue(-1), 0);
+  this->Filter->SetValue(-1, 3.0);
+  EXPECT_EQ(this->Filter->GetNumberOfContours(), 1);
+  EXPECT_EQ(this->Filter->GetValue(0), 3.0);
+}
+
 TEST_F(Contour, LooksEverywhereWithoutMacroCells)
 {
   this->connect(*MakeModel({50, 37, 41}));
