@@ -37,6 +37,8 @@ def train(volume):
 
     trainer.AddObserver("ProgressEvent", show)
     writer.UpdatePipeline()
+    if trainer.GetErrorCode():
+        sys.exit(f"{path('model.inr')} was not written; the message above says why.")
     return trainer
 
 

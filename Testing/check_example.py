@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs an example as a user does: without arguments, with a file that is no model, and with a model.
+"""Runs an example as a user does: without arguments, with a file that is no model, with a folder that
+is not there, and with a model.
 
     check_example.py MODEL.inr PICTURE COMMAND...
 """
@@ -32,6 +33,9 @@ assert status != 0 and "usage" in text.lower(), (status, text)
 status, text = run(__file__, picture)
 assert status != 0 and os.path.basename(__file__) in text, (status, text)
 assert not os.path.exists(picture), "a picture of what is no model"
+nowhere = os.path.join(picture + ".missing", os.path.basename(picture))
+status, text = run(model, nowhere)
+assert status != 0 and nowhere in text, (status, text)
 
 status, text = run(model, picture)
 print(text)

@@ -4,6 +4,7 @@
     pvpython Examples/pvpython/view.py MODEL.inr PICTURE.png
 
 The plugin is looked for in build/; the environment variable INR_PLUGIN names another one.
+Without a display put Testing/with-display.sh in front of it.
 """
 import glob
 import math
@@ -45,6 +46,7 @@ shown.SetScalarBarVisibility(view, False)
 
 ResetCamera(view)
 view.GetActiveCamera().Azimuth(30)
-SaveScreenshot(picture_file, view)
+if not SaveScreenshot(picture_file, view) or not os.path.isfile(picture_file):
+    sys.exit(f"{picture_file} was not written: is there such a folder, and a format of that name?")
 shown.UpdatePropertyInformation()  # else it tells what was before
 print(f"{picture_file}: drawn on {shown.GetPropertyValue('BackendInUse')}")

@@ -38,7 +38,8 @@ void Colour(vtkVolumeProperty* property, vtkImageData* image)
   property->SetScalarOpacityUnitDistance(image->GetLength() / 100);
 }
 
-void WritePicture(vtkRenderWindow* window, const char* fileName)
+/// Whether it was written.
+bool WritePicture(vtkRenderWindow* window, const char* fileName)
 {
   vtkNew<vtkWindowToImageFilter> capture;
   capture->SetInput(window);
@@ -46,6 +47,7 @@ void WritePicture(vtkRenderWindow* window, const char* fileName)
   writer->SetInputConnection(capture->GetOutputPort());
   writer->SetFileName(fileName);
   writer->Write();
+  return writer->GetErrorCode() == 0;
 }
 
 } // namespace
@@ -78,7 +80,10 @@ int main(int argc, char** argv)
   window->SetSize(600, 600);
   window->AddRenderer(renderer);
   window->Render();
-  WritePicture(window, argv[2]);
+  if (!WritePicture(window, argv[2])) {
+    std::cerr << argv[2] << " was not written: is there such a folder?\n";
+    return 1;
+  }
   std::cout << argv[2] << ": " << mapper->GetFrameTime() << " s on " << mapper->GetBackendInUse()
             << "\n";
   return 0;

@@ -59,4 +59,6 @@ writer = vtkPNGWriter()
 writer.SetInputConnection(capture.GetOutputPort())
 writer.SetFileName(picture_file)
 writer.Write()
+if writer.GetErrorCode():
+    sys.exit(f"{picture_file} was not written: is there such a folder?")
 print(f"{picture_file}: {mapper.GetFrameTime():.2f} s on {mapper.GetBackendInUse()}")
