@@ -13,6 +13,11 @@ from inrvolume.vtkINRReaders import (
 
 try:
     from inrvolume.vtkINRMapper import vtkINRVolumeMapper
-except ImportError:
+except ImportError as error:
     # A Python without VTK's rendering modules still reads, writes and decodes.
-    pass
+    _no_mapper = error
+
+    def __getattr__(name):
+        if name == "vtkINRVolumeMapper":
+            raise ImportError(f"inrvolume cannot draw here: {_no_mapper}") from _no_mapper
+        raise AttributeError(f"module 'inrvolume' has no attribute '{name}'")

@@ -12,6 +12,10 @@ case "$plugin" in
   */lib/paraview-*/plugins/INRVolume/INRVolume.so) ;;
   *) echo "unexpected plugin path: '$plugin'" >&2; exit 1 ;;
 esac
+if [ ! -s "$output/moved/share/doc/INRVolume/LICENSE" ]; then
+  echo "it comes without its licence" >&2
+  exit 1
+fi
 # Nothing in it may point back to the build.
 for library in $(find "$output/moved" -name '*.so'); do
   if readelf -d "$library" | grep -F "$build"; then
