@@ -81,7 +81,7 @@ BsonObject MacroCellSection(const MacroCells& cells)
       .object("dims", DimsSection(cells.dims))
       .object("spacings",
               BsonObject().real("x", spacing.x).real("y", spacing.y).real("z", spacing.z))
-      .flag("groundtruth", cells.provenance == MacroCellProvenance::Decoded);
+      .flag("groundtruth", cells.provenance != MacroCellProvenance::File);
 }
 
 BsonObject ModelSection(const Description& description)
