@@ -295,13 +295,13 @@ public:
   /**
    * What the CPU's network computes with, one of InferencePrecisions. BFLOAT16 rounds weights and
    * what goes into a layer to 8 bits: values are off by up to 0.01 of their range, and with tile
-   * registers (AMX) decoding is up to 3.3 times as fast as with SINGLE. AUTOMATIC, the default,
+   * registers (AMX) decoding is up to 3.4 times as fast as with SINGLE. AUTOMATIC, the default,
    * rounds to 16 bits where there are such registers, the cache has 16 bits or less for a value,
    * and the model has layers of 64 neurons or more and is off by no more in the mean than what 16
-   * bits of the value range round: up to 1.3 times as fast, of trained models. Both count where no
-   * GPU decodes; else, and with an ErrorTolerance, all is as with SINGLE, as AUTOMATIC is
-   * elsewhere. A process that uses such registers needs 8 KiB more in its signal stacks
-   * (sigaltstack). A change empties the cache.
+   * bits of the value range round: up to twice as fast, less of trained models, whose ReLU makes
+   * many products zero. Both count where no GPU decodes; else, and with an ErrorTolerance, all is
+   * as with SINGLE, as AUTOMATIC is elsewhere. A process that uses such registers needs 8 KiB more
+   * in its signal stacks (sigaltstack). A change empties the cache.
    */
   vtkSetClampMacro(InferencePrecision, int, SINGLE, AUTOMATIC);
   vtkGetMacro(InferencePrecision, int);
@@ -320,9 +320,9 @@ public:
 
   ///@{
   /**
-   * Voxels per side of a cached brick. Default 40. A change empties the cache. Bricks are decoded
-   * whole, the first one before there is a picture: one of 256 voxels takes seconds, and 64 MiB
-   * besides the cache.
+   * Voxels per side of a cached brick. Default 40. A change empties the cache. Before there is a
+   * picture, one brick of the coarsest level is decoded as a whole: one of 256 voxels takes
+   * seconds, and 64 MiB besides the cache. Of the others, what cannot be seen is left out.
    */
   vtkSetClampMacro(BrickSize, int, 4, 1024);
   vtkGetMacro(BrickSize, int);
