@@ -7,13 +7,10 @@
 #include "DeferredDrawing.h"
 #include "DrawingOrder.h"
 #include "FramePainter.h"
-#include "MapperInput.h"
+#include "PaintSettings.h"
 
 #include <vtkHardwareSelector.h>
-#include <vtkImageData.h>
-#include <vtkMatrix3x3.h>
 #include <vtkMultiProcessController.h>
-#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkRenderer.h>
 #include <vtkTimeStamp.h>
@@ -21,43 +18,14 @@
 #include <vtkWeakPointer.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <exception>
+#include <memory>
 #include <new>
-#include <optional>
+#include <string>
 
 vtkStandardNewMacro(vtkINRVolumeMapper);
 
 namespace {
-
-std::optional<inr::InferencePrecision> InferenceFor(double tolerance, int wanted)
-{
-  if (!(tolerance < 0) || wanted == vtkINRVolumeMapper::SINGLE) {
-    return inr::InferencePrecision::Float32;
-  }
-  if (wanted == vtkINRVolumeMapper::BFLOAT16) {
-    return inr::InferencePrecision::BFloat16;
-  }
-  return std::nullopt;
-}
-
-/// Where these points of the presented grid are.
-void BoundsOf(const inr::PresentedGrid& grid, const std::array<int, 6>& extent, double bounds[6])
-{
-  vtkImageData* image = grid.image;
-  std::array<int, 6> shifted;
-  for (int k = 0; k < 6; ++k) {
-    shifted[k] = extent[k] + grid.shift[k / 2];
-  }
-  vtkNew<vtkImageData> box; // CopyStructure would look at all ghost cells
-  box->SetOrigin(image->GetOrigin());
-  box->SetSpacing(image->GetSpacing());
-  box->SetDirectionMatrix(image->GetDirectionMatrix());
-  box->SetExtent(shifted.data());
-  box->GetBounds(bounds);
-}
 
 /** What `call` returns or throws: nothing may cross VTK. Empty where nothing goes wrong. */
 template <class Call> std::string ProblemOf(const Call& call)
@@ -103,19 +71,6 @@ struct vtkINRVolumeMapper::Internals
 
 vtkINRVolumeMapper::vtkINRVolumeMapper() : Self(std::make_unique<Internals>(this)) {}
 vtkINRVolumeMapper::~vtkINRVolumeMapper() = default;
-
-void vtkINRVolumeMapper::SetCacheMode(int mode)
-{
-  if (mode < CACHE_AND_NETWORK || mode > NETWORK_ONLY) {
-    vtkErrorMacro("There is no CacheMode " << mode << "; it is 0 (cache and network), 1 "
-                                           << "(cache only) or 2 (network only).");
-    return;
-  }
-  if (mode != this->CacheMode) {
-    this->CacheMode = mode;
-    this->Modified();
-  }
-}
 
 void vtkINRVolumeMapper::SetBackend(int backend)
 {
@@ -303,101 +258,6 @@ vtkMTimeType vtkINRVolumeMapper::GetFrameMTime() const { return this->Self->Draw
 
 bool vtkINRVolumeMapper::GetOpaqueDepthRead() const { return this->Self->Painter.last().depthRead; }
 
-double* vtkINRVolumeMapper::GetBounds()
-{
-  double* bounds = this->Superclass::GetBounds();
-  if (this->GetDrawsTogether()) {
-    this->GetWholeBounds(bounds);
-  }
-  const inr::MapperInput input = inr::FindInput(this);
-  for (int axis = 0; input.array && axis < 3; ++axis) {
-    if (input.grid.presented[axis] > 1) {
-      continue;
-    }
-    const double half = input.grid.image->GetSpacing()[axis] / 2;
-    for (int row = 0; row < 3; ++row) {
-      const double pad =
-          std::abs(input.grid.image->GetDirectionMatrix()->GetElement(row, axis) * half);
-      bounds[2 * row] -= pad;
-      bounds[2 * row + 1] += pad;
-    }
-  }
-  return bounds;
-}
-
-void vtkINRVolumeMapper::GetWholeBounds(double bounds[6])
-{
-  const inr::MapperInput input = inr::FindInput(this);
-  if (!input.array) {
-    return;
-  }
-  const glm::ivec3 last = input.grid.presented - 1;
-  BoundsOf(input.grid, {0, last.x, 0, last.y, 0, last.z}, bounds);
-}
-
-void vtkINRVolumeMapper::GetPieceBounds(double bounds[6])
-{
-  const inr::MapperInput input = inr::FindInput(this);
-  if (input.array) {
-    BoundsOf(input.grid, inr::OwnExtent(input.grid), bounds);
-  }
-}
-
-void vtkINRVolumeMapper::GetPartOfWhole(double part[6])
-{
-  const inr::MapperInput input = inr::FindInput(this);
-  const std::array<int, 6> own = input.array ? inr::OwnExtent(input.grid) : std::array<int, 6>{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const int last = input.array ? input.grid.presented[axis] - 1 : 0;
-    for (int end = 0; end < 2; ++end) {
-      part[2 * axis + end] = last > 0 ? static_cast<double>(own[2 * axis + end]) / last : end;
-    }
-  }
-}
-
-bool vtkINRVolumeMapper::GetHasPiece()
-{
-  const inr::MapperInput input = inr::FindInput(this);
-  return input.array && inr::IsPiece(input.grid);
-}
-
-inr::PaintSettings vtkINRVolumeMapper::Settings() const
-{
-  inr::PaintSettings settings;
-  settings.mode = static_cast<inr::RenderMode>(this->RenderMode);
-  settings.samplesPerPixel = this->SamplesPerPixel;
-  settings.paths.maximumBounces = this->MaximumBounces;
-  settings.paths.scatteringAlbedo = static_cast<float>(this->ScatteringAlbedo);
-  settings.paths.anisotropy = this->Anisotropy;
-  settings.paths.ambientLight =
-      glm::dvec3(this->AmbientLight[0], this->AmbientLight[1], this->AmbientLight[2]);
-  settings.sampleDistance = this->SampleDistance;
-  settings.adaptiveSampling = this->AdaptiveSampling;
-  settings.preIntegration = this->PreIntegration;
-  settings.levelOfDetailScale = this->LevelOfDetailScale;
-  if (!(this->ErrorTolerance < 0)) { // what is no number is refused with the frame
-    settings.errorTolerance = this->ErrorTolerance;
-  }
-  settings.stillTimeLimit = this->StillTimeLimit;
-  settings.shownElsewhere = this->ShownElsewhere;
-  settings.forSelection = this->ForSelection;
-  settings.countSamples = this->SampleChannels;
-  settings.seed = static_cast<std::uint64_t>(this->Seed);
-  inr::RendererOptions& renderer = settings.renderer;
-  renderer.threads = this->NumberOfThreads;
-  renderer.deterministic = this->Deterministic;
-  renderer.inference = InferenceFor(this->ErrorTolerance, this->InferencePrecision);
-  renderer.cached = this->CacheMode != NETWORK_ONLY;
-  renderer.cache.bytes = std::int64_t{this->CacheSize} << 20;
-  renderer.cache.precision = static_cast<inr::CachePrecision>(this->CachePrecision);
-  renderer.cache.brickSize = this->BrickSize;
-  renderer.cache.maximumRequests = this->MaximumRequests;
-  renderer.cache.ranking = this->PriorityRanking;
-  renderer.cache.onlyWhatFits = this->CacheMode == CACHE_ONLY;
-  renderer.cache.preloading = this->Preloading;
-  return settings;
-}
-
 inr::PaintSettings vtkINRVolumeMapper::PresentSettings()
 {
   inr::PaintSettings settings = this->Settings();
@@ -487,55 +347,4 @@ void vtkINRVolumeMapper::ReleaseGraphicsResources(vtkWindow* window)
 {
   this->Self->Painter.release(window);
   this->Superclass::ReleaseGraphicsResources(window);
-}
-
-void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "RenderMode: " << this->RenderMode << "\n"
-     << indent << "Backend: " << this->Backend << "\n"
-     << indent << "LocalRank: " << this->LocalRank << "\n"
-     << indent << "ProcessOrder: " << this->ProcessOrder.size() << " processes\n"
-     << indent << "AlwaysTogether: " << this->AlwaysTogether << "\n"
-     << indent << "SamplesPerPixel: " << this->SamplesPerPixel << "\n"
-     << indent << "ScatteringAlbedo: " << this->ScatteringAlbedo << "\n"
-     << indent << "Anisotropy: " << this->Anisotropy << "\n"
-     << indent << "MaximumBounces: " << this->MaximumBounces << "\n"
-     << indent << "AmbientLight: " << this->AmbientLight[0] << " " << this->AmbientLight[1] << " "
-     << this->AmbientLight[2] << "\n"
-     << indent << "SampleDistance: " << this->SampleDistance << "\n"
-     << indent << "AdaptiveSampling: " << this->AdaptiveSampling << "\n"
-     << indent << "PreIntegration: " << this->PreIntegration << "\n"
-     << indent << "LevelOfDetailScale: " << this->LevelOfDetailScale << "\n"
-     << indent << "ErrorTolerance: " << this->ErrorTolerance << "\n"
-     << indent << "CacheMode: " << this->CacheMode << "\n"
-     << indent << "CacheSize: " << this->CacheSize << "\n"
-     << indent << "InferencePrecision: " << this->InferencePrecision << "\n"
-     << indent << "CachePrecision: " << this->CachePrecision << "\n"
-     << indent << "BrickSize: " << this->BrickSize << "\n"
-     << indent << "MaximumRequests: " << this->MaximumRequests << "\n"
-     << indent << "PriorityRanking: " << this->PriorityRanking << "\n"
-     << indent << "Preloading: " << this->Preloading << "\n"
-     << indent << "StillTimeLimit: " << this->StillTimeLimit << "\n"
-     << indent << "ShownElsewhere: " << this->ShownElsewhere << "\n"
-     << indent << "ForSelection: " << this->ForSelection << "\n"
-     << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
-     << indent << "Seed: " << this->Seed << "\n"
-     << indent << "Deterministic: " << this->Deterministic << "\n"
-     << indent << "SampleChannels: " << this->SampleChannels << "\n"
-     << indent << "FrameTime: " << this->GetFrameTime() << "\n"
-     << indent << "NumberOfSamples: " << this->GetNumberOfSamples() << "\n"
-     << indent << "NumberOfClampedSamples: " << this->GetNumberOfClampedSamples() << "\n"
-     << indent << "NumberOfNetworkSamples: " << this->GetNumberOfNetworkSamples() << "\n"
-     << indent << "NumberOfDecodedBricks: " << this->GetNumberOfDecodedBricks() << "\n"
-     << indent << "NumberOfVisitedCells: " << this->GetNumberOfVisitedCells() << "\n"
-     << indent << "Converged: " << this->GetConverged() << "\n"
-     << indent << "CacheHitRate: " << this->GetCacheHitRate() << "\n"
-     << indent << "CacheUsed: " << this->GetCacheUsed() << "\n"
-     << indent << "FinestLevel: " << this->GetFinestLevel() << "\n"
-     << indent << "CoarsestLevel: " << this->GetCoarsestLevel() << "\n"
-     << indent << "NumberOfPaths: " << this->GetNumberOfPaths() << "\n"
-     << indent << "ImageReduction: " << this->GetImageReduction() << "\n"
-     << indent << "BackendInUse: " << this->GetBackendInUse() << "\n"
-     << indent << "OpaqueDepthRead: " << this->GetOpaqueDepthRead() << "\n";
 }
