@@ -1,40 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "INRFirstLook.h"
 
-#include "vtkCallbackCommand.h"
+#include "INRPanel.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkNew.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
-#include "vtkPVXMLElement.h"
-#include "vtkPVXMLParser.h"
 #include "vtkSMBoundsDomain.h"
 #include "vtkSMDoubleVectorProperty.h"
 #include "vtkSMPVRepresentationProxy.h"
-#include "vtkSMPropertyGroup.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
 
-#include <cstring>
-
 namespace {
-
-constexpr const char* TypeText = "INR Volume";
-
-/// Shows a group of the panel for representations that are no volumes.
-constexpr const char* NeitherVolume =
-    R"(<PropertyWidgetDecorator type="CompositeDecorator">
-         <Expression type="and">
-           <PropertyWidgetDecorator type="GenericDecorator" mode="visibility"
-                                    property="Representation" value="Volume" inverse="1"/>
-           <PropertyWidgetDecorator type="GenericDecorator" mode="visibility"
-                                    property="Representation" value="INR Volume" inverse="1"/>
-         </Expression>
-       </PropertyWidgetDecorator>)";
 
 vtkPVDataInformation* InputInformation(vtkSMProxy* representation)
 {
@@ -53,11 +33,8 @@ const char* FirstPointArray(vtkPVDataInformation* data)
   return scalars ? scalars->GetName() : nullptr;
 }
 
-void ColourByData(vtkSMPVRepresentationProxy* representation, const char* array)
+void ColourBy(vtkSMPVRepresentationProxy* representation, const char* array)
 {
-  if (!array || representation->GetUsingScalarColoring()) {
-    return;
-  }
   representation->SetScalarColoring(array, vtkDataObject::POINT);
   // A map that already has a range (another data set shares it, a script set it) only grows.
   vtkSMPropertyHelper map(representation, "LookupTable");
@@ -65,6 +42,16 @@ void ColourByData(vtkSMPVRepresentationProxy* representation, const char* array)
       map.GetAsProxy() &&
       vtkSMPropertyHelper(map.GetAsProxy(), "ScalarRangeInitialized", true).GetAsInt() != 0;
   representation->RescaleTransferFunctionToDataRange(hasRange, false);
+}
+
+/// Whether it is coloured by a point array that these data do not have.
+bool MissesItsArray(vtkSMPVRepresentationProxy* representation, vtkPVDataInformation* data)
+{
+  vtkSMPropertyHelper colouring(representation, "ColorArrayName");
+  return representation->GetUsingScalarColoring() &&
+         colouring.GetInputArrayAssociation() == vtkDataObject::POINT &&
+         !data->GetPointDataInformation()->GetArrayInformation(
+             colouring.GetInputArrayNameToProcess());
 }
 
 vtkSMDoubleVectorProperty* GetDoubles(vtkSMProxy* proxy, const char* name)
@@ -103,122 +90,36 @@ void SetUnitDistance(vtkSMProxy* representation)
   representation->UpdateVTKObjects();
 }
 
-/// What the panel shows under a name of its own, because ParaView hides the stock property's widget
-/// for this type of representation. ParaView passes the stock one's value on to the panel's.
-struct PanelProperty
-{
-  const char* panel;
-  const char* stock;
-};
-constexpr PanelProperty PanelProperties[] = {{"INRUnitDistance", "ScalarOpacityUnitDistance"},
-                                             {"INRShade", "Shade"},
-                                             {"INRAmbient", "Ambient"},
-                                             {"INRDiffuse", "Diffuse"},
-                                             {"INRSpecular", "Specular"},
-                                             {"INRSpecularPower", "SpecularPower"},
-                                             {"INRBlendMode", "BlendMode"},
-                                             {"INRIsosurfaceValues", "IsosurfaceValues"},
-                                             {"INRUseCropping", "UseCropping"},
-                                             {"INRCroppingOrigin", "CroppingOrigin"},
-                                             {"INRCroppingScale", "CroppingScale"}};
+} // namespace
 
-/// Passes what was changed in the panel on to the stock property: scripts and state files then find
-/// the same value under both names.
-void PassOn(vtkSMProxy* representation, const char* changed)
-{
-  for (const PanelProperty& property : PanelProperties) {
-    if (std::strcmp(changed, property.panel) == 0) {
-      representation->GetProperty(property.stock)
-          ->Copy(representation->GetProperty(property.panel));
-      representation->UpdateVTKObjects();
-    }
-  }
-}
-
-bool IsInr(vtkSMProxy* representation)
-{
-  return std::strcmp(vtkSMPropertyHelper(representation, "Representation").GetAsString(),
-                     TypeText) == 0;
-}
-
-void GiveFirstLook(vtkSMProxy* proxy)
+void INRGiveFirstLook(vtkSMProxy* proxy)
 {
   auto* representation = vtkSMPVRepresentationProxy::SafeDownCast(proxy);
-  if (!representation || !IsInr(proxy) ||
+  if (!representation || !INRIsShown(proxy) ||
       representation->GetSessionProxyManager()->GetInLoadXMLState()) {
     return;
   }
   if (vtkPVDataInformation* data = InputInformation(representation)) {
-    ColourByData(representation, FirstPointArray(data));
+    const char* array = FirstPointArray(data);
+    if (array && !representation->GetUsingScalarColoring()) {
+      ColourBy(representation, array);
+    }
     SetUnitDistance(representation);
   }
 }
 
-void OnPropertyModified(vtkObject* caller, unsigned long, void*, void* data)
+void INRFollowData(vtkSMProxy* proxy)
 {
-  auto* representation = static_cast<vtkSMProxy*>(caller);
-  const char* name = static_cast<const char*>(data);
-  if (name && std::strcmp(name, "Representation") == 0) {
-    GiveFirstLook(representation);
-  } else if (name && IsInr(representation)) {
-    PassOn(representation, name);
-  }
-}
-
-/// Looks again when the first look had no data to see.
-void OnUpdated(vtkObject* caller, unsigned long, void*, void*)
-{
-  auto* representation = static_cast<vtkSMProxy*>(caller);
-  if (IsInr(representation) && !IsKnown(GetDoubles(representation, "INRUnitDistance"))) {
-    GiveFirstLook(representation);
-  }
-}
-
-/// Hides what ParaView hides for "Volume", too: opacity, sizes and shine of surfaces, which do
-/// nothing to a volume.
-void HideSurfaceSettings(vtkSMProxy* representation)
-{
-  for (std::size_t k = 0; k < representation->GetNumberOfPropertyGroups(); ++k) {
-    vtkPVXMLElement* hints = representation->GetPropertyGroup(k)->GetHints();
-    vtkPVXMLElement* shows =
-        hints && hints->GetNumberOfNestedElements() == 1 ? hints->GetNestedElement(0) : nullptr;
-    const auto is = [&](const char* name, const char* value) {
-      const char* found = shows->GetAttribute(name);
-      return found && std::strcmp(found, value) == 0;
-    };
-    if (shows && is("property", "Representation") && is("value", "Volume") && is("inverse", "1")) {
-      hints->RemoveAllNestedElements();
-      hints->AddNestedElement(vtkPVXMLParser::ParseXML(NeitherVolume));
-    }
-  }
-}
-
-void OnRegister(vtkObject*, unsigned long, void*, void* callData)
-{
-  const auto* info = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(callData);
-  if (info->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !info->Proxy ||
-      std::strcmp(info->GroupName, "representations") != 0 ||
-      !info->Proxy->GetProperty("Representation") || !info->Proxy->GetProperty("INRUnitDistance")) {
+  auto* representation = vtkSMPVRepresentationProxy::SafeDownCast(proxy);
+  if (!representation || !INRIsShown(proxy)) {
     return;
   }
-  HideSurfaceSettings(info->Proxy);
-  vtkNew<vtkCallbackCommand> watch;
-  watch->SetCallback(OnPropertyModified);
-  info->Proxy->AddObserver(vtkCommand::PropertyModifiedEvent, watch);
-  vtkNew<vtkCallbackCommand> watchData;
-  watchData->SetCallback(OnUpdated);
-  info->Proxy->AddObserver(vtkCommand::UpdateDataEvent, watchData);
-  GiveFirstLook(info->Proxy);
-}
-
-} // namespace
-
-void INRWatchRepresentations()
-{
-  if (!vtkSMProxyManager::IsInitialized()) {
-    return;
+  if (!IsKnown(GetDoubles(representation, "INRUnitDistance"))) {
+    INRGiveFirstLook(representation);
   }
-  vtkNew<vtkCallbackCommand> watch;
-  watch->SetCallback(OnRegister);
-  vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, watch);
+  vtkPVDataInformation* data = InputInformation(representation);
+  const char* array = data ? FirstPointArray(data) : nullptr;
+  if (array && MissesItsArray(representation, data)) {
+    ColourBy(representation, array);
+  }
 }

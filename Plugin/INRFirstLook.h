@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Called by ParaView when the plugin is loaded. From then on, the first time that a representation
-/// is switched to "INR Volume" it is coloured by its data and gets a unit distance for its opacity,
-/// as ParaView itself does for "Volume" and for no representation type that it does not know. Does
-/// nothing in a server.
-void INRWatchRepresentations();
+class vtkSMProxy;
+
+/// Colours a representation that is an "INR Volume" by its data and gives it a unit distance for
+/// its opacity, as ParaView itself does for "Volume" and for no representation type that it does
+/// not know. Leaves what has been set already, and what a state file is being loaded into.
+void INRGiveFirstLook(vtkSMProxy* representation);
+
+/// To be called when there are other data: looks again where the first look saw none, and colours
+/// by the array that is there where the one coloured by is gone, since a reader's ArrayName has
+/// changed or another file has come.
+void INRFollowData(vtkSMProxy* representation);

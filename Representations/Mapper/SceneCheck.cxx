@@ -79,7 +79,7 @@ std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
            "or ray marching.";
   }
   if (property->GetTransferFunctionMode() == vtkVolumeProperty::TF_2D) {
-    return "An INR cannot be drawn with a 2D transfer function; turn \"Use 2D Transfer Function\" "
+    return "An INR cannot be drawn with a 2D transfer function; turn \"Edit 2D Transfer Function\" "
            "off in the colour map editor (of a vtkVolumeProperty: SetTransferFunctionModeTo1D).";
   }
   if (UsesGradientOpacity(property)) {

@@ -115,6 +115,37 @@ check(stock.ScalarOpacityUnitDistance == before, "the plugin changes stock volum
 check(before < 3, "the plugin changes ParaView's default", before)
 simple.Delete(wavelet)
 
+# Blend modes that the other kind of volume does not offer are not left to it; a script's stays.
+reader = simple.INRReader(FileName=MODEL)
+display = simple.Show(reader, view)
+MAXIMUM, ISOSURFACE, SLICE = 1, 5, 6
+for first, then, mode, left in [("INR Volume", "Volume", MAXIMUM, 0),
+                                ("INR Volume", "Volume", ISOSURFACE, ISOSURFACE),
+                                ("Volume", "INR Volume", SLICE, 0),
+                                ("Volume", "INR Volume", ISOSURFACE, ISOSURFACE),
+                                ("INR Volume", "Outline", MAXIMUM, MAXIMUM),
+                                ("Outline", "INR Volume", MAXIMUM, MAXIMUM)]:
+    display.SetRepresentationType(first)
+    display.BlendMode = mode
+    display.SetRepresentationType(then)
+    modes = [servermanager.vtkSMPropertyHelper(display.SMProxy, name).GetAsInt()
+             for name in ("BlendMode", "INRBlendMode")]
+    check(modes == [left, left], "from", first, "to", then, mode, "becomes", modes)
+simple.Delete(reader)
+
+# It is coloured by the array that there is, whatever its name has become.
+reader = simple.INRReader(FileName=MODEL)
+display = simple.Show(reader, view)
+simple.Render(view)
+with Messages() as messages:
+    for name in "other", "":
+        reader.ArrayName = name
+        shown = picture(view, "panel-array-" + (name or "own"))
+        check(tuple(display.ColorArrayName) == ("POINTS", name or ARRAY), display.ColorArrayName)
+        check((shown < 0.98).any(), "nothing is seen of", name)
+check(messages.errors() == 0, "another name:", messages.text)
+simple.Delete(reader)
+
 
 def kilobytes(reader):
     """Of decoded values that filters have asked the reader's array for."""

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "INRWatch.h"
+
+#include "INRFirstLook.h"
+#include "INRPanel.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
+#include "vtkNew.h"
+#include "vtkSMProxy.h"
+#include "vtkSMProxyManager.h"
+#include "vtkSMSessionProxyManager.h"
+
+#include <cstring>
+
+namespace {
+
+/// What happens to one representation.
+class Watch : public vtkCommand
+{
+public:
+  static Watch* New() { return new Watch; }
+  vtkTypeMacro(Watch, vtkCommand);
+
+  void begin(vtkSMProxy* representation)
+  {
+    this->WasShown = INRIsShown(representation);
+    representation->AddObserver(vtkCommand::PropertyModifiedEvent, this);
+    representation->AddObserver(vtkCommand::UpdateDataEvent, this);
+    INRGiveFirstLook(representation);
+  }
+
+  void Execute(vtkObject* caller, unsigned long event, void* data) override
+  {
+    auto* representation = static_cast<vtkSMProxy*>(caller);
+    const auto* property = static_cast<const char*>(data);
+    if (event == vtkCommand::UpdateDataEvent) {
+      INRFollowData(representation);
+    } else if (property && std::strcmp(property, "Representation") == 0) {
+      this->changeType(representation);
+    } else if (property && INRIsShown(representation)) {
+      INRPassOn(representation, property);
+    }
+  }
+
+private:
+  void changeType(vtkSMProxy* representation)
+  {
+    const bool isShown = INRIsShown(representation);
+    if (isShown || INRIsStockVolume(representation)) {
+      if (isShown != this->WasShown &&
+          !representation->GetSessionProxyManager()->GetInLoadXMLState()) {
+        INROfferBlendMode(representation);
+      }
+      this->WasShown = isShown;
+    }
+    INRGiveFirstLook(representation);
+  }
+
+  bool WasShown = false; ///< when it was a volume last
+};
+
+void OnRegister(vtkObject*, unsigned long, void*, void* callData)
+{
+  const auto* info = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(callData);
+  if (info->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !info->Proxy ||
+      std::strcmp(info->GroupName, "representations") != 0 ||
+      !info->Proxy->GetProperty("Representation") || !info->Proxy->GetProperty("INRUnitDistance")) {
+    return;
+  }
+  INRHideSurfaceSettings(info->Proxy);
+  vtkNew<Watch> watch;
+  watch->begin(info->Proxy);
+}
+
+} // namespace
+
+void INRWatchRepresentations()
+{
+  if (!vtkSMProxyManager::IsInitialized()) {
+    return;
+  }
+  vtkNew<vtkCallbackCommand> watch;
+  watch->SetCallback(OnRegister);
+  vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, watch);
+}

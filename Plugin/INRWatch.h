@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Called by ParaView when the plugin is loaded. From then on, representations that can be an "INR
+/// Volume" get a first look (INRFirstLook.h) and a panel of their own (INRPanel.h). Does nothing in
+/// a server.
+void INRWatchRepresentations();
