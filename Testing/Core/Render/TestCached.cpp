@@ -34,7 +34,7 @@ TEST(Cached, StorageFormatsCostWhatTheyShould)
     return Render(renderer, frame);
   };
   const inr::Image truth = picture(inr::CachePrecision::Float32);
-  EXPECT_GT(inr::ImagePsnr(picture(inr::CachePrecision::Bits16), truth), 90);
+  EXPECT_GT(inr::ImagePsnr(picture(inr::CachePrecision::Bits16), truth), 105);
   EXPECT_GT(inr::ImagePsnr(picture(inr::CachePrecision::Bits8), truth), 50);
   EXPECT_LT(inr::ImagePsnr(picture(inr::CachePrecision::Bits8), truth), 90);
 }

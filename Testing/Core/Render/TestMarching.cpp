@@ -59,7 +59,7 @@ TEST(Marching, SkippingEmptySpaceDoesNotChangeThePicture)
 {
   const glm::i64vec3 dims(33, 33, 33);
   inr::Renderer everywhere = FieldRenderer(dims, Ball);
-  inr::Renderer skipping = FieldRenderer(dims, Ball, BallCells(dims, 16));
+  inr::Renderer skipping = FieldRenderer(dims, Ball, BallCells(dims, 8));
   for (inr::Renderer* renderer : {&everywhere, &skipping}) {
     renderer->setTransferFunction(OpacityRamp(0.5f));
   }
@@ -67,7 +67,7 @@ TEST(Marching, SkippingEmptySpaceDoesNotChangeThePicture)
   inr::Image skipped;
   const auto allSamples = everywhere.render(Diagonal(48), all).samples;
   const auto fewSamples = skipping.render(Diagonal(48), skipped).samples;
-  EXPECT_LE(fewSamples, allSamples);
+  EXPECT_LT(fewSamples, 0.9 * static_cast<double>(allSamples));
   for (std::size_t k = 0; k < all.pixels.size(); ++k) {
     ASSERT_NEAR(all.pixels[k], skipped.pixels[k], 1e-5f);
   }
