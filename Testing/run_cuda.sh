@@ -183,15 +183,7 @@ fi
 
 # Few points, small bricks and pictures of one launch: under the sanitizers everything takes a hundred
 # times longer.
-small='Kernels/Bricks.LayersAreThoseOfTheWhole/Gpu*:Kernels/Conformance.ValueDoesNotDependOnTheBatch/Gpu*'
-small+=':Kernels/Conformance.EveryWidthAgreesWithCore/Gpu*'
-small+=':Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuLit:Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuPlain'
-small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuLitMixedLevels:Kernels/Drawing.TracesThePathsOfTheCpu/Gpu'
-small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuLayered:Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuSurfacesLit'
-small+=':Kernels/DrawingOf.GivesThePicturesOfTheCpu/GpuIntegratedLayered'
-small+=':Kernels/NetworkDrawingOf.GivesThePicturesOfTheCpu/GpuLitLayered:Kernels/WaitingFor.NeedsNoMoreThanTheSmallestCache/GpuSurfaces'
-small+=':Kernels/DrawingSettings.RoundsWhatItKeepsAsTheCpuDoes/Gpu*:Kernels/NetworkPaths.AreThoseOfTheCpu/GpuPlain'
-small+=':Kernels/Training.AgreesForEveryShape/Gpu:Kernels/Training.UpdatesAreCoresOwn/Gpu'
+small=$(paste -sd : Testing/CUDA/sanitized-cases.txt)
 sanitizer=$(command -v compute-sanitizer || ls /usr/local/cuda/bin/compute-sanitizer 2> /dev/null)
 for tool in $(wanted sanitizers && echo memcheck racecheck synccheck); do
   echo "== compute-sanitizer $tool"

@@ -5,8 +5,9 @@
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-mkdir -p "$folder/bin" "$folder/Testing"
+mkdir -p "$folder/bin" "$folder/Testing/CUDA"
 cp "$(dirname "$0")/../run_cuda.sh" "$folder/Testing"
+cp "$(dirname "$0")/sanitized-cases.txt" "$folder/Testing/CUDA"
 cd "$folder"
 unset CUDA_PATH CUDA_VISIBLE_DEVICES INR_TIME_LIMIT GPU GPU_0 GPU_1 FAILS HANGS BROKEN FOUND_BY
 export PATH=$folder/bin:$PATH
