@@ -32,6 +32,22 @@ TEST(Frames, SayWhatTheyTook)
   EXPECT_EQ(std::string(one.mapper->GetBackendInUse()).substr(0, 4), "CPU ");
 }
 
+TEST(Frames, CountWhatFalseRangesTakeAway)
+{
+  inr::Model model = *test::MakeModel();
+  model.macroCells = inr::MakeMacroCells(model.volume.dims, 16);
+  std::fill(model.macroCells.ranges.begin(), model.macroCells.ranges.end(),
+            inr::ValueRange{0.4f, 0.5f});
+  OneVolume falsely(test::InrMapper(test::Write(model, "false-ranges.inr")));
+  falsely.scene.capture();
+  EXPECT_GT(falsely.mapper->GetNumberOfClampedSamples(),
+            0.2 * falsely.mapper->GetNumberOfSamples());
+
+  OneVolume truly;
+  truly.scene.capture();
+  EXPECT_EQ(truly.mapper->GetNumberOfClampedSamples(), 0);
+}
+
 /// Whether the network computes with sums of two bfloat16 numbers, for a model that is wide enough.
 bool Splits(const std::function<void(vtkINRVolumeMapper&)>& change)
 {
