@@ -15,7 +15,7 @@ try:
     from inrvolume.vtkINRMapper import vtkINRVolumeMapper
 except ImportError as error:
     # A Python without VTK's rendering modules still reads, writes and decodes.
-    _no_mapper = error
+    _no_mapper = error  # why, for whoever asks for it
 
     def __getattr__(name):
         if name == "vtkINRVolumeMapper":

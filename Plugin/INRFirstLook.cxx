@@ -4,6 +4,7 @@
 #include "INRPanel.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkNew.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
@@ -13,6 +14,8 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTransferFunctionManager.h"
+#include "vtkSMViewProxy.h"
 
 namespace {
 
@@ -35,6 +38,10 @@ const char* FirstPointArray(vtkPVDataInformation* data)
 
 void ColourBy(vtkSMPVRepresentationProxy* representation, const char* array)
 {
+  // An INR knows no opacity array; ParaView dies of one that the data do not have.
+  vtkSMPropertyHelper separate(representation, "UseSeparateOpacityArray");
+  const int wasSeparate = separate.GetAsInt();
+  separate.Set(0);
   representation->SetScalarColoring(array, vtkDataObject::POINT);
   // A map that already has a range (another data set shares it, a script set it) only grows.
   vtkSMPropertyHelper map(representation, "LookupTable");
@@ -42,6 +49,22 @@ void ColourBy(vtkSMPVRepresentationProxy* representation, const char* array)
       map.GetAsProxy() &&
       vtkSMPropertyHelper(map.GetAsProxy(), "ScalarRangeInitialized", true).GetAsInt() != 0;
   representation->RescaleTransferFunctionToDataRange(hasRange, false);
+  separate.Set(wasSeparate);
+  representation->UpdateVTKObjects();
+}
+
+/// Colours by another array than before; a colour legend that is shown is that array's then.
+void RecolourBy(vtkSMPVRepresentationProxy* representation, const char* array)
+{
+  vtkSMProxy* view = vtkSMViewProxy::FindView(representation);
+  vtkSMProxy* before = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
+  const bool hasLegend = view && representation->IsScalarBarVisible(view);
+  ColourBy(representation, array);
+  if (hasLegend) {
+    vtkNew<vtkSMTransferFunctionManager> maps;
+    maps->HideScalarBarIfNotNeeded(before, view);
+    representation->SetScalarBarVisibility(view, true);
+  }
 }
 
 /// Whether it is coloured by a point array that these data do not have.
@@ -120,6 +143,6 @@ void INRFollowData(vtkSMProxy* proxy)
   vtkPVDataInformation* data = InputInformation(representation);
   const char* array = data ? FirstPointArray(data) : nullptr;
   if (array && MissesItsArray(representation, data)) {
-    ColourBy(representation, array);
+    RecolourBy(representation, array);
   }
 }

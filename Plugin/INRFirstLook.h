@@ -10,5 +10,5 @@ void INRGiveFirstLook(vtkSMProxy* representation);
 
 /// To be called when there are other data: looks again where the first look saw none, and colours
 /// by the array that is there where the one coloured by is gone, since a reader's ArrayName has
-/// changed or another file has come.
+/// changed or another file has come. (Of another time step ParaView does not tell.)
 void INRFollowData(vtkSMProxy* representation);

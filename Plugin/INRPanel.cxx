@@ -85,11 +85,8 @@ void INRPassOn(vtkSMProxy* representation, const char* changed)
 
 void INROfferBlendMode(vtkSMProxy* representation)
 {
-  const int mode = vtkSMPropertyHelper(representation, "BlendMode").GetAsInt();
-  const bool isProjection =
-      mode > vtkVolumeMapper::COMPOSITE_BLEND && mode < vtkVolumeMapper::ISOSURFACE_BLEND;
-  const bool isSlice = mode > vtkVolumeMapper::ISOSURFACE_BLEND;
-  if (INRIsShown(representation) ? isSlice : isProjection) {
+  const char* shown = INRIsShown(representation) ? "INRBlendMode" : "BlendMode";
+  if (!representation->GetProperty(shown)->IsInDomains()) {
     for (const char* name : {"BlendMode", "INRBlendMode"}) {
       vtkSMPropertyHelper(representation, name).Set(vtkVolumeMapper::COMPOSITE_BLEND);
     }

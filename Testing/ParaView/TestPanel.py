@@ -115,7 +115,7 @@ check(stock.ScalarOpacityUnitDistance == before, "the plugin changes stock volum
 check(before < 3, "the plugin changes ParaView's default", before)
 simple.Delete(wavelet)
 
-# Blend modes that the other kind of volume does not offer are not left to it; a script's stays.
+# Blend modes that the other kind of volume does not offer are not left to it.
 reader = simple.INRReader(FileName=MODEL)
 display = simple.Show(reader, view)
 MAXIMUM, ISOSURFACE, SLICE = 1, 5, 6
@@ -134,16 +134,23 @@ for first, then, mode, left in [("INR Volume", "Volume", MAXIMUM, 0),
 simple.Delete(reader)
 
 # It is coloured by the array that there is, whatever its name has become.
+simple.ResetSession()
+view = show_view()
 reader = simple.INRReader(FileName=MODEL)
 display = simple.Show(reader, view)
 simple.Render(view)
 look_at(view)
+display.SetScalarBarVisibility(view, True)
 with Messages() as messages:
     for name in "other", "":
+        display.UseSeparateOpacityArray = 1  # of which ParaView dies where it is not there
         reader.ArrayName = name
         shown = picture(view, "panel-array-" + (name or "own"))
         check(tuple(display.ColorArrayName) == ("POINTS", name or ARRAY), display.ColorArrayName)
         check((shown < 0.98).any(axis=2).mean() > 0.1, "nothing is seen of", name)
+        bars = [bar.Title for bar in view.Representations
+                if bar.GetXMLName() == "ScalarBarWidgetRepresentation" and bar.Visibility]
+        check(bars == [name or ARRAY], "legends of", bars)
 check(messages.errors() == 0, "another name:", messages.text)
 simple.Delete(reader)
 

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace {
 
@@ -48,6 +49,19 @@ TEST_F(ModelFile, KeepsEveryField)
   EXPECT_EQ(read->macroCells.dims, written->macroCells.dims);
   EXPECT_EQ(read->macroCells.provenance, written->macroCells.provenance);
   EXPECT_EQ(read->macroCells.apron, written->macroCells.apron);
+}
+
+// For upstream they differ from ranges of samples that training happened to draw.
+TEST_F(ModelFile, MarksRangesOfAllVoxels)
+{
+  inr::Model model = *FullModel();
+  for (const auto& [provenance, marked] : {std::pair(inr::MacroCellProvenance::Decoded, true),
+                                           std::pair(inr::MacroCellProvenance::Training, true),
+                                           std::pair(inr::MacroCellProvenance::File, false)}) {
+    model.macroCells.provenance = provenance;
+    const auto document = nlohmann::json::from_bson(inr::ModelToBytes(model));
+    EXPECT_EQ(document["macrocell"]["groundtruth"], marked);
+  }
 }
 
 TEST_F(ModelFile, IsWrittenAsUpstreamsLibraryWouldWriteIt)

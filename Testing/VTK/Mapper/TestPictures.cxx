@@ -57,7 +57,7 @@ TEST_P(Pictures, EqualTheirBaseline)
 TEST_P(Pictures, AgreeWithVtkOnTheVoxels)
 {
   if (!this->GetParam().comparable) {
-    GTEST_SKIP() << "VTK draws nothing that this could be compared with";
+    GTEST_SKIP() << "VTK draws it otherwise, see SceneCase";
   }
   const inr::Image drawn = this->picture();
   const inr::Image voxels = this->voxelPicture();
