@@ -76,6 +76,7 @@ std::vector<int> FinestLevels(bool preloading)
 {
   OneByOne frames(preloading, true);
   std::vector<int> finest;
+  finest.reserve(40);
   for (int k = 0; k < 40; ++k) {
     finest.push_back(frames.render(TurnedView(0)).levels.finest);
   }
