@@ -152,6 +152,12 @@ with Messages() as messages:
                 if bar.GetXMLName() == "ScalarBarWidgetRepresentation" and bar.Visibility]
         check(bars == [name or ARRAY], "legends of", bars)
 check(messages.errors() == 0, "another name:", messages.text)
+display.SetRepresentationType("Outline")
+simple.ColorBy(display, None)
+reader.ArrayName = "last"
+display.SetRepresentationType("INR Volume")
+simple.Render(view)
+check(tuple(display.ColorArrayName) == ("POINTS", "last"), "at first:", display.ColorArrayName)
 simple.Delete(reader)
 
 

@@ -53,9 +53,7 @@ inline inr::Frame SharedView(bool other)
 {
   inr::Frame frame = Oblique(glm::dvec3(SharedDims), 24);
   if (other) {
-    const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 2.2, glm::dvec3(0, 1, 0));
-    const glm::dmat4 center = glm::translate(glm::dmat4(1.0), 0.5 * glm::dvec3(SharedDims));
-    frame.clipToWorld = center * turn * glm::inverse(center) * frame.clipToWorld;
+    Turn(frame, glm::dvec3(SharedDims), 2.2);
     frame.clipToWorld[0] *= 0.9;
   }
   return frame;

@@ -107,9 +107,7 @@ std::unique_ptr<inr::Renderer> MakeRenderer(const std::shared_ptr<const inr::Eva
 inr::Frame View(int at, const Scenario& scenario)
 {
   inr::Frame frame = Oblique(glm::dvec3(Dims), 40);
-  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 0.06 * at, glm::dvec3(0, 1, 0));
-  const glm::dmat4 center = glm::translate(glm::dmat4(1.0), 0.5 * glm::dvec3(Dims));
-  frame.clipToWorld = center * turn * glm::inverse(center) * frame.clipToWorld;
+  Turn(frame, glm::dvec3(Dims), 0.06 * at);
   frame.mode = scenario.mode;
   frame.samplesPerPixel = scenario.deterministic ? 2 : 64;
   frame.timeLimit = 0.02;

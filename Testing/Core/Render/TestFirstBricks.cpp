@@ -66,9 +66,7 @@ private:
 inr::Frame TurnedView(double angle)
 {
   inr::Frame frame = Oblique(glm::dvec3(Dims));
-  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(0, 1, 0));
-  const glm::dmat4 center = glm::translate(glm::dmat4(1.0), 0.5 * glm::dvec3(Dims));
-  frame.clipToWorld = center * turn * glm::inverse(center) * frame.clipToWorld;
+  Turn(frame, glm::dvec3(Dims), angle);
   return frame;
 }
 

@@ -167,9 +167,7 @@ TEST_P(OnlyWhatFits, TakesWhatAnotherViewLeaves)
   Scene scene(GetParam(), FortyBricks, true);
   scene.render();
   const std::int64_t first = scene.field->Voxels;
-  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 2.2, glm::dvec3(0, 1, 0));
-  const glm::dmat4 center = glm::translate(glm::dmat4(1.0), 0.5 * glm::dvec3(Dims));
-  scene.frame.clipToWorld = center * turn * glm::inverse(center) * scene.frame.clipToWorld;
+  Turn(scene.frame, glm::dvec3(Dims), 2.2);
   scene.frame.clippingPlanes = {glm::dvec4(1, 0, 0, -80), glm::dvec4(0, 1, 0, -40)}; // fits
   Scene whole(GetParam(), Enough, false);
   whole.frame = scene.frame;

@@ -89,6 +89,14 @@ inline inr::Frame Oblique(const glm::dvec3& dims, int size = 48)
   return frame;
 }
 
+/// Turns what a frame shows about the vertical axis through the volume's middle; radians.
+inline void Turn(inr::Frame& frame, const glm::dvec3& dims, double angle)
+{
+  const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), angle, glm::dvec3(0, 1, 0));
+  const glm::dmat4 center = glm::translate(glm::dmat4(1.0), 0.5 * dims);
+  frame.clipToWorld = center * turn * glm::inverse(center) * frame.clipToWorld;
+}
+
 /// Adds a translucent surface, behind those there are, at a window-space depth in all pixels.
 inline void AddLayer(inr::Frame& frame, float depth, const glm::vec4& color)
 {
