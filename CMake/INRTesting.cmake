@@ -1,11 +1,16 @@
 include(GoogleTest)
 
-# inr_add_core_test(NAME SOURCES...): a GoogleTest program over Core, every case a ctest of label core.
+# Tests take longer to compile than to run.
+set(INR_TEST_OPTIONS -O1)
+
+# inr_add_core_test(NAME SOURCES...): a GoogleTest program over Core, every case a ctest of label core. Its
+# files are compiled by sixteens, so what is in one is in a namespace of that file's name.
 function (inr_add_core_test name)
   add_executable(${name} ${ARGN})
   target_link_libraries(${name} PRIVATE INRVolume::Core inr_options GTest::gtest_main)
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
-  target_compile_options(${name} PRIVATE -O1) # tests take longer to compile than to run
+  set_target_properties(${name} PROPERTIES UNITY_BUILD "${INR_UNITY_TESTS}" UNITY_BUILD_BATCH_SIZE 16)
+  target_compile_options(${name} PRIVATE ${INR_TEST_OPTIONS})
   target_compile_definitions(${name} PRIVATE INR_TEST_DATA="${PROJECT_SOURCE_DIR}/Testing/Data")
   gtest_discover_tests(${name} NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS core TIMEOUT 300)

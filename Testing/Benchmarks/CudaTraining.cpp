@@ -111,7 +111,7 @@ double Report(const std::string& name, double rate, const std::string& baseline 
 
 void Bench(const std::shared_ptr<const inr::TrainingAccelerator>& gpu)
 {
-  const Field<float> field = Waves<float>(glm::i64vec3(256), inr::ScalarType::Float32, -1, 1);
+  const Field<float> field = WaveField<float>(glm::i64vec3(256), inr::ScalarType::Float32, -1, 1);
   inr::TrainingOptions options = Steps(100000);
   options.description = ChosenDescription();
   const auto inMemory = [&](const inr::TrainingObserver& observer) {

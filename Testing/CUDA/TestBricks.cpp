@@ -6,7 +6,7 @@
 #include "Testing/Core/Cache/WholeBricks.h"
 #include "Testing/Core/RandomModel.h"
 
-namespace {
+namespace test::bricks {
 
 /// Normalised outputs of this one are spread over [0, 1], and some lie beyond.
 std::shared_ptr<inr::Model> BrickModel(float perLevelScale = 2.0f, int features = 4)
@@ -188,4 +188,4 @@ TEST_P(Bricks, FillACache)
 
 INSTANTIATE_TEST_SUITE_P(Kernels, Bricks, testing::ValuesIn(AllSettings()), NameOf);
 
-} // namespace
+} // namespace test::bricks

@@ -12,7 +12,7 @@
 #include <iterator>
 #include <tuple>
 
-namespace {
+namespace test::cache_traces {
 
 using inr::BrickKey;
 using inr::CachePrecision;
@@ -237,4 +237,4 @@ INSTANTIATE_TEST_SUITE_P(Kernels, CacheBesideFrames,
                                   std::to_string(std::get<2>(info.param));
                          });
 
-} // namespace
+} // namespace test::cache_traces

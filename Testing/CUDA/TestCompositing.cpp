@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace {
+namespace test::compositing {
 
 using inr::cuda::AlikeRow;
 using inr::cuda::CompositedRow;
@@ -151,4 +151,4 @@ TEST(GatheredLight, LosesNothing)
   EXPECT_NEAR(light.sum().x, 1 - through, 1e-8);
 }
 
-} // namespace
+} // namespace test::compositing

@@ -10,7 +10,7 @@
 
 #include <utility>
 
-namespace {
+namespace test::conformance {
 
 class Conformance : public InEveryPlace
 {
@@ -74,7 +74,7 @@ TEST_P(Conformance, EveryKindOfModelAgreesWithLongDouble)
 /// And a trained one, whose parameters are halves and whose terms cancel less, to 1e-3.
 TEST_P(Conformance, ATrainedModelAgreesWithCore)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   inr::TrainingOptions options = Steps(200);
   options.storedAs = inr::ParameterType::Half;
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
@@ -251,4 +251,4 @@ TEST_P(Conformance, ModelsThatContradictThemselvesAreRefused)
 
 INSTANTIATE_TEST_SUITE_P(Kernels, Conformance, testing::ValuesIn(AllSettings()), NameOf);
 
-} // namespace
+} // namespace test::conformance

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::device {
 
 using namespace inr::cuda;
 
@@ -191,4 +191,4 @@ TEST(Lattice, OfFarCellsIsNotKept)
   }
 }
 
-} // namespace
+} // namespace test::device

@@ -14,7 +14,7 @@
 #include <string>
 #include <tuple>
 
-namespace {
+namespace test::device_cache {
 
 using inr::BrickKey;
 using inr::CachePrecision;
@@ -270,4 +270,4 @@ INSTANTIATE_TEST_SUITE_P(Kernels, DeviceCacheOfModel,
                                   (overflows ? "ThatOverflows" : "");
                          });
 
-} // namespace
+} // namespace test::device_cache

@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-namespace {
+namespace test::drawing {
 
 class DrawingOf : public CaseInAPlace
 {};
@@ -347,4 +347,4 @@ TEST(DrawingOnTheHost, DoesNotDependOnTheOrderOfThreads)
   }
 }
 
-} // namespace
+} // namespace test::drawing

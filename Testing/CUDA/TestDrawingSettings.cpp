@@ -4,7 +4,7 @@
 // those of Core's renderer.
 #include "Testing/CUDA/DrawingScene.h"
 
-namespace {
+namespace test::drawing_settings {
 
 class DrawingSettings : public InAPlace
 {
@@ -224,4 +224,4 @@ TEST_P(DrawingSettings, CountsAreThoseOfTheCpu)
   EXPECT_LT(traced.statistics.work.lightSteps, traced.statistics.samples);
 }
 
-} // namespace
+} // namespace test::drawing_settings

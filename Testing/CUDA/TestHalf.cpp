@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::half {
 
 using namespace inr::cuda;
 
@@ -54,4 +54,4 @@ TEST(Half, PairsKeepTheirOrderAndMarkWhatDoesNotFit)
   EXPECT_TRUE(std::isnan(LowHalf(PackHalves(NAN, 0.0f))));
 }
 
-} // namespace
+} // namespace test::half

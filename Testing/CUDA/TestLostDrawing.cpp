@@ -5,7 +5,7 @@
 #include "Testing/CUDA/EmulatedRenderers.h"
 #include "Testing/CUDA/FailingMachine.h"
 
-namespace {
+namespace test::lost_drawing {
 
 /// Infers as the emulated one does, and draws on a failing machine.
 class FailingAccelerator : public EmulatedAccelerator
@@ -102,4 +102,4 @@ TEST(LostDrawing, DoesNotWaitForItself)
   EXPECT_THROW(Store::Turn{store}, inr::Error);
 }
 
-} // namespace
+} // namespace test::lost_drawing

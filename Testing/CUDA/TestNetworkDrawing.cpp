@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::network_drawing {
 
 /// Draws such pictures by waves of some size, as a launch is imitated; or on a failing machine.
 class NetworkAccelerator : public EmulatedAccelerator
@@ -341,4 +341,4 @@ TEST(NetworkDrawing, HasCoreComputeWhatOverflows)
   }
 }
 
-} // namespace
+} // namespace test::network_drawing

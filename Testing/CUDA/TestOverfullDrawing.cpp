@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace {
+namespace test::overfull_drawing {
 
 constexpr double Hurry = 1e-9;  ///< s: a call brings some ray further, and no more
 constexpr int MostCalls = 2000; ///< that any of these pictures takes
@@ -483,4 +483,4 @@ TEST(WatchedDrawing, ComesToItsEndBesideAnotherThatFitsOnlyAlone)
   }
 }
 
-} // namespace
+} // namespace test::overfull_drawing

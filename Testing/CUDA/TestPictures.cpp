@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::pictures {
 
 enum class Way { Cached, Uncached, Paths, UncachedPaths };
 constexpr Way Ways[] = {Way::Cached, Way::Uncached, Way::Paths, Way::UncachedPaths};
@@ -137,4 +137,4 @@ TEST(Accelerators, AreSharedUntilTheyFail)
   EXPECT_NE(inr::cuda::FindAccelerator(0).accelerator, found.accelerator);
 }
 
-} // namespace
+} // namespace test::pictures

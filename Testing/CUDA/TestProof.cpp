@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-namespace {
+namespace test::proof {
 
 /// A kind of picture that kernels make in a way of their own.
 struct PictureKind
@@ -365,4 +365,4 @@ TEST(Proof, IsAskedForOnce)
   }
 }
 
-} // namespace
+} // namespace test::proof

@@ -11,7 +11,7 @@
 #include <limits>
 #include <map>
 
-namespace {
+namespace test::request_table {
 
 using inr::BrickKey;
 using inr::cuda::RequestTable;
@@ -141,4 +141,4 @@ TEST(RequestTable, SumsDoNotWrap)
   EXPECT_EQ(before, RequestTable::Saturated);
 }
 
-} // namespace
+} // namespace test::request_table

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace {
+namespace test::selection {
 
 using inr::cuda::RankEntry;
 
@@ -57,4 +57,4 @@ TEST(Selection, IsTheBeginningOfTheSorted)
   }
 }
 
-} // namespace
+} // namespace test::selection

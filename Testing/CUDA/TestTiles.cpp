@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace {
+namespace test::tiles {
 
 using namespace inr::cuda;
 
@@ -188,4 +188,4 @@ TEST(Tiles, ResultsBecomeInputs)
   });
 }
 
-} // namespace
+} // namespace test::tiles

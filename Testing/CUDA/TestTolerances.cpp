@@ -6,7 +6,7 @@
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Render/FieldCells.h"
 
-namespace {
+namespace test::tolerances {
 
 /// Values of the network there, x fastest.
 std::vector<float> Voxels(const inr::ModelPointer& model)
@@ -169,4 +169,4 @@ TEST_P(DrawingByTolerance, FollowsWhatItIsChosenFor)
   }
 }
 
-} // namespace
+} // namespace test::tolerances

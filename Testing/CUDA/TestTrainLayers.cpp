@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace {
+namespace test::train_layers {
 
 constexpr float Kept = 0.95f;
 constexpr float Rate = 0.02f;
@@ -189,4 +189,4 @@ TEST(TrainLayers, HaveAWorkspaceEach)
   }
 }
 
-} // namespace
+} // namespace test::train_layers

@@ -7,7 +7,7 @@
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/Training/FieldReader.h"
 
-namespace {
+namespace test::trainer {
 
 using inr::TrainingPipeline;
 
@@ -34,7 +34,7 @@ std::int64_t TightMemory(const inr::TrainingOptions& options)
 
 TEST(Trainer, LearnsAsWellAsTheCpu)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::TrainingOptions options = With(std::make_shared<EmulatedTrainer>(), 90);
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
   const inr::ModelPointer cpu = inr::TrainModel(field.data(), {}, With(nullptr, 90));
@@ -48,7 +48,7 @@ TEST(Trainer, LearnsAsWellAsTheCpu)
 TEST(Trainer, GivesTheSameFromDeviceAndHostMemory)
 {
   const Field<std::int16_t> field =
-      Waves<std::int16_t>({12, 10, 9}, inr::ScalarType::Int16, -900, 800);
+      WaveField<std::int16_t>({12, 10, 9}, inr::ScalarType::Int16, -900, 800);
   const inr::ModelPointer there =
       inr::TrainModel(field.data(), {}, With(std::make_shared<EmulatedTrainer>(), 5));
   EXPECT_EQ(there->training->pipeline, TrainingPipeline::DeviceMemory);
@@ -68,7 +68,7 @@ TEST(Trainer, GivesTheSameFromDeviceAndHostMemory)
 
 TEST(Trainer, TakesSamplesOfAVolumeInPieces)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const auto train = [&](std::shared_ptr<const inr::TrainingAccelerator> accelerator) {
     FieldReader<float> reader(field);
     inr::TrainingOptions options = With(std::move(accelerator), 20);
@@ -83,7 +83,7 @@ TEST(Trainer, TakesSamplesOfAVolumeInPieces)
 
 TEST(Trainer, GoesOnFromItsCheckpoint)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const TemporaryFolder folder;
   inr::TrainingOptions options = With(std::make_shared<EmulatedTrainer>(), 10);
   const inr::ModelPointer whole = inr::TrainModel(field.data(), {}, options);
@@ -101,7 +101,7 @@ TEST(Trainer, GoesOnFromItsCheckpoint)
 
 TEST(Trainer, WithoutMemoryTheCpuTrains)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   inr::TrainingOptions options = With(std::make_shared<EmulatedTrainer>(1 << 20), 3);
   std::vector<std::string> told;
   options.acceleration.tell = [&](inr::AccelerationEvent event, const std::string& text) {
@@ -122,7 +122,7 @@ TEST(Trainer, OfThisMachineLearnsAsWellAsTheCpu)
   if (!found.accelerator) {
     GTEST_SKIP() << found.reason;
   }
-  const Field<float> field = Waves<float>({64, 60, 50}, inr::ScalarType::Float32, -1, 1);
+  const Field<float> field = WaveField<float>({64, 60, 50}, inr::ScalarType::Float32, -1, 1);
   const inr::ModelPointer cpu = inr::TrainModel(field.data(), {}, With(nullptr, 500));
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, With(found.accelerator, 500));
   EXPECT_EQ(model->training->backend, found.accelerator->name());
@@ -134,4 +134,4 @@ TEST(Trainer, OfThisMachineLearnsAsWellAsTheCpu)
   EXPECT_EQ(again->parameters, model->parameters);
 }
 
-} // namespace
+} // namespace test::trainer

@@ -5,7 +5,7 @@
 #include "Testing/CUDA/TrainSetup.h"
 #include "Testing/Core/Training/MatrixTruth.h"
 
-namespace {
+namespace test::training {
 
 class Training : public InAPlace
 {
@@ -234,7 +234,7 @@ TEST_P(Training, OrthogonalisesLayersOfEveryShape)
 /// Some steps later, with a learning rate that falls and parameters that were not touched before.
 TEST_P(Training, StaysNearCoreForSomeSteps)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::InMemorySource source(field.data(), -1, 1);
   inr::Description description = SmallDescription();
   description.grid.features = 2;
@@ -293,7 +293,7 @@ TEST_P(Training, WhatIsNoNumberIsSeenInTheLoss)
 /// What is drawn on the device is what the host draws, and so is what comes of it.
 TEST_P(Training, DrawsOnTheDeviceWhatTheHostDraws)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::InMemorySource source(field.data(), -1, 1);
   inr::StratifiedBatches batches(source);
   GivenBatches unlike(batches.count());
@@ -342,7 +342,7 @@ void ExpectSameSamples(const Field<T>& field, std::int64_t stride, double low, d
 template <class T> void ExpectSameSamples(inr::ScalarType type, double low, double high)
 {
   for (const glm::i64vec3 dims : {glm::i64vec3(9, 7, 5), glm::i64vec3(1, 30, 1)}) {
-    const Field<T> field = Waves<T>(dims, type, low, high);
+    const Field<T> field = WaveField<T>(dims, type, low, high);
     ExpectSameSamples(field, 1, low, high);
     ExpectSameSamples(field, 3, low, high);
   }
@@ -377,7 +377,7 @@ TEST(TrainDraw, IsCoresForLargeIntegersThatAreCloseTogether)
 
 TEST(TrainDraw, IsCoresAmongVoxelsThatAreNoNumbers)
 {
-  Field<double> field = Waves<double>({9, 7, 5}, inr::ScalarType::Float64, -1, 1);
+  Field<double> field = WaveField<double>({9, 7, 5}, inr::ScalarType::Float64, -1, 1);
   for (std::size_t k = 0; k < field.values.size(); k += 4) {
     field.values[k] = k % 3 == 0 ? NAN : (k % 3 == 1 ? INFINITY : -INFINITY);
   }
@@ -461,7 +461,7 @@ TEST(TrainingPlan, DividesWhatIsLarge)
 /// Without room for the volume it is left where it is, and without room for the rest none begins.
 TEST(TrainingPlan, SharesOutTheMemory)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::TrainingTask task{SmallDescription(), 16384, 1,
                                inr::NormalisedVolume{field.data(), -1, 1}};
   const std::int64_t much = std::int64_t{1} << 40;
@@ -481,4 +481,4 @@ TEST(TrainingPlan, SharesOutTheMemory)
   }
 }
 
-} // namespace
+} // namespace test::training

@@ -4,7 +4,7 @@
 // asked for, and what is said of it.
 #include "Testing/CUDA/DrawingScene.h"
 
-namespace {
+namespace test::unfinished_drawing {
 
 constexpr double NoTime = 1e-9; // seconds: one pass
 
@@ -200,4 +200,4 @@ TEST(UnfinishedDrawing, StopsOnRequest)
   }
 }
 
-} // namespace
+} // namespace test::unfinished_drawing

@@ -12,7 +12,7 @@
 #include <set>
 #include <vector>
 
-namespace {
+namespace test::windowed_rays {
 
 constexpr int Width = 21;
 constexpr int Height = 13;
@@ -264,4 +264,4 @@ TEST(WindowedRays, StopOnRequest)
   EXPECT_EQ(ended, std::vector<int>(ended.size(), 1));
 }
 
-} // namespace
+} // namespace test::windowed_rays

@@ -17,7 +17,7 @@ int main(int argc, char* argv[])
     return 2;
   }
   try {
-    const Field<float> field = Waves();
+    const Field<float> field = WaveField();
     inr::WriteModel(*inr::TrainModel(field.data(), {}, Steps(100)), argv[1]);
   } catch (const inr::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -15,7 +15,7 @@
 #include <optional>
 #include <thread>
 
-namespace {
+namespace test::random_edits {
 
 constexpr glm::i64vec3 Dims(52, 61, 40);
 
@@ -273,4 +273,4 @@ TEST(RandomEdits, EndInThePictureOfAFreshRenderer)
   other.join();
 }
 
-} // namespace
+} // namespace test::random_edits

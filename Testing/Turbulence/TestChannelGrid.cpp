@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace test::channel_grid {
 
 inr::TurbulentChannel Field(double time = 0)
 {
@@ -31,8 +31,6 @@ std::size_t Index(const glm::i64vec3& voxel, const glm::i64vec3& size)
 {
   return static_cast<std::size_t>(voxel.x + size.x * (voxel.y + size.y * voxel.z));
 }
-
-} // namespace
 
 // In units of the last place of 1, the field's own scale.
 TEST(ChannelGrid, RowsAreTheFieldToAFewUlps)
@@ -109,3 +107,5 @@ TEST(ChannelGrid, RefusesImpossibleSizes)
     EXPECT_THROW(inr::ChannelGrid(Field(), dims), inr::Error);
   }
 }
+
+} // namespace test::channel_grid

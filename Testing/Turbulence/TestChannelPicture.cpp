@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::channel_picture {
 
 inr::TurbulentChannel Field(double intensity)
 {
@@ -45,8 +45,6 @@ inr::TransferFunction TableOf(const inr::ChannelScene& scene)
   function.above = function.table.back();
   return function;
 }
-
-} // namespace
 
 class ChannelSteps : public testing::TestWithParam<double> // voxels
 {};
@@ -141,3 +139,5 @@ TEST(ChannelPicture, RefusesScenesThatLackSomething)
   scene.colors.clear();
   EXPECT_THROW(inr::DrawChannel(Field(0), scene, inr::Arena(1)), inr::Error);
 }
+
+} // namespace test::channel_picture

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace test::channel_sampler {
 
 inr::TurbulentChannel Field(int octaves, double time)
 {
@@ -42,8 +42,6 @@ std::vector<double> Values(const inr::ChannelSampler& sampler,
   return values;
 }
 
-} // namespace
-
 TEST(ChannelSampler, IsTheFieldAtEveryPoint)
 {
   for (const int octaves : {1, 6, 8}) {
@@ -71,3 +69,5 @@ TEST(ChannelSampler, APointDependsOnNoOtherAndOnNoProcessor)
     }
   }
 }
+
+} // namespace test::channel_sampler

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::channel_truth {
 
 std::shared_ptr<inr::Model> UntrainedModel()
 {
@@ -50,8 +50,6 @@ inr::ChannelError BruteForce(const inr::ModelPointer& model, const inr::Turbulen
   return error;
 }
 
-} // namespace
-
 TEST(ChannelTruth, RandomVoxelsTellWhatAllVoxelsDo)
 {
   const auto model = UntrainedModel();
@@ -82,3 +80,5 @@ TEST(ChannelTruth, RefusesToCompareNothing)
       inr::MeasureChannelError(UntrainedModel(), inr::TurbulentChannel({}), 0, 1, inr::Arena(1)),
       inr::Error);
 }
+
+} // namespace test::channel_truth

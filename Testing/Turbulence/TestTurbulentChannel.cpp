@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::turbulent_channel {
 
 using Field = inr::TurbulentChannel;
 
@@ -36,8 +36,6 @@ template <class Function> double MeanSquare(Function&& difference, int points = 
   }
   return sum / points;
 }
-
-} // namespace
 
 // Committed results name fields by their parameters: these must never mean another field.
 TEST(TurbulentChannel, StaysTheSame)
@@ -160,3 +158,5 @@ TEST(TurbulentChannel, RefusesWhatIsOutOfRange)
   parameters.intensity = NAN;
   EXPECT_THROW(Field{parameters}, inr::Error);
 }
+
+} // namespace test::turbulent_channel

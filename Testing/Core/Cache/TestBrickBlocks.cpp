@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace {
+namespace test::brick_blocks {
 
 constexpr inr::CachePrecision Precisions[] = {
     inr::CachePrecision::Float32, inr::CachePrecision::Bits16, inr::CachePrecision::Bits8};
@@ -176,4 +176,4 @@ TEST(BrickBlocks, HoldWhatHardlyVaries)
   }
 }
 
-} // namespace
+} // namespace test::brick_blocks

@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace {
+namespace test::brick_cache {
 
 /// Eight-voxel bricks of a long volume, so that keys are numbers.
 class BrickCacheTest : public testing::Test
@@ -259,4 +259,4 @@ TEST(BrickCacheTraces, MoreUsedInAFrameThanThereAreSlots) { CompareWithASimpleCa
 TEST(BrickCacheTraces, ManySlots) { CompareWithASimpleCache(20000, 60000, 6000); }
 TEST(BrickCacheTraces, ManySlotsOfWhichMostAreInUse) { CompareWithASimpleCache(6000, 9000, 20000); }
 
-} // namespace
+} // namespace test::brick_cache

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace {
+namespace test::brick_loader {
 
 /// Layers of values that tell brick and layer; as slow as is wanted, and able to fail.
 class CountingSource : public inr::BrickSource
@@ -312,4 +312,4 @@ TEST_F(BrickLoaderTest, EndsAfterTheLayersAtHand)
   EXPECT_EQ(this->Source.use_count(), 1);
 }
 
-} // namespace
+} // namespace test::brick_loader

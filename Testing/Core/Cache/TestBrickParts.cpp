@@ -10,7 +10,7 @@
 #include <atomic>
 #include <set>
 
-namespace {
+namespace test::brick_parts {
 
 float Wave(const glm::vec3& u)
 {
@@ -270,4 +270,4 @@ TEST(BrickParts, AreWithinTheRangesOfTheirCells)
                   .empty());
 }
 
-} // namespace
+} // namespace test::brick_parts

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::brick_pool {
 
 constexpr std::int64_t Voxels = 343;
 
@@ -112,4 +112,4 @@ TEST(BrickPool, SlotsAreApart)
   }
 }
 
-} // namespace
+} // namespace test::brick_pool

@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-namespace {
+namespace test::brick_source {
 
 float Linear(const glm::vec3& u) { return 0.1f + 0.2f * u.x + 0.3f * u.y + 0.4f * u.z; }
 
@@ -132,4 +132,4 @@ TEST(BrickSource, NeighboursAgreeOnTheLayerTheyShareBitForBit)
   }
 }
 
-} // namespace
+} // namespace test::brick_source

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-namespace {
+namespace test::cache_budget {
 
 class CacheBudgetTest : public testing::Test
 {
@@ -276,4 +276,4 @@ TEST(CacheBudgetThreads, StoresComeAndGoAndLoadWhileOthersDo)
   EXPECT_LE(budget->bytes(), budget->total());
 }
 
-} // namespace
+} // namespace test::cache_budget

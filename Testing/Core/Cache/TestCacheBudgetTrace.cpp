@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-namespace {
+namespace test::cache_budget_trace {
 
 /// What should be in the stores: how many bricks were last used when.
 class Model
@@ -200,4 +200,4 @@ TEST_P(CacheBudgetTrace, TheLeastRecentlyUsedBricksOfAllStoresGo)
   }
 }
 
-} // namespace
+} // namespace test::cache_budget_trace

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::field_window {
 
 /// Counts the points that it is asked for.
 class Counting : public inr::Evaluator
@@ -64,4 +64,4 @@ TEST(FieldWindow, GrowsWithoutAskingTwice)
   EXPECT_NEAR(box.values[box.index(0, 40 - 31, 20 - 8)], inr::NormalisedOutput(value), 1e-4);
 }
 
-} // namespace
+} // namespace test::field_window

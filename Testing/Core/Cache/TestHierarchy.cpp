@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::hierarchy {
 
 using glm::dvec3;
 using glm::i64vec3;
@@ -228,4 +228,4 @@ TEST(Hierarchy, RefusesNonsense)
   EXPECT_THROW(inr::Hierarchy({std::int64_t{1} << 40, 1, 1}, 40), inr::Error);
 }
 
-} // namespace
+} // namespace test::hierarchy

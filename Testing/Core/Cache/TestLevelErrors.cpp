@@ -11,7 +11,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace {
+namespace test::level_errors {
 
 using Field = FieldEvaluator::Function;
 
@@ -382,4 +382,4 @@ TEST(LevelErrors, AreThoseOfAThinFeature)
   EXPECT_GT(errors.of(cell(1, 1)).levels.errors[2].largest, 0.75);
 }
 
-} // namespace
+} // namespace test::level_errors

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::line_errors {
 
 bool Never(const inr::LineErrors&) { return false; }
 
@@ -141,4 +141,4 @@ TEST(LineErrors, EndWhereThePartDoes)
   EXPECT_FLOAT_EQ(errors.sum, 20.0f); // along z; a diagonal of four is 7 long
 }
 
-} // namespace
+} // namespace test::line_errors

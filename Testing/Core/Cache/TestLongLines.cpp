@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::long_lines {
 
 bool Never(const inr::LineErrors&) { return false; }
 
@@ -133,4 +133,4 @@ TEST(LongLines, EndWithTheFirstPartThatIsTooLarge)
   EXPECT_LE(asked, 2);       // where it is found, and where parts are put together
 }
 
-} // namespace
+} // namespace test::long_lines

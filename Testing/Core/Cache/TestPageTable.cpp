@@ -7,7 +7,7 @@
 #include <iterator>
 #include <map>
 
-namespace {
+namespace test::page_table {
 
 inr::BrickKey RandomKey(std::uint64_t k, std::uint64_t spread)
 {
@@ -87,4 +87,4 @@ TEST(PageTable, MemoryFollowsWhatIsMappedInAHugeVolume)
   EXPECT_EQ(table.pages(), 0);
 }
 
-} // namespace
+} // namespace test::page_table

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <map>
 
-namespace {
+namespace test::requests {
 
 inr::BrickKey Brick(int level, std::int64_t x) { return inr::KeyOf({level, {x, 0, 0}}); }
 
@@ -148,4 +148,4 @@ TEST(Requests, AreRankedAsASimpleModelRanksThem)
   }
 }
 
-} // namespace
+} // namespace test::requests

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <unistd.h>
 
-namespace {
+namespace test::reserved_array {
 
 TEST(ReservedArray, KeepsItsElementsWhileItGrowsAndShrinks)
 {
@@ -49,4 +49,4 @@ TEST(ReservedArray, TakesMemoryForWhatItHas)
 }
 #endif
 
-} // namespace
+} // namespace test::reserved_array

@@ -19,7 +19,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace {
+namespace test::exr {
 
 namespace fs = std::filesystem;
 
@@ -146,4 +146,4 @@ TEST_F(Exr, RefusesWhatIsNotOne)
   EXPECT_THROW(inr::ReadExr(Folder / "missing.exr"), inr::Error);
 }
 
-} // namespace
+} // namespace test::exr

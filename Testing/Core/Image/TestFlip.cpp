@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace test::flip {
 
 /// The picture of `color(x, y)`, which gives three channels.
 template <typename Function> inr::Image Drawn(int width, int height, const Function& color)
@@ -194,4 +194,4 @@ TEST(ImageFlip, RefusesWhatItIsNotDefinedFor)
   EXPECT_NO_THROW(inr::ImageFlip(a, a, 1));
 }
 
-} // namespace
+} // namespace test::flip

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::metrics {
 
 /// Two pictures that differ by a quarter of noise.
 struct NoisyPair
@@ -166,4 +166,4 @@ TEST(ImageMetrics, RefuseDifferentShapes)
   EXPECT_THROW(inr::ImageSsim(RandomImage(6, 8, 4, 1), RandomImage(6, 8, 4, 1)), inr::Error);
 }
 
-} // namespace
+} // namespace test::metrics

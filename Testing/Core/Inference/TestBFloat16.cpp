@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace test::b_float16 {
 
 class BFloat16 : public testing::Test
 {
@@ -208,4 +208,4 @@ TEST(InferencePrecision, RoundsPairsOfWeightsToNearestAndEven)
   EXPECT_EQ(pairs[inr::PanelRows + 2], 0x00004080u);
 }
 
-} // namespace
+} // namespace test::b_float16

@@ -13,7 +13,7 @@
 #include <cfloat>
 #include <functional>
 
-namespace {
+namespace test::bad_numbers {
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
@@ -359,4 +359,4 @@ INSTANTIATE_TEST_SUITE_P(Parameters, BadNumbers, testing::ValuesIn(AllNumbers),
                            return info.param.name;
                          });
 
-} // namespace
+} // namespace test::bad_numbers

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::evaluator {
 
 TEST(Evaluator, ValueDoesNotDependOnTheBatch)
 {
@@ -245,4 +245,4 @@ TEST(Evaluator, NamesItsKernelAndRefusesUnknownOnes)
   EXPECT_THROW(inr::MakeEvaluator(RandomModel(SmallDescription()), "abacus"), inr::Error);
 }
 
-} // namespace
+} // namespace test::evaluator

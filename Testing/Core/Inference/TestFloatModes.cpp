@@ -14,7 +14,7 @@
 #include <pmmintrin.h>
 #endif
 
-namespace {
+namespace test::float_modes {
 
 /// One whose values all overflow on their way.
 inr::ModelPointer HugeModel()
@@ -126,4 +126,4 @@ TEST(FloatModes, TheWatchSeesWhatOverflowsAndNothingElse)
   static_cast<void>(result);
 }
 
-} // namespace
+} // namespace test::float_modes

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::instruction_set {
 
 using inr::InstructionSet;
 
@@ -51,4 +51,4 @@ TEST(InstructionSet, ALargerOneIsUsableOnlyWithTheSmallerOnes)
   EXPECT_TRUE(!inr::IsUsable(InstructionSet::Avx512) || inr::IsUsable(InstructionSet::Avx2));
 }
 
-} // namespace
+} // namespace test::instruction_set

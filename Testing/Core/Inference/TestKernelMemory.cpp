@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace {
+namespace test::kernel_memory {
 
 /// A kernel's memory, full of something. Nobody writes behind it.
 class Workspace
@@ -120,4 +120,4 @@ TEST_F(KernelMemory, ChangesNoValue)
   }
 }
 
-} // namespace
+} // namespace test::kernel_memory

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace {
+namespace test::thin_lattices {
 
 constexpr std::size_t First = 2; ///< of the wide lattice's points, the first of the thin ones
 constexpr std::size_t Width = 11;
@@ -83,4 +83,4 @@ TEST(ThinLattices, MayHaveNoPoints)
   }
 }
 
-} // namespace
+} // namespace test::thin_lattices

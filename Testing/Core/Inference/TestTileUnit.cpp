@@ -11,7 +11,7 @@
 #include <cstring>
 #include <functional>
 
-namespace {
+namespace test::tile_unit {
 
 using imitation::TileFault;
 
@@ -166,4 +166,4 @@ TEST(TileUnit, RefusesTilesThatDoNotFit)
   imitation::Release();
 }
 
-} // namespace
+} // namespace test::tile_unit

@@ -15,7 +15,7 @@
 #include <functional>
 #include <thread>
 
-namespace {
+namespace test::tiles {
 
 /// What a made-up processor and its operating system answer.
 struct Answers
@@ -327,4 +327,4 @@ TEST(TileKernels, HaveWeightsInTilesOfTwoParts)
   EXPECT_GT(rests, Rows * Columns * 9 / 10);
 }
 
-} // namespace
+} // namespace test::tiles

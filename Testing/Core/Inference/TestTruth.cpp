@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::truth {
 
 /// Largest difference to the truth, relative to the truth's range.
 double Error(const TruthCase& truth, const std::string& kernel)
@@ -99,4 +99,4 @@ TEST(Truth, HalfParametersAgreeTo2e3OfTheRange)
   }
 }
 
-} // namespace
+} // namespace test::truth

@@ -9,7 +9,7 @@
 
 #include <map>
 
-namespace {
+namespace test::cache_without_memory {
 
 using For = FailingMemory::For;
 
@@ -90,4 +90,4 @@ void WorkThroughFailures(std::int64_t bytes)
 TEST(CacheWithoutMemory, StaysSoundWhereThereIsRoom) { WorkThroughFailures(4 << 20); }
 TEST(CacheWithoutMemory, StaysSoundWhereBricksGoForOthers) { WorkThroughFailures(60 << 10); }
 
-} // namespace
+} // namespace test::cache_without_memory

@@ -14,7 +14,7 @@
 #include <exception>
 #include <optional>
 
-namespace {
+namespace test::frames_without_memory {
 
 using For = FailingMemory::For;
 
@@ -245,4 +245,4 @@ TEST_P(FramesWithoutMemory, KnowWhetherTheyKnowWhatCanBeSeen)
 INSTANTIATE_TEST_SUITE_P(Ways, FramesWithoutMemory, testing::ValuesIn(Ways()),
                          [](const testing::TestParamInfo<Way>& info) { return info.param.name; });
 
-} // namespace
+} // namespace test::frames_without_memory

@@ -6,7 +6,7 @@
 #include "Testing/Core/Memory/Survives.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 
-namespace {
+namespace test::loading_without_memory {
 
 struct Loading : testing::Test
 {
@@ -53,4 +53,4 @@ TEST_F(Loading, LooksAtTheKindOfAFile)
   EXPECT_TRUE(inr::IsModelFile(path));
 }
 
-} // namespace
+} // namespace test::loading_without_memory

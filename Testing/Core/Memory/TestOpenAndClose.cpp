@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <thread>
 
-namespace {
+namespace test::open_and_close {
 
 constexpr glm::i64vec3 Dims(17, 21, 13);
 
@@ -77,4 +77,4 @@ TEST(OpenAndClose, LeavesNothingBehind)
   EXPECT_LE(after.threads, before.threads);
 }
 
-} // namespace
+} // namespace test::open_and_close

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-namespace {
+namespace test::training_without_memory {
 
 class TrainingWithoutMemory : public testing::Test
 {
@@ -51,7 +51,7 @@ protected:
 
   TemporaryFolder Folder;
   std::string Path = Folder.file("a.inr.checkpoint");
-  Field<float> Data = Waves();
+  Field<float> Data = WaveField();
 };
 
 /// What is kept is of whole steps, or there is nothing to go on from.
@@ -68,4 +68,4 @@ TEST_F(TrainingWithoutMemory, GoesOnToTheSameModel)
   EXPECT_GT(kept, 0);
 }
 
-} // namespace
+} // namespace test::training_without_memory

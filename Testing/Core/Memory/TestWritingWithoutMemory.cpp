@@ -8,7 +8,7 @@
 
 #include <iterator>
 
-namespace {
+namespace test::writing_without_memory {
 
 struct Writing : testing::Test
 {
@@ -46,4 +46,4 @@ TEST_F(Writing, OnlyAsksWhetherAndHowLarge)
   ExpectSurvives([&] { inr::ModelFileSize(*model); });
 }
 
-} // namespace
+} // namespace test::writing_without_memory

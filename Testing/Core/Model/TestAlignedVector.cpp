@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-namespace {
+namespace test::aligned_vector {
 
 std::uintptr_t PastALine(const void* memory)
 {
@@ -56,4 +56,4 @@ TEST(AlignedVector, HoldsTableEntriesThatLieInOneLine)
   }
 }
 
-} // namespace
+} // namespace test::aligned_vector

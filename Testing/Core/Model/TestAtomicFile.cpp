@@ -10,7 +10,7 @@
 
 namespace fs = std::filesystem;
 
-namespace {
+namespace test::atomic_file {
 
 class AtomicFileTest : public testing::Test
 {
@@ -58,8 +58,6 @@ protected:
 
   fs::path Folder;
 };
-
-} // namespace
 
 TEST_F(AtomicFileTest, CommitReplacesTheTarget)
 {
@@ -132,3 +130,5 @@ TEST_F(AtomicFileTest, RefusalsNamePathAndReason)
   ExpectRefused(this->path("file/below"), "Not a directory");
   EXPECT_EQ(this->entries(), 1);
 }
+
+} // namespace test::atomic_file

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-namespace {
+namespace test::bad_files {
 
 struct BadFiles : testing::Test
 {
@@ -186,4 +186,4 @@ TEST_F(BadFiles, DuplicateKeys)
                       "'model' occurs twice");
 }
 
-} // namespace
+} // namespace test::bad_files

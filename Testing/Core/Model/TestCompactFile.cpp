@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::compact_file {
 
 TEST_F(CompactFile, GivesBackWhatWasWritten)
 {
@@ -174,4 +174,4 @@ TEST_F(CompactFile, WritesNothingThatCannotBeRead)
   EXPECT_EQ(ReadBytes(this->path()), this->Bytes);
 }
 
-} // namespace
+} // namespace test::compact_file

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <zlib.h>
 
-namespace {
+namespace test::compact_frames {
 
 void AddToLength(std::string& bytes, std::size_t at, std::int32_t amount)
 {
@@ -214,4 +214,4 @@ TEST_F(CompactFile, VersionAndTypeBelongTogether)
   this->expectRefused(bytes, "'inr' is missing");
 }
 
-} // namespace
+} // namespace test::compact_frames

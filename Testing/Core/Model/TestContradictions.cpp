@@ -10,7 +10,7 @@
 
 #include <functional>
 
-namespace {
+namespace test::contradictions {
 
 using nlohmann::json;
 
@@ -138,4 +138,4 @@ TEST(LaterVersions, AreToldWhateverElseIsNew)
   }
 }
 
-} // namespace
+} // namespace test::contradictions

@@ -11,7 +11,7 @@
 using inr::Description;
 using inr::Layout;
 
-namespace {
+namespace test::description {
 
 // The example configuration that upstream ships.
 Description Example()
@@ -30,8 +30,6 @@ std::vector<std::uint32_t> Resolutions(const Layout& layout)
   }
   return result;
 }
-
-} // namespace
 
 TEST(Layout, MatchesTheWorkedExample)
 {
@@ -157,3 +155,5 @@ TEST(Layout, RefusesWhatIsOutOfRange)
   EXPECT_TRUE(broken([](Description& d) { d.network.alignment = 12; }));
   EXPECT_TRUE(broken([](Description& d) { d.grid.type = inr::GridType::Dense; })); // 8 * 2048^3
 }
+
+} // namespace test::description

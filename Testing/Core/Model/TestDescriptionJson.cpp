@@ -11,7 +11,7 @@ using inr::ParseDescription;
 using inr::ParseModelConfig;
 using nlohmann::json;
 
-namespace {
+namespace test::description_json {
 
 // The code and message with which `text` is refused.
 std::pair<ErrorCode, std::string> Refusal(const std::string& text)
@@ -31,8 +31,6 @@ void ExpectRefused(const std::string& text, ErrorCode code, const std::string& m
   EXPECT_EQ(found, code) << message;
   EXPECT_NE(message.find(mention), std::string::npos) << message;
 }
-
-} // namespace
 
 TEST(DescriptionJson, ReadsTheExampleWithComments)
 {
@@ -182,3 +180,5 @@ TEST(DescriptionJson, NetworkTypeIsOneThatUpstreamCanBuild)
   EXPECT_EQ(typeOf(64, 0, 16), "CutlassMLP");
   EXPECT_EQ(typeOf(64, 4, 8), "CutlassMLP");
 }
+
+} // namespace test::description_json

@@ -7,7 +7,7 @@ using inr::GridIndex;
 using inr::HashFunction;
 using inr::HashRule;
 
-namespace {
+namespace test::grid_index {
 
 inr::GridLevel Level(int level, HashRule rule, int log2HashmapSize = 19)
 {
@@ -32,8 +32,6 @@ struct SequentialPcg32
     return rot == 0 ? xorshifted : (xorshifted >> rot) | (xorshifted << (32u - rot));
   }
 };
-
-} // namespace
 
 TEST(GridIndex, DenseLevelsRunAlongXFirst)
 {
@@ -108,3 +106,5 @@ TEST(GridIndex, ExactRuleAlwaysHashesThem)
     EXPECT_FALSE(Level(2, HashRule::Exact, log2HashmapSize).hashed);
   }
 }
+
+} // namespace test::grid_index

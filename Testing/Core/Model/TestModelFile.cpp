@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-namespace {
+namespace test::model_file {
 
 struct ModelFile : testing::Test
 {
@@ -313,4 +313,4 @@ TEST_F(ModelFile, UpstreamsPartHasItsKnownSize)
   EXPECT_LT(own, 2000); // our section, and settings that upstream leaves at their defaults
 }
 
-} // namespace
+} // namespace test::model_file

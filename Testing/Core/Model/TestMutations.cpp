@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::mutations {
 
 struct Mutations : testing::TestWithParam<bool>
 {
@@ -123,4 +123,4 @@ TEST_P(Mutations, OfLengths)
 INSTANTIATE_TEST_SUITE_P(PlainAndCompact, Mutations, testing::Bool(),
                          testing::PrintToStringParamName());
 
-} // namespace
+} // namespace test::mutations

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::scaled_model {
 
 inr::VolumeInfo Volume(const glm::i64vec3& dims)
 {
@@ -110,4 +110,4 @@ TEST(ScaledModel, BoundsWhatLiesBetweenCoarserVoxels)
   EXPECT_EQ(inr::ScaledModel(model, 4)->parameters, model->parameters);
 }
 
-} // namespace
+} // namespace test::scaled_model

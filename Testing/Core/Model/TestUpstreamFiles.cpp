@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace {
+namespace test::upstream_files {
 
 std::vector<std::string> CaseNames()
 {
@@ -109,4 +109,4 @@ TEST(UpstreamFile, TakesDimensionsBeyondWhatTrainingOutOfCoreStores)
   EXPECT_EQ(model->macroCells.ranges.size(), 256u);
 }
 
-} // namespace
+} // namespace test::upstream_files

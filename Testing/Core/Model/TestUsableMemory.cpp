@@ -11,7 +11,7 @@
 #include <limits>
 #include <optional>
 
-namespace {
+namespace test::usable_memory {
 
 class ControlGroups : public testing::Test
 {
@@ -28,8 +28,6 @@ protected:
   TemporaryFolder Folder;
   std::filesystem::path Root = Folder.file("root");
 };
-
-} // namespace
 
 TEST_F(ControlGroups, LimitNothingWhereThereAreNone)
 {
@@ -75,3 +73,5 @@ TEST(UsableMemory, IsNoMoreThanTheGroupAllows)
   EXPECT_LE(inr::UsableMemory(),
             inr::ControlGroupMemory().value_or(std::numeric_limits<std::int64_t>::max()));
 }
+
+} // namespace test::usable_memory

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace {
+namespace test::accelerator {
 
 TEST(Accelerator, ComputesWhatPicturesNeed)
 {
@@ -100,4 +100,4 @@ TEST(Accelerator, IsAskedForManyPointsAtOnce)
   }
 }
 
-} // namespace
+} // namespace test::accelerator

@@ -16,7 +16,7 @@
 #include <mutex>
 #include <thread>
 
-namespace {
+namespace test::background {
 
 const glm::i64vec3 Dims(90, 70, 80);
 
@@ -289,4 +289,4 @@ TEST(BackgroundDeathTest, TheProcessMayExitWhileBricksLoad)
   EXPECT_EXIT(ExitWhileBricksLoad(), testing::ExitedWithCode(0), "");
 }
 
-} // namespace
+} // namespace test::background

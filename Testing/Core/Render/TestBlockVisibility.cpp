@@ -11,7 +11,7 @@
 #include <iterator>
 #include <vector>
 
-namespace {
+namespace test::block_visibility {
 
 constexpr glm::i64vec3 Dims(60, 45, 52);
 
@@ -276,4 +276,4 @@ TEST(BlockVisibility, CountsWhatIsLeftOut)
   }
 }
 
-} // namespace
+} // namespace test::block_visibility

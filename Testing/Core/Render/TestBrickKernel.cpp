@@ -18,7 +18,7 @@
 #include <memory>
 #include <vector>
 
-namespace {
+namespace test::brick_kernel {
 
 constexpr int Dims[3] = {7, 6, 5};
 constexpr int Bricks = 4;
@@ -432,4 +432,4 @@ TEST_P(BrickKernels, CompositeWhatIsIntegrated)
 INSTANTIATE_TEST_SUITE_P(Sets, BrickKernels, testing::ValuesIn(UsableKernels()),
                          [](const auto& info) { return info.param; });
 
-} // namespace
+} // namespace test::brick_kernel

@@ -15,7 +15,7 @@
 #include <memory>
 #include <vector>
 
-namespace {
+namespace test::cached {
 
 TEST(Cached, EqualsTheMarcherOverTheDenseVoxels)
 {
@@ -303,4 +303,4 @@ TEST(Cached, CanBeStopped)
   EXPECT_THROW(renderer.render(Oblique(glm::dvec3(dims)), image, nullptr, keepGoing), inr::Error);
 }
 
-} // namespace
+} // namespace test::cached

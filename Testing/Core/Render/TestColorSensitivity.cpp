@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::color_sensitivity {
 
 /// What a step at a value leaves of light `behind`, in double; alpha last.
 glm::dvec4 Passed(const inr::ColorLookup& colors, float value, double stepLength, double behind)
@@ -147,4 +147,4 @@ TEST(ColorSensitivity, FollowsALogarithm)
   EXPECT_TRUE(std::isinf(sensitivity.slopes({0.0f, 0.5f}).half));
 }
 
-} // namespace
+} // namespace test::color_sensitivity

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace {
+namespace test::color_table {
 
 inr::VolumeInfo Range(double low, double high)
 {
@@ -212,4 +212,4 @@ TEST(ColorTable, KnowsWhetherAnyValueIsTransparent)
   EXPECT_TRUE(hides(0.1f, 0.1f, 0));
 }
 
-} // namespace
+} // namespace test::color_table

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::cropping {
 
 inr::Cropping Regions(const BlendScene& scene, std::uint32_t flags)
 {
@@ -160,4 +160,4 @@ TEST_P(CroppingRegions, LeaveOutWhatIsCropped)
   EXPECT_THROW(Render(renderer, frame), inr::Error);
 }
 
-} // namespace
+} // namespace test::cropping

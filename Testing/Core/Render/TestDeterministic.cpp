@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-namespace {
+namespace test::deterministic {
 
 const glm::i64vec3 Dims(70, 90, 60);
 
@@ -238,4 +238,4 @@ TEST(Deterministic, EndsWithTheCompletePicture)
   }
 }
 
-} // namespace
+} // namespace test::deterministic

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::error_tolerance {
 
 TEST(ErrorTolerance, OfZeroIsTheFullResolution)
 {
@@ -273,4 +273,4 @@ TEST(ErrorTolerance, HasPiecesThatMakeUpTheWhole)
   }
 }
 
-} // namespace
+} // namespace test::error_tolerance

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <string>
 
-namespace {
+namespace test::extreme_cameras {
 
 /// A volume and a camera, whose places are from the middle of the volume's bounds on: no digit of
 /// the truth is lost to where that is.
@@ -281,4 +281,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Parallel("ParallelCut", {60, 50, 70}, 60, 100)),
     [](const auto& info) { return info.param.name; });
 
-} // namespace
+} // namespace test::extreme_cameras

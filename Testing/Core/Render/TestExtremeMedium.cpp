@@ -10,7 +10,7 @@
 #include <cmath>
 #include <optional>
 
-namespace {
+namespace test::extreme_medium {
 
 constexpr double Length = 32; ///< of a ray through the volume, voxels
 const glm::i64vec3 Dims(33, 33, 33);
@@ -225,4 +225,4 @@ INSTANTIATE_TEST_SUITE_P(Ways, ExtremeMedium,
                                          Way::ShadedCache),
                          testing::PrintToStringParamName());
 
-} // namespace
+} // namespace test::extreme_medium

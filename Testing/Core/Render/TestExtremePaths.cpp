@@ -4,7 +4,7 @@
 // only: against closed forms.
 #include "Testing/Core/Render/PathScene.h"
 
-namespace {
+namespace test::extreme_paths {
 
 /// A homogeneous medium of some optical depth along the view.
 PathTest& OfDepth(PathTest& test, double depth)
@@ -178,4 +178,4 @@ TEST(ExtremePaths, CarryNoMoreThanTheLightsGive)
   }
 }
 
-} // namespace
+} // namespace test::extreme_paths

@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace {
+namespace test::extreme_sampling {
 
 TEST(ExtremeSampling, AMillionPicturesKeepTheirMean)
 {
@@ -177,4 +177,4 @@ TEST(ExtremeSampling, HugePicturesAreMadeOfTiles)
   }
 }
 
-} // namespace
+} // namespace test::extreme_sampling

@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-namespace {
+namespace test::extreme_tolerances {
 
 const glm::i64vec3 Dims(72, 64, 68);
 
@@ -130,4 +130,4 @@ TEST_P(ExtremeTolerance, IsKept)
 INSTANTIATE_TEST_SUITE_P(Geometries, ExtremeTolerance, testing::ValuesIn(Geometries()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-} // namespace
+} // namespace test::extreme_tolerances

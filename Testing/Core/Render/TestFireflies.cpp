@@ -19,7 +19,7 @@
 
 #include <glm/geometric.hpp>
 
-namespace {
+namespace test::fireflies {
 
 constexpr double Pi = 3.14159265358979323846;
 
@@ -152,4 +152,4 @@ TEST(Fireflies, AreAsRareAsTheVarianceSays)
   }
 }
 
-} // namespace
+} // namespace test::fireflies

@@ -13,7 +13,7 @@
 #include <set>
 #include <vector>
 
-namespace {
+namespace test::first_bricks {
 
 const glm::i64vec3 Dims(70, 90, 60);
 
@@ -110,4 +110,4 @@ TEST(FirstBricks, AreThoseThatMostLightWaitsForWhereRankingIsOn)
   }
 }
 
-} // namespace
+} // namespace test::first_bricks

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace test::frame {
 
 template <typename... Field> std::size_t Count(const Field&...) { return sizeof...(Field); }
 
@@ -304,4 +304,4 @@ TEST(RendererOptions, AreOthersWithAnotherValueOfAnyField)
            {"onlyWhatFits", [](auto& o) { o.onlyWhatFits = true; }}});
 }
 
-} // namespace
+} // namespace test::frame

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::geometry {
 
 const glm::i64vec3 Dims(9, 9, 9);
 
@@ -163,4 +163,4 @@ TEST(Geometry, RefusesImpossibleFrames)
   EXPECT_NO_THROW(Render(renderer, ParallelFrame(2, {0, 0}, {8, 8}, -5, 15)));
 }
 
-} // namespace
+} // namespace test::geometry

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <utility>
 
-namespace {
+namespace test::grid_walker {
 
 struct Cells
 {
@@ -241,4 +241,4 @@ TEST(GridWalker, LeapsToTheVeryCellsThatStepsComeTo)
   EXPECT_GT(seen, 1000u);
 }
 
-} // namespace
+} // namespace test::grid_walker

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace test::hard_tolerances {
 
 /// What is hard about a scene.
 struct HardScene
@@ -207,4 +207,4 @@ TEST_P(HardToKeepTo, ATolerance)
 INSTANTIATE_TEST_SUITE_P(Scenes, HardToKeepTo, testing::ValuesIn(HardScenes()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-} // namespace
+} // namespace test::hard_tolerances

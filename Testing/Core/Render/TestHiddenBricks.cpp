@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace {
+namespace test::hidden_bricks {
 
 constexpr glm::i64vec3 Dims(60, 45, 52);
 
@@ -111,4 +111,4 @@ TEST(HiddenBricks, AreNotLoadedBehindAWall)
   EXPECT_LE(some.calls, all.calls * 11 / 10 + 1);
 }
 
-} // namespace
+} // namespace test::hidden_bricks

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace {
+namespace test::hidden_ranges {
 
 constexpr glm::i64vec3 Cube(64, 64, 64);
 
@@ -121,4 +121,4 @@ TEST(HiddenRanges, ASampleIsCountedOnceWhereItsRayGoesBack)
   ExpectTheSameCounts(options, UniformMedium(0.001f), frame);
 }
 
-} // namespace
+} // namespace test::hidden_ranges

@@ -4,7 +4,7 @@
 #include "Core/Inference/InferenceKernels.h"
 #include "Testing/Core/Render/AcceleratedScene.h"
 
-namespace {
+namespace test::inference {
 
 /// Numbers to compute with, whether that is to be had here, and by what pictures are the same.
 struct Rounding
@@ -90,4 +90,4 @@ TEST(InferencePrecision, IsFloatBesideAnAccelerator)
   EXPECT_EQ(Finish(renderer, FrameFor(Way::Still)).pixels, Truth(model, Way::Still).pixels);
 }
 
-} // namespace
+} // namespace test::inference

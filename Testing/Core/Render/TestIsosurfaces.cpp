@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::isosurfaces {
 
 double DataOf(double normalised)
 {
@@ -373,4 +373,4 @@ TEST(Isosurface, NeedsFiniteValuesAndNoPaths)
   EXPECT_THROW(Render(renderer, frame), inr::Error);
 }
 
-} // namespace
+} // namespace test::isosurfaces

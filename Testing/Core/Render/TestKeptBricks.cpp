@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace {
+namespace test::kept_bricks {
 
 /// Plays the steps of a series: each in a renderer of its own, of which the bricks are kept.
 class Player
@@ -148,4 +148,4 @@ TEST(KeptBricks, MakeRoomWhereTheBudgetIsSmall)
   }
 }
 
-} // namespace
+} // namespace test::kept_bricks

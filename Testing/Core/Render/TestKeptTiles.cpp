@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-namespace {
+namespace test::kept_tiles {
 
 constexpr glm::i64vec3 Dims(97, 83, 91);
 
@@ -187,4 +187,4 @@ TEST(KeptTiles, AreLeftWhereTheViewOrTheColoursChange)
   }
 }
 
-} // namespace
+} // namespace test::kept_tiles

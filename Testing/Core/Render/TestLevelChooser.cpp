@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::level_chooser {
 
 /// Waves in the first 48 slices, nothing in 16, and dark smoke in 48 that hides what it hides from
 /// where its opacity jumps on; seen through the smoke.
@@ -102,4 +102,4 @@ TEST(LevelChooser, AllowsMoreBehindSmokeByWhatItHides)
   EXPECT_EQ(clear.level(), 3); // rather than every eighth sample of level 0
 }
 
-} // namespace
+} // namespace test::level_chooser

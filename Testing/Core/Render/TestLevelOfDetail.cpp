@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::level_of_detail {
 
 inr::Ray Spreading(double footprint, double growth)
 {
@@ -126,4 +126,4 @@ TEST(LevelOfDetail, AFootprintIsAsLargeAsAPixel)
   EXPECT_NEAR(ray.footprint + 100 * ray.footprintGrowth, 4.0, 0.02);
 }
 
-} // namespace
+} // namespace test::level_of_detail

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-namespace {
+namespace test::lost_accelerator {
 
 /// Whatever is on its way when the device is lost, nobody sees it, and nobody asks it again.
 TEST(Accelerator, MayFailAtAnyCall)
@@ -120,4 +120,4 @@ TEST(Accelerator, ThatComputesSomethingElseIsNotUsed)
   }
 }
 
-} // namespace
+} // namespace test::lost_accelerator

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::majorant_grid {
 
 inr::MacroCells RandomCells(const glm::i64vec3& dims)
 {
@@ -120,4 +120,4 @@ TEST(MajorantGrid, DoNotDependOnTheNumberOfThreads)
   }
 }
 
-} // namespace
+} // namespace test::majorant_grid

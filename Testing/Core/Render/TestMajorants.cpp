@@ -14,7 +14,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::majorants {
 
 float RandomAt(const glm::vec3& place)
 {
@@ -376,4 +376,4 @@ TEST(Majorants, ClampNoSampleOfAScaledVolume)
   }
 }
 
-} // namespace
+} // namespace test::majorants

@@ -8,7 +8,7 @@
 #include <atomic>
 #include <cmath>
 
-namespace {
+namespace test::marching {
 
 /// A ball of radius 0.3 with a soft rim.
 float Ball(const glm::vec3& u)
@@ -189,4 +189,4 @@ TEST(Marching, NeedsATransferFunction)
   EXPECT_THROW(renderer.render(Diagonal(8), image), inr::Error);
 }
 
-} // namespace
+} // namespace test::marching

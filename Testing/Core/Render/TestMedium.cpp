@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::medium {
 
 constexpr double Steps[] = {0.1, 0.5, 1.0, 3.0};
 
@@ -167,4 +167,4 @@ TEST_P(Medium, EmptyIsExactlyEmptyAndCostsNothing)
 INSTANTIATE_TEST_SUITE_P(Rays, Medium, testing::Bool(),
                          [](const auto& info) { return info.param ? "Cached" : "Uncached"; });
 
-} // namespace
+} // namespace test::medium

@@ -9,7 +9,7 @@
 #include <atomic>
 #include <memory>
 
-namespace {
+namespace test::only_what_fits {
 
 const glm::i64vec3 Dims(90, 70, 80);
 constexpr std::int64_t Enough = 64 << 20;
@@ -184,4 +184,4 @@ INSTANTIATE_TEST_SUITE_P(Modes, OnlyWhatFits,
                            return std::string(marches ? "RayMarching" : "PathTracing");
                          });
 
-} // namespace
+} // namespace test::only_what_fits

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::parts_of_bricks {
 
 constexpr glm::i64vec3 Dims(96, 83, 90);
 
@@ -296,4 +296,4 @@ TEST_P(PartsOfBricks, StandInForFinerOnes)
   }
 }
 
-} // namespace
+} // namespace test::parts_of_bricks

@@ -10,7 +10,7 @@
 #include <memory>
 #include <set>
 
-namespace {
+namespace test::path_picture {
 
 const glm::i64vec3 Dims(33, 33, 33);
 
@@ -489,4 +489,4 @@ TEST(PathPicture, RefusesWhatIsOutOfRange)
   EXPECT_THROW(renderer.render(frame, image), inr::Error);
 }
 
-} // namespace
+} // namespace test::path_picture

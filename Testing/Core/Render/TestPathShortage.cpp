@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::path_shortage {
 
 constexpr bool First = true;
 constexpr bool Waits = true;
@@ -17,8 +17,6 @@ inr::PathShortage Found()
   shortage.note();
   return shortage;
 }
-
-} // namespace
 
 TEST(PathShortage, IsNotSupposed)
 {
@@ -67,3 +65,5 @@ TEST(PathShortage, ComesOfOthers)
   shortage.begin(!First, !Waits, Contested);
   EXPECT_TRUE(shortage.lacks());
 }
+
+} // namespace test::path_shortage

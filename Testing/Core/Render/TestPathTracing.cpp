@@ -7,7 +7,7 @@
 
 #include <glm/vector_relational.hpp>
 
-namespace {
+namespace test::path_tracing {
 
 /// Exact ranges of a field that equals u.z.
 inr::MacroCells RampCells(const glm::i64vec3& dims)
@@ -357,4 +357,4 @@ TEST(PathTracing, RefusesWhatIsOutOfRange)
   });
 }
 
-} // namespace
+} // namespace test::path_tracing

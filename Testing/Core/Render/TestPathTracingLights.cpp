@@ -3,7 +3,7 @@
 // Single scattering from every kind of light against quadrature, and the phase function by itself.
 #include "Testing/Core/Render/PathScene.h"
 
-namespace {
+namespace test::path_tracing_lights {
 
 constexpr double Pi = 3.14159265358979323846;
 
@@ -198,4 +198,4 @@ TEST(PathTracingLights, AnyDirectionIsAsLikelyAsAnother)
   }
 }
 
-} // namespace
+} // namespace test::path_tracing_lights

@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-namespace {
+namespace test::picture_parts {
 
 std::int64_t Pixels(const inr::PixelBox& box) { return std::int64_t{box.size().x} * box.size().y; }
 
@@ -123,4 +123,4 @@ TEST(PictureParts, ShowTheVolume)
   }
 }
 
-} // namespace
+} // namespace test::picture_parts

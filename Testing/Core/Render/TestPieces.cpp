@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace {
+namespace test::pieces {
 
 const glm::i64vec3 Dims(33, 33, 33);
 
@@ -247,4 +247,4 @@ TEST(Pieces, ArePassedThroughByLight)
   }
 }
 
-} // namespace
+} // namespace test::pieces

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace test::pre_integration {
 
 inr::VolumeInfo VolumeBetween(double low, double high)
 {
@@ -479,4 +479,4 @@ TEST(PreIntegration, IsForWhatIsComposited)
   EXPECT_EQ(Render(renderer, frame).pixels, plain.pixels);
 }
 
-} // namespace
+} // namespace test::pre_integration

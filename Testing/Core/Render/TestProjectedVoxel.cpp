@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace {
+namespace test::projected_voxel {
 
 glm::dvec3 RandomDirection(std::uint64_t number)
 {
@@ -131,4 +131,4 @@ TEST(ProjectedVoxel, FootprintsAreOfTheVoxelAsTheRaySeesIt)
   EXPECT_NEAR(inr::RayGeometry(frame, {1, 33, 33}).ray(3, 3).footprint, 0.75, 1e-9);
 }
 
-} // namespace
+} // namespace test::projected_voxel

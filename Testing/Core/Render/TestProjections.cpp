@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::projections {
 
 using inr::BlendMode;
 
@@ -314,4 +314,4 @@ TEST(Projection, KnowsNoPathsAndNoRangeThatIsNone)
   EXPECT_THROW(Render(renderer, frame), inr::Error);
 }
 
-} // namespace
+} // namespace test::projections

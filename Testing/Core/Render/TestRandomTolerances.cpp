@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <iostream>
 
-namespace {
+namespace test::random_tolerances {
 
 std::uint64_t NumberFrom(const char* variable, std::uint64_t otherwise)
 {
@@ -111,4 +111,4 @@ TEST(RandomTolerances, AreKept)
   EXPECT_LT(worst.samples, worst.exactSamples) << "nothing was spared";
 }
 
-} // namespace
+} // namespace test::random_tolerances

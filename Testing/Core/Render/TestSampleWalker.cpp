@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace test::sample_walker {
 
 constexpr int Levels = 6;
 const glm::i64vec3 VolumeDims(150, 90, 120);
@@ -330,4 +330,4 @@ TEST(SampleWalker, EndsWithTheRay)
   }
 }
 
-} // namespace
+} // namespace test::sample_walker

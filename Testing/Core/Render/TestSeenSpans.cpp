@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::seen_spans {
 
 constexpr int Levels = 5;
 const glm::i64vec3 VolumeDims(160, 96, 130);
@@ -318,4 +318,4 @@ TEST_F(SeenCorner, IsDrawnBetweenLayers)
   this->expectTheSameWithoutEmptyTiles(frame);
 }
 
-} // namespace
+} // namespace test::seen_spans

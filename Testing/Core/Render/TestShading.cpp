@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::shading {
 
 inr::Light Sun(const glm::dvec3& direction, const glm::vec3& color = glm::vec3(1))
 {
@@ -202,4 +202,4 @@ TEST(Shading, RefusesLightsThatAreNone)
   }
 }
 
-} // namespace
+} // namespace test::shading

@@ -17,7 +17,7 @@
 #include <string>
 #include <thread>
 
-namespace {
+namespace test::sharing {
 
 TEST(Sharing, ABrickIsInferredOnceForAllViewsOfAVolume)
 {
@@ -369,4 +369,4 @@ TEST(Sharing, RenderersOnSeveralThreadsHaveTheirPictures)
   EXPECT_LE(most, HalfOfASharedView + tables);
 }
 
-} // namespace
+} // namespace test::sharing

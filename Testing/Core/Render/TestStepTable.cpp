@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::step_table {
 
 /// RGBA of a sample of one of the lengths, read as the compositing kernels do.
 glm::vec4 Read(const inr::StepLookup& lookup, float y, int length)
@@ -66,4 +66,4 @@ TEST(StepTable, StepsAtTheEndsOfTheRange)
   EXPECT_FLOAT_EQ(Read(table.lookup(), 0.8f, 2).w, 0.9375f);
 }
 
-} // namespace
+} // namespace test::step_table

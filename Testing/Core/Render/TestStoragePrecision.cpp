@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace {
+namespace test::storage_precision {
 
 constexpr glm::i64vec3 Cube(72, 72, 72);
 
@@ -123,4 +123,4 @@ TEST(StoragePrecision, FollowsWhatAPictureIsMadeOf)
   EXPECT_THROW(Chosen(frame, inr::TransferFunction()), inr::Error);
 }
 
-} // namespace
+} // namespace test::storage_precision

@@ -10,7 +10,7 @@
 
 #include <atomic>
 
-namespace {
+namespace test::tolerance_limits {
 
 /// Macro-cells of 300 voxels would have to be known at once.
 TEST(ToleranceLimits, TakesEverySampleOfWhatIsTooMuchToMeasure)
@@ -168,4 +168,4 @@ TEST(ToleranceLimits, MeasureNothingWhereTooManyCellsAreSeen)
   EXPECT_EQ(known.picture.pixels, fresh.picture.pixels);
 }
 
-} // namespace
+} // namespace test::tolerance_limits

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::tolerances_from_afar {
 
 struct Afar
 {
@@ -98,4 +98,4 @@ TEST(TolerancesFromAfar, CountCellsWholeThatRaysMeetAtTheirCorners)
   EXPECT_LT(seen.samples, 0.9);
 }
 
-} // namespace
+} // namespace test::tolerances_from_afar

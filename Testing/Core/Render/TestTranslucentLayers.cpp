@@ -7,7 +7,7 @@
 #include "Testing/Core/Render/PathScene.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
-namespace {
+namespace test::translucent_layers {
 
 using Layers = std::shared_ptr<inr::TranslucentLayers>;
 
@@ -206,4 +206,4 @@ TEST(TranslucentLayers, OfAnotherSizeOrOrderAreRefused)
   EXPECT_THROW(Render(renderer, frame), inr::Error);
 }
 
-} // namespace
+} // namespace test::translucent_layers

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::visible_blocks {
 
 /// A few cells that can be seen, and the majorants of all levels.
 struct Visible
@@ -153,4 +153,4 @@ TEST(SufficientBricks, KnowWhatIsWanted)
   EXPECT_GT(partial, 0);
 }
 
-} // namespace
+} // namespace test::visible_blocks

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-namespace {
+namespace test::work_done {
 
 constexpr std::int64_t BytesOfABrick = 9 * 9 * 9 * 2;
 
@@ -170,4 +170,4 @@ TEST(WorkDone, CountsACellOnceWhereRaysWaitForBricks)
   EXPECT_EQ(waiting.cells, again.cells);
 }
 
-} // namespace
+} // namespace test::work_done

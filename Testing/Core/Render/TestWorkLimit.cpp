@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace {
+namespace test::work_limit {
 
 constexpr double Seconds = 0.02;
 
@@ -60,4 +60,4 @@ TEST(WorkLimit, LooksAtNoClockWhereItIsCounted)
   EXPECT_TRUE(timed.endsWithin(2e9));
 }
 
-} // namespace
+} // namespace test::work_limit

@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-namespace {
+namespace test::work_spared {
 
 constexpr std::int64_t Stride = 8; // of bricks of 9 voxels
 
@@ -351,4 +351,4 @@ TEST(WorkSpared, NoBrickThatHasNoRoom)
   }
 }
 
-} // namespace
+} // namespace test::work_spared

@@ -25,7 +25,7 @@ template <class T> struct Field
 
 /// Smooth waves between about -0.9 and 0.9, mapped to [low, high] and converted to T.
 template <class T>
-Field<T> Waves(const glm::i64vec3& dims, inr::ScalarType type, double low, double high)
+Field<T> WaveField(const glm::i64vec3& dims, inr::ScalarType type, double low, double high)
 {
   Field<T> field{dims, type, {}};
   for (std::int64_t z = 0; z < dims.z; ++z) {
@@ -41,7 +41,10 @@ Field<T> Waves(const glm::i64vec3& dims, inr::ScalarType type, double low, doubl
   return field;
 }
 
-inline Field<float> Waves() { return Waves<float>({24, 20, 17}, inr::ScalarType::Float32, -1, 1); }
+inline Field<float> WaveField()
+{
+  return WaveField<float>({24, 20, 17}, inr::ScalarType::Float32, -1, 1);
+}
 
 inline inr::TrainingOptions Steps(std::uint64_t steps)
 {

@@ -23,7 +23,7 @@ constexpr glm::i64vec3 StreamedDims(60, 71, 83);
 inline const Field<float>& StreamedField()
 {
   static const auto* const field =
-      new Field<float>(Waves<float>(StreamedDims, inr::ScalarType::Float32, -3, 5));
+      new Field<float>(WaveField<float>(StreamedDims, inr::ScalarType::Float32, -3, 5));
   return *field;
 }
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-namespace {
+namespace test::accelerated_descent {
 
 /// And takes no more steps again than there are between two copies.
 TEST(AcceleratedDescent, KeepsACopyOfLateSteps)
@@ -234,4 +234,4 @@ INSTANTIATE_TEST_SUITE_P(Faults, FirstStep, testing::ValuesIn(Faults),
                            return std::string(info.param.name);
                          });
 
-} // namespace
+} // namespace test::accelerated_descent

@@ -16,7 +16,7 @@
 
 #include <thread>
 
-namespace {
+namespace test::accelerated_training {
 
 using inr::AccelerationEvent;
 using inr::TrainingPipeline;
@@ -64,7 +64,7 @@ protected:
   static std::string cpu() { return inr::InstructionSetName(inr::ChooseInstructionSet("")); }
 
   FakeTrainingDevice Device;
-  Field<float> Data = Waves();
+  Field<float> Data = WaveField();
   std::vector<AccelerationEvent> Events;
   std::vector<std::string> Texts;
 };
@@ -312,4 +312,4 @@ TEST(AcceleratedMemory, IsReckonedWith)
             14 * parameters);
 }
 
-} // namespace
+} // namespace test::accelerated_training

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace {
+namespace test::adam {
 
 constexpr float Rate = 0.01f;
 constexpr double Epsilon = 1e-15;
@@ -155,4 +155,4 @@ TEST(Adam, RemembersATenthOfTheUpdates)
   EXPECT_FLOAT_EQ(steps[inr::LastAdamUpdate].beta2, 0.999f);
 }
 
-} // namespace
+} // namespace test::adam

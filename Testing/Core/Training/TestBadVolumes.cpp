@@ -16,7 +16,7 @@
 #include <functional>
 #include <limits>
 
-namespace {
+namespace test::bad_volumes {
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 
@@ -300,7 +300,7 @@ TEST(ConstantVolumes, HaveTheRangeOfWhatTheNetworkSays)
   inr::TrainingOptions options = Steps(5);
   options.description = inr::ChooseDescription({24, 20, 17}, Float, 0);
   options.description->network.outputActivation = inr::Activation::Sigmoid;
-  Field<float> field = Waves();
+  Field<float> field = WaveField();
   std::fill(field.values.begin(), field.values.end(), 3.0f);
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
   EXPECT_EQ(Decode(model).front(), 0.5f);
@@ -320,7 +320,7 @@ bool Diverges(int hiddenLayers, std::uint64_t steps)
   options.description->network.outputActivation = inr::Activation::Exponential;
   options.description->network.hiddenLayers = hiddenLayers;
   try {
-    const inr::ModelPointer model = inr::TrainModel(Waves().data(), {}, options);
+    const inr::ModelPointer model = inr::TrainModel(WaveField().data(), {}, options);
     ExpectFinite(*model);
     EXPECT_TRUE(std::isfinite(model->quality->psnr) && std::isfinite(model->quality->maxError));
     return false;
@@ -344,4 +344,4 @@ TEST(Divergence, IsSaidWhateverTheStepItComesIn)
   EXPECT_GT(trained, 0);
 }
 
-} // namespace
+} // namespace test::bad_volumes

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace test::block_grid {
 
 struct Case
 {
@@ -77,4 +77,4 @@ TEST(BlockGrid, KeepsRowsWhole)
   EXPECT_LT(inr::BlockGrid({1 << 20, 64, 64}, 1 << 20).extent().x, 1.0f);
 }
 
-} // namespace
+} // namespace test::block_grid

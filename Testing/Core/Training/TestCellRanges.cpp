@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace {
+namespace test::cell_ranges {
 
 /// Of integers between two doubles, from one end of the gap to the other.
 TEST(CellRanges, HoldVastIntegers)
@@ -29,4 +29,4 @@ TEST(CellRanges, HoldVastIntegers)
   }
 }
 
-} // namespace
+} // namespace test::cell_ranges

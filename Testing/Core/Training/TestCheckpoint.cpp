@@ -15,7 +15,7 @@
 #include <cstring>
 #include <sys/resource.h>
 
-namespace {
+namespace test::checkpoint {
 
 const inr::TrainingIdentity Identity{{"Seed", "1"}, {"the array", R"("h\u00e9\"")"}};
 const inr::TrainingState State{1234, 20000, 61.75, 38.5, true};
@@ -231,7 +231,7 @@ TEST_F(Checkpoint, KeepsTheOldOneWhenTheDiskIsFull)
 
 TEST_F(Checkpoint, TakesATrainingUpBitForBit)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::InMemorySource source(field.data(), -1, 1);
   inr::StratifiedBatches batches(source);
   const inr::Arena threads(2);
@@ -268,4 +268,4 @@ TEST_F(Checkpoint, TakesATrainingUpBitForBit)
   }
 }
 
-} // namespace
+} // namespace test::checkpoint

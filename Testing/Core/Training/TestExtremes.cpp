@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace {
+namespace test::extremes {
 
 /// A volume whose values are multiples of 1/1024 from 0 to 1, times a, plus b: exact for all below.
 struct Change
@@ -21,7 +21,7 @@ std::ostream& operator<<(std::ostream& out, const Change& change) { return out <
 
 template <class T> Field<T> Changed(inr::ScalarType type, const Change& change)
 {
-  Field<T> field = Waves<T>({14, 12, 9}, type, 0, 1);
+  Field<T> field = WaveField<T>({14, 12, 9}, type, 0, 1);
   for (T& value : field.values) {
     const double step = std::round(1024 * static_cast<double>(value)) / 1024;
     value = static_cast<T>(change.a * step + change.b);
@@ -80,4 +80,4 @@ INSTANTIATE_TEST_SUITE_P(Changes, ChangedFloats,
                                          Change{"last_bits", 0x1p-13, 1}),
                          [](const auto& info) { return info.param.name; });
 
-} // namespace
+} // namespace test::extremes

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace {
+namespace test::gradient_exchange {
 
 constexpr int Size = 3;
 constexpr std::size_t Weights = 21;
@@ -137,8 +137,6 @@ std::vector<inr::Description> Descriptions()
   return {large, odd};
 }
 
-} // namespace
-
 TEST(GradientExchange, GivesAllTheSumInTheOrderOfRanks)
 {
   for (const inr::Description& description : Descriptions()) {
@@ -213,3 +211,5 @@ TEST(GradientExchange, GivesNothingWhereOneWasStopped)
     EXPECT_EQ(share.GridValues, Share(SmallDescription(), group.rank()).GridValues);
   });
 }
+
+} // namespace test::gradient_exchange

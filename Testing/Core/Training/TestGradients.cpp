@@ -14,7 +14,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::gradients {
 
 constexpr std::int64_t SampleCount = 1000; // not a multiple of any block
 
@@ -172,7 +172,7 @@ TEST(Gradients, UnknownTargetsCarryNone)
 // Whenever it is stopped, a step that is repeated gives what it would have given.
 TEST(GradientDescent, AStoppedStepChangesNothing)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::InMemorySource source(field.data(), -1, 1);
   inr::StratifiedBatches batches(source);
   const inr::Arena threads(2);
@@ -241,7 +241,7 @@ struct StepTaken
 
 std::vector<StepTaken> TakeSteps(const inr::Description& description, int count)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::InMemorySource source(field.data(), -1, 1);
   inr::StratifiedBatches batches(source);
   const inr::Arena threads(2);
@@ -335,4 +335,4 @@ TEST(LearningRate, IsConstantThenFallsInALine)
   }
 }
 
-} // namespace
+} // namespace test::gradients

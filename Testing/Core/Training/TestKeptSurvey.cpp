@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <thread>
 
-namespace {
+namespace test::kept_survey {
 
 using inr::CheckpointEvent;
 
@@ -278,4 +278,4 @@ TEST(Surveys, OfAllProcessesAreRemovedAndNothingElse)
   inr::RemoveSurveys(folder.file("nowhere/a.checkpoint"));
 }
 
-} // namespace
+} // namespace test::kept_survey

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::model_size {
 
 /// Bytes of volume over bytes of the file that a chosen model would make.
 double RatioOf(const glm::i64vec3& dims, inr::ScalarType type, double wanted)
@@ -64,4 +64,4 @@ TEST(ModelSize, IsReadableUpstream)
   }
 }
 
-} // namespace
+} // namespace test::model_size

@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-namespace {
+namespace test::orthogonal_update {
 
 constexpr float Kept = 0.95f;
 constexpr float Rate = 0.02f;
@@ -221,4 +221,4 @@ TEST(OrthogonalUpdate, MakesAllOfALayerNoNumbersWhereOneIsNone)
   }
 }
 
-} // namespace
+} // namespace test::orthogonal_update

@@ -16,7 +16,7 @@
 #include <new>
 #include <optional>
 
-namespace {
+namespace test::parallel_streaming {
 
 bool SameRanges(const inr::Model& a, const inr::Model& b)
 {
@@ -37,8 +37,6 @@ std::unique_ptr<inr::SamplePool> PoolOf(const inr::BlockGrid& blocks, FieldReade
   }
   return pool;
 }
-
-} // namespace
 
 // With few blocks and with more than a batch has items; 3 do not divide them.
 TEST(ParallelStreaming, SharesOutTheBatchesOfOneProcess)
@@ -253,7 +251,7 @@ TEST(ParallelStreaming, HeedsTheSmallestMemoryLimitAndTheLargestVoxels)
 
 TEST(ParallelStreaming, RefusesDifferentTypes)
 {
-  const Field<double> doubles = Waves<double>(StreamedDims, inr::ScalarType::Float64, -3, 5);
+  const Field<double> doubles = WaveField<double>(StreamedDims, inr::ScalarType::Float64, -3, 5);
   std::vector<Outcome> outcomes(2);
   InGroup(2, [&](const ThreadGroup& group) {
     FieldReader<float> floatReader(StreamedField());
@@ -275,3 +273,5 @@ TEST(ParallelStreaming, SaysHowMuchMemoryEachProcessNeeds)
   ExpectErrors(TrainTogether(2, options),
                "in each process and its share of the MemoryLimit is 100 MiB");
 }
+
+} // namespace test::parallel_streaming

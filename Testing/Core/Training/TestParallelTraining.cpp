@@ -22,7 +22,7 @@
 #include <optional>
 #include <thread>
 
-namespace {
+namespace test::parallel_training {
 
 constexpr glm::i64vec3 Dims(26, 21, 17);
 
@@ -33,7 +33,7 @@ inr::VolumeInfo Info()
   return info;
 }
 
-Field<float> Whole() { return Waves<float>(Dims, inr::ScalarType::Float32, -1, 1); }
+Field<float> Whole() { return WaveField<float>(Dims, inr::ScalarType::Float32, -1, 1); }
 
 /// A copy of some of a field's voxels.
 struct Piece
@@ -425,4 +425,4 @@ TEST(ParallelTraining, OfAConstantVolumeIsExact)
   EXPECT_EQ(outcomes[1].model->training->steps, 0u);
 }
 
-} // namespace
+} // namespace test::parallel_training

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::psnr_estimate {
 
 /// Four spots of five voxels' width in a cube of zeros.
 Field<float> Spots()
@@ -111,4 +111,4 @@ TEST(VoxelDraw, GivesMeansThatAreNotBiased)
   EXPECT_NEAR(drawn / count, mean, 0.02 * mean);
 }
 
-} // namespace
+} // namespace test::psnr_estimate

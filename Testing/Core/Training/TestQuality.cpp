@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace {
+namespace test::quality {
 
 struct Comparison
 {
@@ -108,25 +108,25 @@ void ExpectDirectValues(const Comparison& c)
   EXPECT_NEAR(c.Report.quality.ssim, DirectSsim(c), 1e-7);
 }
 
-TEST(Quality, EqualsTheDefinitions) { ExpectDirectValues(Comparison(Waves())); }
+TEST(Quality, EqualsTheDefinitions) { ExpectDirectValues(Comparison(WaveField())); }
 
 TEST(Quality, LeavesOutWhatIsNotFinite)
 {
-  Field<float> field = Waves();
+  Field<float> field = WaveField();
   field.values[1234] = std::numeric_limits<float>::quiet_NaN();
   ExpectDirectValues(Comparison(std::move(field)));
 }
 
 TEST(Quality, SsimIsUndefinedForThinVolumes)
 {
-  const Comparison flat(Waves<float>({20, 20, 3}, inr::ScalarType::Float32, -1, 1));
+  const Comparison flat(WaveField<float>({20, 20, 3}, inr::ScalarType::Float32, -1, 1));
   EXPECT_TRUE(std::isnan(flat.Report.quality.ssim));
   EXPECT_TRUE(std::isfinite(flat.Report.quality.psnr));
 }
 
 TEST(Quality, AsksWithinASlice)
 {
-  const Field<float> field = Waves<float>({512, 256, 1}, inr::ScalarType::Float32, -1, 1);
+  const Field<float> field = WaveField<float>({512, 256, 1}, inr::ScalarType::Float32, -1, 1);
   inr::VolumeInfo info;
   info.low = -1;
   const auto evaluator = inr::MakeEvaluator(RandomModel(SmallDescription()));
@@ -164,14 +164,14 @@ void ExpectDirectRanges(const Comparison& c)
   }
 }
 
-TEST(Quality, MacroCellsHoldTheirVoxelsAndAnApron) { ExpectDirectRanges(Comparison(Waves())); }
+TEST(Quality, MacroCellsHoldTheirVoxelsAndAnApron) { ExpectDirectRanges(Comparison(WaveField())); }
 
 // They are compared in parts; each voxel and each window counts once.
 TEST(Quality, OfLargeSlicesEqualsTheDefinitions)
 {
-  const Comparison c(Waves<float>({390, 388, 7}, inr::ScalarType::Float32, -1, 1));
+  const Comparison c(WaveField<float>({390, 388, 7}, inr::ScalarType::Float32, -1, 1));
   ExpectDirectValues(c);
   ExpectDirectRanges(c);
 }
 
-} // namespace
+} // namespace test::quality

@@ -19,7 +19,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace {
+namespace test::quantise {
 
 const inr::EvaluateKernel& FastestKernel()
 {
@@ -53,7 +53,7 @@ struct Quantising : testing::Test
 
   static const inr::EvaluateKernel& kernel() { return FastestKernel(); }
 
-  Field<float> Data = Waves();
+  Field<float> Data = WaveField();
   inr::InMemorySource Source{this->Data.data(), -1, 1};
   inr::Arena Threads{2};
   inr::PsnrEstimate Estimate{this->Source, 1, this->Threads, 1 << 13}; ///< of 8,160 voxels
@@ -284,7 +284,7 @@ double Share(const Field<T>& field, double ratio, std::uint64_t steps = 60, int 
 // A smooth field is fitted so well that many digits of each parameter count.
 TEST(TargetRatio, IsKeptByAGoodFit)
 {
-  const Field<float> field = Waves<float>({40, 40, 40}, inr::ScalarType::Float32, 0, 1);
+  const Field<float> field = WaveField<float>({40, 40, 40}, inr::ScalarType::Float32, 0, 1);
   for (const double ratio : {8.0, 25.0}) {
     const double share = Share(field, ratio, 1000);
     EXPECT_LE(share, 1.0) << ratio;
@@ -294,7 +294,7 @@ TEST(TargetRatio, IsKeptByAGoodFit)
 
 TEST(TargetRatio, IsKept)
 {
-  Field<float> noise = Waves<float>({60, 50, 40}, inr::ScalarType::Float32, 0, 1);
+  Field<float> noise = WaveField<float>({60, 50, 40}, inr::ScalarType::Float32, 0, 1);
   for (std::size_t k = 0; k < noise.values.size(); ++k) {
     noise.values[k] += inr::RandomUnit(5, k);
   }
@@ -308,7 +308,7 @@ TEST(TargetRatio, IsKept)
 // Ranges of small cells are packed to a part of what they are.
 TEST(TargetRatio, IsUsedWithSmallCells)
 {
-  const Field<float> field = Waves<float>({40, 40, 40}, inr::ScalarType::Float32, 0, 1);
+  const Field<float> field = WaveField<float>({40, 40, 40}, inr::ScalarType::Float32, 0, 1);
   for (const auto& [edge, ratio] : {std::pair(1, 3.0), {2, 8.0}}) {
     const double share = Share(field, ratio, 200, edge);
     EXPECT_LE(share, 1.0) << edge;
@@ -320,9 +320,9 @@ TEST(TargetRatio, OutOfReachCostsNoQuality)
 {
   inr::TrainingOptions options = Steps(60);
   options.targetRatio = 1e6;
-  const double out = inr::TrainModel(Waves().data(), {}, options)->quality->psnr;
+  const double out = inr::TrainModel(WaveField().data(), {}, options)->quality->psnr;
   options.storedAs = inr::ParameterType::Half;
-  EXPECT_GT(out, inr::TrainModel(Waves().data(), {}, options)->quality->psnr - 0.2);
+  EXPECT_GT(out, inr::TrainModel(WaveField().data(), {}, options)->quality->psnr - 0.2);
 }
 
-} // namespace
+} // namespace test::quantise

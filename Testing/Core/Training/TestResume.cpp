@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <new>
 
-namespace {
+namespace test::resume {
 
 using inr::CheckpointEvent;
 
@@ -83,7 +83,7 @@ protected:
 
   TemporaryFolder Folder;
   std::string Path = Folder.file("a.inr.checkpoint");
-  Field<float> Data = Waves();
+  Field<float> Data = WaveField();
   std::vector<CheckpointEvent> Events;
   std::vector<std::string> Texts;
 };
@@ -194,7 +194,7 @@ TEST_F(Resume, EndsAtTheSameStepByQuality)
 TEST_F(Resume, GivesTheModelThatTrainingFromPiecesWouldHaveGiven)
 {
   const Field<float> field =
-      Waves<float>({128, 140, 153}, inr::ScalarType::Float32, -3, 5); // three pieces
+      WaveField<float>({128, 140, 153}, inr::ScalarType::Float32, -3, 5); // three pieces
   inr::TrainingOptions options = this->options(200);
   options.memoryLimit = std::int64_t{120} << 20;
   const auto trainFrom = [&](const inr::TrainingObserver& observer) {
@@ -353,4 +353,4 @@ TEST_F(Resume, ClearsAwayWhatAKilledProcessLeft)
   EXPECT_TRUE(std::filesystem::exists(others));
 }
 
-} // namespace
+} // namespace test::resume

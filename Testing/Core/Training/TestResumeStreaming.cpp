@@ -16,7 +16,7 @@
 #include <filesystem>
 #include <thread>
 
-namespace {
+namespace test::resume_streaming {
 
 using inr::CheckpointEvent;
 
@@ -103,7 +103,7 @@ protected:
   TemporaryFolder Folder;
   std::string Path = Folder.file("a.inr.checkpoint");
   inr::TrainingOptions Options = Steps(40);
-  Field<float> Data = Waves<float>({64, 70, 77}, inr::ScalarType::Float32, -3, 5);
+  Field<float> Data = WaveField<float>({64, 70, 77}, inr::ScalarType::Float32, -3, 5);
   std::function<void(int)> Before;
 
   double Read = 0; ///< times the volume, in the last training
@@ -321,4 +321,4 @@ TEST_F(ResumeStreaming, IsNoneOfOtherSettings)
       << this->Warning;
 }
 
-} // namespace
+} // namespace test::resume_streaming

@@ -10,7 +10,7 @@
 #include <array>
 #include <thread>
 
-namespace {
+namespace test::sample_pool {
 
 constexpr std::uint64_t Planned = 100;
 
@@ -53,7 +53,7 @@ public:
     this->Samples.draw(1, step, 0, inr::BatchSize, this->Positions.data(), this->Targets.data());
   }
 
-  Field<float> Volume = Waves<float>({50, 41, 37}, inr::ScalarType::Float32, -1, 1);
+  Field<float> Volume = WaveField<float>({50, 41, 37}, inr::ScalarType::Float32, -1, 1);
   FieldReader<float> Reader{this->Volume};
   inr::Arena Threads{2};
   inr::BlockGrid Grid{this->Volume.dims, 12000};
@@ -127,4 +127,4 @@ TEST_F(Pool, WaitsForTheReaderNoLongerThanItIsLet)
   EXPECT_EQ(asked, 3);
 }
 
-} // namespace
+} // namespace test::sample_pool

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::step_plan {
 
 constexpr std::uint64_t ToTarget = 10000;
 
@@ -74,7 +74,7 @@ TEST(StepPlan, OfATargetDoesNotDependOnATimeLimitThatIsASafetyNet)
   inr::TrainingOptions options = Options(0, 0, 20);
   options.description = SmallDescription();
   options.storedAs = inr::ParameterType::Half;
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::ModelPointer without = inr::TrainModel(field.data(), {}, options);
   options.timeLimit = 1e9;
   const inr::ModelPointer with = inr::TrainModel(field.data(), {}, options);
@@ -88,8 +88,8 @@ TEST(StepPlan, IsMadeByTheClockWhereStepsAreLimitedToo)
   inr::TrainingOptions options = Options(1000000000, 0.5);
   options.description = SmallDescription();
   options.storedAs = inr::ParameterType::Half;
-  const inr::ModelPointer model = inr::TrainModel(Waves().data(), {}, options);
+  const inr::ModelPointer model = inr::TrainModel(WaveField().data(), {}, options);
   EXPECT_LT(model->training->plannedSteps, 750000000u);
 }
 
-} // namespace
+} // namespace test::step_plan

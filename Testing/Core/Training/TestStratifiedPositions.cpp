@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-namespace {
+namespace test::stratified_positions {
 
 constexpr std::uint64_t Stream = 5;
 
@@ -92,4 +92,4 @@ TEST(StratifiedPositions, StayInTheMiddleOfAnAxisOfOneVoxel)
   }
 }
 
-} // namespace
+} // namespace test::stratified_positions

@@ -11,12 +11,12 @@
 #include <algorithm>
 #include <limits>
 
-namespace {
+namespace test::streamed_origin {
 
 /// Waves of 1000 steps from `offset` on.
 template <class T> Field<T> Large(inr::ScalarType type, T offset, double step)
 {
-  Field<T> field = Waves<T>({48, 40, 44}, type, 0, 1000);
+  Field<T> field = WaveField<T>({48, 40, 44}, type, 0, 1000);
   for (T& value : field.values) {
     value = offset + static_cast<T>(step * std::round(static_cast<double>(value)));
   }
@@ -167,4 +167,4 @@ TEST_F(StreamedOriginResumed, IsMissedInAnOlderCheckpoint)
   EXPECT_NE(this->Ignored.find("e+18 here"), std::string::npos);
 }
 
-} // namespace
+} // namespace test::streamed_origin

@@ -16,7 +16,7 @@
 #include <new>
 #include <thread>
 
-namespace {
+namespace test::streamed_training {
 
 constexpr std::int64_t MiB = std::int64_t{1} << 20;
 
@@ -24,7 +24,7 @@ constexpr std::int64_t MiB = std::int64_t{1} << 20;
 const Field<float>& LargeField()
 {
   static const auto* const field =
-      new Field<float>(Waves<float>({128, 140, 153}, inr::ScalarType::Float32, -3, 5));
+      new Field<float>(WaveField<float>({128, 140, 153}, inr::ScalarType::Float32, -3, 5));
   return *field;
 }
 
@@ -360,4 +360,4 @@ TEST(StreamedTraining, LeavesOutWhatIsNotFinite)
   EXPECT_GT(model->quality->psnr, whole->quality->psnr - 0.3);
 }
 
-} // namespace
+} // namespace test::streamed_training

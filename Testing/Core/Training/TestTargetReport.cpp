@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace test::target_report {
 
 struct TargetReport : testing::Test
 {
@@ -59,8 +59,8 @@ TEST_F(TargetReport, IsOfTheModelAsItIsTrained)
   inr::TrainingOptions options = Steps(3);
   options.description = SmallDescription();
   options.targetPsnr = 90;
-  const inr::ModelPointer model = inr::TrainModel(Waves().data(), {}, options);
+  const inr::ModelPointer model = inr::TrainModel(WaveField().data(), {}, options);
   EXPECT_NE(inr::ShortOfTarget(*model, options), "");
 }
 
-} // namespace
+} // namespace test::target_report

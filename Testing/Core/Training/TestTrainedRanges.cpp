@@ -14,12 +14,12 @@
 #include <cstdint>
 #include <memory>
 
-namespace {
+namespace test::trained_ranges {
 
 /// Waves with noise that no such network learns: it goes up and down between the voxels.
 Field<float> NoisyWaves()
 {
-  Field<float> field = Waves<float>({60, 52, 45}, inr::ScalarType::Float32, 0, 1);
+  Field<float> field = WaveField<float>({60, 52, 45}, inr::ScalarType::Float32, 0, 1);
   std::uint64_t k = 0;
   for (float& value : field.values) {
     value += 0.2f * inr::RandomUnit(1, k++);
@@ -85,4 +85,4 @@ TEST(TrainedRanges, WouldNotHoldIfTheyWereHalfAsWide)
   EXPECT_GT(ClampedPart(model, false, 0), 0.05);
 }
 
-} // namespace
+} // namespace test::trained_ranges

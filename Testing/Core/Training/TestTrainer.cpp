@@ -13,7 +13,7 @@
 #include <limits>
 #include <thread>
 
-namespace {
+namespace test::trainer {
 
 bool SameRanges(const inr::MacroCells& a, const inr::MacroCells& b)
 {
@@ -25,7 +25,7 @@ bool SameRanges(const inr::MacroCells& a, const inr::MacroCells& b)
 
 TEST(Trainer, LearnsASmoothField)
 {
-  const Field<float> field = Waves<float>({48, 40, 36}, inr::ScalarType::Float32, -3, 5);
+  const Field<float> field = WaveField<float>({48, 40, 36}, inr::ScalarType::Float32, -3, 5);
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(400));
   EXPECT_GT(model->quality->psnr, 36);
   EXPECT_GT(model->quality->ssim, 0.97);
@@ -45,7 +45,7 @@ TEST(Trainer, LearnsTurbulence)
 
 TEST(Trainer, ThreadsDoNotChangeTheResult)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   inr::TrainingOptions options = Steps(12);
   options.threads = 1;
   const inr::ModelPointer one = inr::TrainModel(field.data(), {}, options);
@@ -61,7 +61,7 @@ TEST(Trainer, ThreadsDoNotChangeTheResult)
 
 TEST(Trainer, SeedsDiffer)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   inr::TrainingOptions options = Steps(3);
   const inr::ModelPointer one = inr::TrainModel(field.data(), {}, options);
   options.seed = 2;
@@ -70,7 +70,7 @@ TEST(Trainer, SeedsDiffer)
 
 TEST(Trainer, AStopByTheClockIsRepeatedByItsSteps)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   inr::TrainingOptions timed;
   timed.timeLimit = 1; // a busy machine takes its time for the first step, too
   const inr::ModelPointer first = inr::TrainModel(field.data(), {}, timed);
@@ -83,7 +83,7 @@ TEST(Trainer, AStopByTheClockIsRepeatedByItsSteps)
 
 TEST(Trainer, StopsAtTheTargetQuality)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   inr::TrainingOptions options = Steps(5000);
   options.targetPsnr = 24;
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, options);
@@ -93,7 +93,7 @@ TEST(Trainer, StopsAtTheTargetQuality)
 
 TEST(Trainer, QualityIsThatOfTheStoredParameters)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(60));
   std::vector<float> decoded(field.values.size());
   inr::EvaluateLattice(*inr::MakeEvaluator(model), inr::Arena(1),
@@ -108,7 +108,7 @@ TEST(Trainer, QualityIsThatOfTheStoredParameters)
 
 template <class T> void ExpectTrains(inr::ScalarType type, double low, double high)
 {
-  const Field<T> field = Waves<T>({16, 14, 12}, type, low, high);
+  const Field<T> field = WaveField<T>({16, 14, 12}, type, low, high);
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(80));
   EXPECT_GT(model->quality->psnr, 16) << inr::ScalarName(type);
   EXPECT_EQ(model->volume.type, type);
@@ -131,7 +131,7 @@ TEST(Trainer, TakesEveryScalarType)
 
 TEST(Trainer, LeavesOutNaNsAndInfinities)
 {
-  Field<float> field = Waves();
+  Field<float> field = WaveField();
   field.values[100] = std::numeric_limits<float>::quiet_NaN();
   field.values[2000] = std::numeric_limits<float>::infinity();
   field.values[3000] = -std::numeric_limits<float>::infinity();
@@ -147,7 +147,7 @@ TEST(Trainer, LeavesOutNaNsAndInfinities)
 // Every cell of the volume holds a NaN, and still half of the voxels are known.
 TEST(Trainer, LearnsVoxelsAmongNaNs)
 {
-  Field<float> field = Waves();
+  Field<float> field = WaveField();
   for (std::int64_t k = 0; k < field.data().voxels(); ++k) {
     const glm::i64vec3 at(k % field.dims.x, k / field.dims.x % field.dims.y,
                           k / (field.dims.x * field.dims.y));
@@ -160,7 +160,7 @@ TEST(Trainer, LearnsVoxelsAmongNaNs)
 
 TEST(Trainer, ConstantVolumesAreExact)
 {
-  Field<float> field = Waves();
+  Field<float> field = WaveField();
   std::fill(field.values.begin(), field.values.end(), 4.25f);
   field.values[7] = std::numeric_limits<float>::quiet_NaN();
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(50));
@@ -175,14 +175,14 @@ TEST(Trainer, ConstantVolumesAreExact)
 
 TEST(Trainer, RefusesAVolumeOfNaNs)
 {
-  Field<float> field = Waves();
+  Field<float> field = WaveField();
   std::fill(field.values.begin(), field.values.end(), NAN);
   EXPECT_THROW(inr::TrainModel(field.data(), {}, Steps(5)), inr::Error);
 }
 
 TEST(Trainer, ClaimsNoSsimWhereNoWindowIsKnownToBeWhole)
 {
-  Field<float> field = Waves();
+  Field<float> field = WaveField();
   std::fill(field.values.begin(), field.values.end(), NAN);
   field.values[7] = 1.0f;
   const inr::Quality quality = *inr::TrainModel(field.data(), {}, Steps(5))->quality;
@@ -194,7 +194,7 @@ TEST(Trainer, ClaimsNoSsimWhereNoWindowIsKnownToBeWhole)
 TEST(Trainer, TakesADenormalRange)
 {
   const Field<double> field =
-      Waves<double>({24, 20, 17}, inr::ScalarType::Float64, -1e-310, 1e-310);
+      WaveField<double>({24, 20, 17}, inr::ScalarType::Float64, -1e-310, 1e-310);
   const inr::ModelPointer model = inr::TrainModel(field.data(), {}, Steps(150));
   EXPECT_GT(model->quality->psnr, 20);
   EXPECT_LT(model->quality->psnr, 100);
@@ -205,14 +205,14 @@ TEST(Trainer, TakesADenormalRange)
 TEST(Trainer, TakesAxesOfOneVoxel)
 {
   for (const glm::i64vec3& dims : {glm::i64vec3(200, 150, 1), glm::i64vec3(1, 120, 130)}) {
-    const Field<float> field = Waves<float>(dims, inr::ScalarType::Float32, 0, 1);
+    const Field<float> field = WaveField<float>(dims, inr::ScalarType::Float32, 0, 1);
     EXPECT_GT(inr::TrainModel(field.data(), {}, Steps(150))->quality->psnr, 20);
   }
 }
 
 TEST(Trainer, ProgressRisesAndEndsInMeasuring)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   double last = 0;
   bool measured = false;
   inr::TrainModel(field.data(), {}, Steps(20), [&](const inr::TrainingProgress& progress) {
@@ -241,13 +241,13 @@ TEST(Trainer, ProgressToATargetIsThatOfItsSteps)
     }
     return true;
   };
-  const inr::ModelPointer model = inr::TrainModel(Waves().data(), {}, options, expectSteps);
+  const inr::ModelPointer model = inr::TrainModel(WaveField().data(), {}, options, expectSteps);
   EXPECT_LT(model->training->steps, 2000u);
 }
 
 TEST(Trainer, CanBeStopped)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   int calls = 0;
   try {
     inr::TrainModel(field.data(), {}, Steps(1000),
@@ -275,7 +275,7 @@ TEST(Trainer, EndsALongStepByTheClock)
   options.timeLimit = 0.5;
   const auto start = std::chrono::steady_clock::now();
   try {
-    inr::TrainModel(Waves().data(), {}, options);
+    inr::TrainModel(WaveField().data(), {}, options);
     FAIL() << "there is a faster machine now";
   } catch (const inr::Error& error) {
     EXPECT_NE(std::string(error.what()).find("TimeLimit"), std::string::npos) << error.what();
@@ -294,13 +294,13 @@ TEST(Trainer, AsksWithinALongStep)
     steps = progress.steps;
     return false;
   };
-  EXPECT_THROW(inr::TrainModel(Waves().data(), {}, options, stop), inr::Error);
+  EXPECT_THROW(inr::TrainModel(WaveField().data(), {}, options, stop), inr::Error);
   EXPECT_EQ(steps, 0u);
 }
 
 TEST(Trainer, RefusesToTrainForEverOrOnNothing)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   EXPECT_THROW(inr::TrainModel(field.data(), {}, Steps(0)), inr::Error);
   inr::VolumeData nothing = field.data();
   nothing.dims.y = 0;
@@ -309,7 +309,7 @@ TEST(Trainer, RefusesToTrainForEverOrOnNothing)
 
 TEST(Trainer, TakesPowersOfTwoForMacroCells)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   inr::TrainingOptions options = Steps(1);
   options.macroCellSize = 8;
   EXPECT_EQ(inr::TrainModel(field.data(), {}, options)->macroCells.dims, glm::i64vec3(3, 3, 3));
@@ -330,14 +330,14 @@ TEST(Trainer, FindsBeforeItTrainsWhatNoFileCanHold)
   };
   inr::VolumeInfo info;
   info.origin.y = NAN;
-  refuses(Waves(), info);
+  refuses(WaveField(), info);
   info = {};
   info.direction[2] = info.direction[1];
-  refuses(Waves(), info);
+  refuses(WaveField(), info);
   info = {};
   info.arrayName = std::string(5000, 'x');
-  refuses(Waves(), info);
-  Field<double> wide = Waves<double>({8, 8, 8}, inr::ScalarType::Float64, 0, 1);
+  refuses(WaveField(), info);
+  Field<double> wide = WaveField<double>({8, 8, 8}, inr::ScalarType::Float64, 0, 1);
   wide.values[0] = -1.7e308;
   wide.values[1] = 1.7e308;
   refuses(wide, {});
@@ -351,7 +351,7 @@ TEST(Trainer, EndsWhenItDiverges)
   options.description->network.outputActivation = inr::Activation::Exponential;
   options.description->network.hiddenLayers = 5;
   try {
-    inr::TrainModel(Waves().data(), {}, options);
+    inr::TrainModel(WaveField().data(), {}, options);
     FAIL() << "went on";
   } catch (const inr::Error& error) {
     EXPECT_NE(std::string(error.what()).find("diverged"), std::string::npos) << error.what();
@@ -360,7 +360,7 @@ TEST(Trainer, EndsWhenItDiverges)
 
 TEST(Trainer, EveryKernelLearns)
 {
-  const Field<float> field = Waves();
+  const Field<float> field = WaveField();
   for (const std::string& kernel : UsableKernels()) {
     inr::TrainingOptions options = Steps(150);
     options.kernel = kernel;
@@ -370,4 +370,4 @@ TEST(Trainer, EveryKernelLearns)
   }
 }
 
-} // namespace
+} // namespace test::trainer

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace {
+namespace test::warm_start {
 
 constexpr glm::i64vec3 Dims(40, 36, 32);
 
@@ -128,4 +128,4 @@ TEST_F(WarmStart, IsTheSameOnAnyNumberOfThreads)
   EXPECT_EQ(one->parameters, inr::TrainModel(Moved(0.5).data(), {}, options)->parameters);
 }
 
-} // namespace
+} // namespace test::warm_start
