@@ -19,6 +19,7 @@ FrameStatus StatusOf(vtkINRVolumeMapper* mapper)
   status.coarsest = mapper->GetCoarsestLevel();
   status.samples = static_cast<double>(mapper->GetNumberOfSamples());
   status.hitRate = mapper->GetCacheHitRate();
+  status.clamped = static_cast<double>(mapper->GetNumberOfClampedSamples());
   status.paths = static_cast<double>(mapper->GetNumberOfPaths());
   status.cacheMiB = mapper->GetCacheUsed();
   status.seconds = mapper->GetFrameTime();
@@ -30,7 +31,8 @@ FrameStatus StatusOfAll(const FrameStatus& own, vtkMultiProcessController* proce
   if (!processes || processes->GetNumberOfProcesses() < 2) {
     return own;
   }
-  const std::array<double, 3> sums{own.samples, own.hitRate * own.samples, own.cacheMiB};
+  const std::array<double, 4> sums{own.samples, own.hitRate * own.samples, own.cacheMiB,
+                                   own.clamped};
   // What is least is the most of its opposite.
   constexpr double none = -std::numeric_limits<double>::max();
   const std::array<double, 7> most{own.drawn ? 1.0 : 0.0,
@@ -40,9 +42,9 @@ FrameStatus StatusOfAll(const FrameStatus& own, vtkMultiProcessController* proce
                                    own.samples > 0 ? -own.paths : none,
                                    own.seconds,
                                    own.samples > 0 ? none : own.hitRate};
-  std::array<double, 3> allSums{};
+  std::array<double, 4> allSums{};
   std::array<double, 7> allMost{};
-  processes->AllReduce(sums.data(), allSums.data(), 3, vtkCommunicator::SUM_OP);
+  processes->AllReduce(sums.data(), allSums.data(), 4, vtkCommunicator::SUM_OP);
   processes->AllReduce(most.data(), allMost.data(), 7, vtkCommunicator::MAX_OP);
   FrameStatus all;
   all.drawn = allMost[0] > 0;
@@ -53,6 +55,7 @@ FrameStatus StatusOfAll(const FrameStatus& own, vtkMultiProcessController* proce
   all.hitRate = allSums[0] > 0 ? allSums[1] / allSums[0] : allMost[6];
   all.paths = allMost[4] > none ? -allMost[4] : 0;
   all.cacheMiB = allSums[2];
+  all.clamped = allSums[3];
   all.seconds = allMost[5];
   all.processes = processes->GetNumberOfProcesses();
   return all;

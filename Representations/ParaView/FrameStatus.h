@@ -15,6 +15,7 @@ struct FrameStatus
   int coarsest = -1;
   double samples = 0;
   double hitRate = 0;  ///< part of the samples that came from the level they asked for
+  double clamped = 0;  ///< samples that were moved into their macro-cell's range
   double paths = 0;    ///< through each pixel
   double cacheMiB = 0; ///< of all processes
   double seconds = 0;  ///< of the slowest one

@@ -51,6 +51,21 @@ std::string ProgressOf(const inr::FrameStatus& status, vtkINRVolumeMapper* mappe
   return text + (status.converged ? "" : " ...");
 }
 
+/// What of a picture differs from the model, because ranges of its macro-cells do not hold; rounded
+/// up, so that nothing is said where nothing does.
+std::string ClampedOf(const inr::FrameStatus& status)
+{
+  if (status.clamped <= 0) {
+    return {};
+  }
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::fixed << std::setprecision(2)
+       << std::min(100.0, std::ceil(1e4 * status.clamped / status.samples) / 100)
+       << " % moved into range, ";
+  return text.str();
+}
+
 } // namespace
 
 vtkINRStatusActor::vtkINRStatusActor()
@@ -82,7 +97,7 @@ std::string vtkINRStatusActor::TextOf(const inr::FrameStatus& status)
   text.imbue(std::locale::classic());
   text << std::fixed << (array && *array ? array : "volume") << ": " << LevelsOf(status) << ", "
        << ProgressOf(status, mapper) << "\n";
-  text << "cache " << std::setprecision(0) << status.cacheMiB << " MiB, ";
+  text << ClampedOf(status) << "cache " << std::setprecision(0) << status.cacheMiB << " MiB, ";
   if (status.processes > 1) {
     text << status.processes << " x ";
   }
@@ -139,15 +154,23 @@ double vtkINRStatusActor::TopIn(vtkViewport* viewport)
 
 void vtkINRStatusActor::FitInto(vtkViewport* viewport)
 {
-  double size[2];
-  this->GetSize(viewport, size);
-  const int now = this->GetTextProperty()->GetFontSize();
+  vtkTextProperty* style = this->GetTextProperty();
   const double room = viewport->GetSize()[0] - 2 * Margin;
-  const double fitting = std::floor(now * room / std::max(size[0], 1.0));
+  const auto width = [&] {
+    double size[2];
+    this->GetSize(viewport, size);
+    return std::max(size[0], 1.0);
+  };
+  const int now = style->GetFontSize();
+  const double fitting = std::floor(now * room / width());
   const int wanted = static_cast<int>(std::clamp<double>(fitting, SmallestFont, LargestFont));
-  // Widths are rounded by the letter: a step up is left for where there is room for two.
+  // Widths are rounded by the letter: a step up is left for where there is room for two, and a step
+  // down may not be enough.
   if (wanted < now || wanted > now + 1 || wanted == LargestFont) {
-    this->GetTextProperty()->SetFontSize(wanted);
+    style->SetFontSize(wanted);
+  }
+  while (style->GetFontSize() > SmallestFont && width() > room) {
+    style->SetFontSize(style->GetFontSize() - 1);
   }
 }
 

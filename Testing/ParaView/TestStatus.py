@@ -2,10 +2,11 @@
 """The text in the view's corner: off by default, about the picture it stands in, and several volumes'
 texts below each other."""
 import re
+import struct
 
 import numpy as np
 from paraview import simple
-from pvtest import ARRAY, MODEL, check, load_plugin, look_at, picture, show_view
+from pvtest import ARRAY, MODEL, check, data_file, load_plugin, look_at, output_file, picture, show_view
 
 load_plugin()
 view = show_view((400, 300))
@@ -14,7 +15,7 @@ display = simple.Show(reader, view)
 look_at(view)
 LINES = re.compile(
     r"(\w+): levels? (\d+)(?: to (\d+))?, (\d+) % there(?:, (\d+) of (\d+) paths)?( \.\.\.)?\n"
-    r"cache (\d+) MiB, CPU [\w ]+, \d+ threads?, \d+ ms$"
+    r"(?:(\d+\.\d\d) % moved into range, )?cache (\d+) MiB, CPU [\w ]+, \d+ threads?, \d+ ms$"
 )
 
 
@@ -34,6 +35,22 @@ def status():
     return parts.groups()
 
 
+def file_with_false_ranges(path):
+    """As instantvnr would write it, with macro-cells that claim to hold one value only."""
+    volume = simple.XMLImageDataReader(FileName=data_file("les_wmag91.vti"))
+    simple.SaveData(path, volume, Scalars=["POINTS", ARRAY], ReadableByInstantVNR=1, MaximumSteps=50)
+    with open(path, "rb") as file:
+        data = file.read()
+    at = data.index(b"data\0", data.index(b"macrocell\0")) + 5
+    (size,) = struct.unpack_from("<i", data, at)
+    ranges = np.frombuffer(data, "<f4", size // 4, at + 5).reshape(-1, 2).copy()
+    ranges[:] = 0.5
+    data = data[:at + 5] + ranges.tobytes() + data[at + 5 + size:]
+    with open(path, "wb") as file:
+        file.write(data.replace(b"\x03inr\0", b"\x03was\0", 1))  # nor what only ours say
+    return path
+
+
 def rows_of_text(with_text, without):
     """Blocks of rows, counted from the top, that differ in the left half of the picture."""
     differs = np.any(with_text[::-1, :200] != without[::-1, :200], axis=(1, 2))
@@ -41,12 +58,20 @@ def rows_of_text(with_text, without):
     return edges.reshape(-1, 2)
 
 
+def ends_in(with_text, without):
+    """The last column of the text; it is not cut off."""
+    last = np.flatnonzero(np.any(with_text[-60:] != without[-60:], axis=(0, 2)))[-1]
+    width = with_text.shape[1]
+    check(last < width - 4, "the text leaves a view of", width, "pixels at", last)
+    return last
+
+
 bare = picture(view, "status-off")
 check(not actors(), "there is a status that nobody asked for")
 display.ShowStatus = 1
 shown = picture(view, "status-on")
-array, finest, coarsest, percent, paths, _, more, used = status()
-check((array, percent, paths, more) == (ARRAY, "100", None, None), "a complete picture's")
+array, finest, coarsest, percent, paths, _, more, moved, used = status()
+check((array, percent, paths, more, moved) == (ARRAY, "100", None, None, None), "a complete picture's")
 check(0 < int(used) < 1000, "cache of", used)
 (block,) = rows_of_text(shown, bare)
 check(block[0] < 10 and 20 < block[1] - block[0] < 60, "the text is in rows", block)
@@ -57,11 +82,11 @@ display.LevelOfDetailScale = 0
 display.MaximumRequests = 1
 display.Deterministic = 1
 view.SMProxy.InteractiveRender()
-_, finest, coarsest, percent, _, _, more, _ = status()
+_, finest, coarsest, percent, _, _, more, _, _ = status()
 check(int(percent) < 100 and more, "an unfinished picture's")
 check(int(finest) > 0, "level 0 was never loaded")
 picture(view, "status-still")
-_, finest, coarsest, percent, _, _, more, _ = status()
+_, finest, coarsest, percent, _, _, more, _, _ = status()
 check((finest, coarsest, percent, more) == ("0", None, "100", None), "all of level 0")
 display.LevelOfDetailScale = 8
 picture(view, "status-still")
@@ -114,9 +139,8 @@ for width in 260, 400:
     without = picture(view, f"status-{width}-off")
     display.ShowStatus = 1
     with_text = picture(view, f"status-{width}-on")
-    columns = np.flatnonzero(np.any(with_text[-60:] != without[-60:], axis=(0, 2)))
-    check(columns[-1] < width - 4, "the text leaves a view of", width, "pixels at", columns[-1])
-    check(columns[-1] > 0.7 * width, "the text ends at", columns[-1], "of", width)
+    last = ends_in(with_text, without)
+    check(last > 0.7 * width, "the text ends at", last, "of", width)
 
 
 def converged():
@@ -137,3 +161,14 @@ check(converged() and actors(), "a volume that is drawn again has not converged"
 simple.Hide(reader, view)
 picture(view, "status-gone")
 check(not actors() and not converged(), "a volume that is hidden has converged")
+
+# How many samples are not what the model says, because its file's ranges do not hold.
+false = simple.OpenDataFile(file_with_false_ranges(output_file("false-ranges.inr")))
+other = simple.Show(false, view)
+without = picture(view, "status-not-moved")
+other.ShowStatus = 1
+ends_in(picture(view, "status-moved"), without)
+(actor,) = actors()
+print(actor.GetInput().replace("\n", "; "))
+moved = LINES.match(actor.GetInput()).group(8)
+check(moved and 50 < float(moved) <= 100, "samples moved in", actor.GetInput())
