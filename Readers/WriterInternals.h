@@ -9,8 +9,11 @@
 #include <vtkMultiProcessController.h>
 #include <vtkSmartPointer.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
+
+constexpr std::int64_t MiB = std::int64_t{1} << 20;
 
 /// What a writer consists of, but for its properties.
 class vtkINRWriter::Internals

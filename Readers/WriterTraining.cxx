@@ -7,7 +7,6 @@
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Training/ParallelTraining.h"
-#include "Core/Training/TargetReport.h"
 #include "Core/UsableMemory.h"
 #include "ParallelInput.h"
 #include "PipelineReader.h"
@@ -24,12 +23,6 @@
 
 #include <sstream>
 #include <utility>
-
-namespace {
-
-constexpr std::int64_t MiB = std::int64_t{1} << 20;
-
-} // namespace
 
 std::int64_t vtkINRWriter::MemoryLimitInBytes() const
 {
@@ -63,50 +56,6 @@ inr::TrainingOptions vtkINRWriter::MakeOptions() const
   return options;
 }
 
-void vtkINRWriter::WarnOfWhole(const std::string& source)
-{
-  vtkWarningMacro(<< source << " of '" << this->Internal->Target
-                  << "' cannot give parts of its data: all of them, "
-                  << this->Internal->Reading.whole().bytes / MiB
-                  << " MiB, are in memory, more than half of the MemoryLimit of "
-                  << this->MemoryLimitInBytes() / MiB << " MiB.");
-}
-
-/// Where that is not what TargetRatio asks for.
-void vtkINRWriter::WarnOfLargeFile(const inr::Model& model)
-{
-  constexpr double wellBelow = 0.9;
-  const bool isAsked = !(this->ModelConfig && *this->ModelConfig); // which overrides it
-  if (isAsked && this->Ratio < wellBelow * this->TargetRatio) {
-    vtkWarningMacro("The file '" << this->Internal->Target << "' is " << this->Ratio
-                                 << " times smaller than the data, not " << this->TargetRatio
-                                 << " times (TargetRatio): a model of " << model.parameters.size()
-                                 << " parameters and the ranges of "
-                                 << model.macroCells.ranges.size() << " macro-cells take more"
-                                 << (this->MacroCellSize > 0
-                                         ? "; a larger MacroCellSize gives fewer ranges."
-                                         : "."));
-  }
-}
-
-/// Where the limit made the default model smaller.
-void vtkINRWriter::WarnOfSmallModel(const inr::Model& model, const inr::TrainingOptions& options)
-{
-  if (options.description || options.targetRatio > 0) {
-    return; // that is the one
-  }
-  const inr::VolumeInfo& volume = model.volume;
-  const inr::Description usual =
-      inr::ChooseDescription(volume.dims, volume.type, 0, options.storedAs, options.macroCellSize);
-  if (!(model.description == usual)) {
-    vtkWarningMacro("The MemoryLimit of "
-                    << this->MemoryLimitInBytes() / MiB << " MiB left '" << this->Internal->Target
-                    << "' a model of " << inr::Layout(model.description).parameterCount
-                    << " parameters instead of " << inr::Layout(usual).parameterCount
-                    << ", which costs quality; raise it to have the usual one.");
-  }
-}
-
 inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
                                               const inr::TrainingOptions& options,
                                               const ControllerGroup& group,
@@ -127,6 +76,21 @@ inr::ModelPointer vtkINRWriter::TrainInPieces(const TrainingInput& first,
   } catch (const inr::Error& error) {
     throw files.complete(error);
   }
+}
+
+inr::ModelPointer vtkINRWriter::TrainAsRead(const ParallelInput& given,
+                                            const inr::TrainingOptions& options,
+                                            const ControllerGroup& group,
+                                            const inr::TrainingObserver& observe)
+{
+  const TrainingInput& input = given.input;
+  if (this->Internal->Reading.inPieces()) {
+    return this->TrainInPieces(input, options, group, observe);
+  }
+  if (group.size() > 1) {
+    return inr::TrainModel(given.piece(), input.info, options, group, observe);
+  }
+  return inr::TrainModel(input.data, input.info, options, observe);
 }
 
 void vtkINRWriter::SetBackend(int backend)
@@ -165,11 +129,10 @@ std::shared_ptr<TrainingBackend> vtkINRWriter::FindBackend()
 void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
                          const ControllerGroup& group)
 {
-  const TrainingInput& input = given.input;
   inr::TrainingOptions options = this->MakeOptions();
   options.threads = group.threads();
   options.memoryLimit = group.memoryShare(options.memoryLimit);
-  options.start = this->FindStart(input.info);
+  options.start = this->FindStart(given.input.info);
   this->Internal->Previous = nullptr;
   TrainingCheckpoint checkpoint(this, this->Internal->Target, this->CheckpointInterval,
                                 this->Resume);
@@ -181,9 +144,9 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
     backend->tell(group.rank() == 0);
   };
 
-  const ReadingPlan& reading = this->Internal->Reading;
-  if (!reading.wholeReader().empty() && group.rank() == 0) {
-    this->WarnOfWhole(reading.wholeReader());
+  const std::string whole = this->Internal->Reading.wholeReader();
+  if (!whole.empty() && group.rank() == 0) {
+    this->WarnOfWhole(whole);
   }
   TrainingReport report;
   const auto observe = [&](const inr::TrainingProgress& progress) {
@@ -194,13 +157,7 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   };
   inr::ModelPointer model;
   try {
-    if (reading.inPieces()) {
-      model = this->TrainInPieces(input, options, group, observe);
-    } else if (group.size() > 1) {
-      model = inr::TrainModel(given.piece(), input.info, options, group, observe);
-    } else {
-      model = inr::TrainModel(input.data, input.info, options, observe);
-    }
+    model = this->TrainAsRead(given, options, group, observe);
     vtkIdType bytes = 0;
     group.together(
         [&] { bytes = group.rank() == 0 ? inr::WriteModel(*model, this->Internal->Target) : 0; });
@@ -213,30 +170,9 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   checkpoint.remove(group.rank());
   this->UpdateProgress(1.0);
   this->Internal->Previous = model->volume.time ? model : nullptr;
+  const bool showsHidden = group.any(this->Internal->ShowsHidden);
   if (group.rank() == 0) {
-    this->WarnOfLargeFile(*model);
-  }
-  if (reading.inPieces() && group.rank() == 0) {
-    this->WarnOfSmallModel(*model, options);
-  }
-  if (model->training->nonFinite > 0 && group.rank() == 0) {
-    vtkWarningMacro(
-        "Array '" << input.info.arrayName << "' has " << model->training->nonFinite
-                  << " NaN or infinite values, or hidden points; they were left out of "
-                     "the training, and what the model shows there is made up. To hide it "
-                     "later, give them a value outside of the data's range before "
-                     "saving (Calculator; of hidden points, then PassArrays).");
-  }
-  const std::string missing = inr::ShortOfTarget(*model, options);
-  if (!missing.empty() && group.rank() == 0) {
-    vtkWarningMacro("Of '" << this->Internal->Target << "' " << missing << ".");
-  }
-  if (group.any(this->Internal->ShowsHidden) && group.rank() == 0) {
-    vtkWarningMacro("Some points of array '"
-                    << input.info.arrayName
-                    << "' are hidden, but a model has no mask and integers no NaN: their values "
-                       "are shown like all others. Make the array a float or double one "
-                       "(Calculator, Result Array Type) to leave them out of the training.");
+    this->WarnOfModel(*model, options, showsHidden);
   }
 }
 

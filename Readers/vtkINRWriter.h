@@ -306,6 +306,12 @@ private:
   void WarnOfWhole(const std::string& source);
   void WarnOfLargeFile(const inr::Model& model);
   void WarnOfSmallModel(const inr::Model& model, const inr::TrainingOptions& options);
+  /// `showsHidden`: of any process; see TrainingInput.
+  void WarnOfModel(const inr::Model& model, const inr::TrainingOptions& options, bool showsHidden);
+  std::shared_ptr<const inr::Model>
+  TrainAsRead(const ParallelInput& given, const inr::TrainingOptions& options,
+              const ControllerGroup& group,
+              const std::function<bool(const inr::TrainingProgress&)>& observe);
   std::shared_ptr<const inr::Model>
   TrainInPieces(const TrainingInput& first, const inr::TrainingOptions& options,
                 const ControllerGroup& group,
