@@ -40,10 +40,20 @@ bool Fits(const Image& image, int channels, const Image& rgba)
          (image.channels == channels && image.width == rgba.width && image.height == rgba.height);
 }
 
+/// Whether it has the values that its size takes.
+bool IsWhole(const Image& image)
+{
+  const std::size_t values = static_cast<std::size_t>(image.width) *
+                             static_cast<std::size_t>(image.height) *
+                             static_cast<std::size_t>(image.channels);
+  return image.pixels.empty() || image.pixels.size() == values;
+}
+
 void CheckShapes(const Image& rgba, const Image& depth, const Image& samples)
 {
-  if (rgba.channels != 4 || rgba.width < 1 || rgba.height < 1 || !Fits(depth, 1, rgba) ||
-      !Fits(samples, 2, rgba)) {
+  if (rgba.channels != 4 || rgba.width < 1 || rgba.height < 1 || rgba.pixels.empty() ||
+      !Fits(depth, 1, rgba) || !Fits(samples, 2, rgba) || !IsWhole(rgba) || !IsWhole(depth) ||
+      !IsWhole(samples)) {
     throw Error(ErrorCode::InvalidArgument,
                 "an EXR file takes RGBA and, of the same size, one channel of depth and two of "
                 "samples and their level");

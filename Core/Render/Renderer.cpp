@@ -39,6 +39,26 @@ std::shared_ptr<const Evaluator> FieldOf(const ModelPointer& model, const Render
   return MakeEvaluator(model, options.kernel, PrecisionOf(model->description.network, options));
 }
 
+const ModelPointer& Existing(const ModelPointer& model)
+{
+  Require(model != nullptr, "a renderer needs a model");
+  return model;
+}
+
+const std::shared_ptr<const Evaluator>& Valid(const std::shared_ptr<const Evaluator>& field,
+                                              const VolumeInfo& volume, const MacroCells& cells)
+{
+  Require(field != nullptr, "a renderer needs a field");
+  RequireValidVolume(volume, ErrorCode::InvalidArgument);
+  if (!cells.empty()) {
+    RequireValidGeometry(cells, ErrorCode::InvalidArgument);
+    RequireValidDims(cells.dims, ErrorCode::InvalidArgument);
+    const auto count = static_cast<std::size_t>(cells.dims.x * cells.dims.y * cells.dims.z);
+    Require(cells.ranges.size() == count, "macro-cells need a range each");
+  }
+  return field;
+}
+
 /// Null where their ranges may not hold.
 std::shared_ptr<const MacroCells> SharedCells(const MacroCells& cells, const ModelPointer& model)
 {
@@ -82,13 +102,14 @@ Renderer::Implementation::Implementation(std::shared_ptr<const Evaluator> field,
 }
 
 Renderer::Renderer(const ModelPointer& model, const RendererOptions& options)
-    : Self(std::make_unique<Implementation>(FieldOf(model, options), model, model, model->volume,
-                                            model->macroCells, options))
+    : Self(std::make_unique<Implementation>(FieldOf(Existing(model), options), model, model,
+                                            model->volume, model->macroCells, options))
 {}
 
 Renderer::Renderer(const std::shared_ptr<const Evaluator>& field, const VolumeInfo& volume,
                    const MacroCells& cells, const RendererOptions& options)
-    : Self(std::make_unique<Implementation>(field, field, nullptr, volume, cells, options))
+    : Self(std::make_unique<Implementation>(Valid(field, volume, cells), field, nullptr, volume,
+                                            cells, options))
 {}
 
 Renderer::~Renderer() = default;

@@ -57,7 +57,7 @@ struct RendererOptions
 /// of interpolation error, and pictures that are to make do with what the cache can hold. A
 /// renderer is not for use from two threads at once; several are, and those that share bricks take
 /// turns. In the middle of rendering (in keepGoing, on whichever thread that is asked), another
-/// that shares its bricks throws Error(Cancelled).
+/// that shares its bricks throws Error(Cancelled); this one must not be changed there.
 ///
 /// Where an accelerator fails, the CPU takes over within the call and goes on: no call fails
 /// because of it, no brick is lost, and the picture is the same but for the rounding of float32.
@@ -66,8 +66,11 @@ struct RendererOptions
 class Renderer
 {
 public:
+  /// Throws Error(InvalidArgument) without a model; further what the cache and the kernel throw.
   explicit Renderer(const ModelPointer& model, const RendererOptions& options = {});
   /// Any field: normalised values over the unit cube, with a volume's dimensions and value range.
+  /// Throws Error(InvalidArgument), too, where the volume or the cells (may be empty) are not
+  /// valid: see RequireValidVolume and RequireValidGeometry.
   Renderer(const std::shared_ptr<const Evaluator>& field, const VolumeInfo& volume,
            const MacroCells& cells, const RendererOptions& options = {});
   ~Renderer();

@@ -66,7 +66,7 @@ SeenSpans::SeenSpans(const RayView& rays, const MajorantsView& majorants, const 
                      double scale, int levels)
     : Size(rays.width, rays.height),
       Columns(static_cast<std::size_t>(Tiling(rays.width, rays.height).columns())), Dims(dims),
-      IndexToClip(rays.worldToClip * rays.indexToWorld), Depth(DepthOf(this->IndexToClip, dims))
+      IndexToClip(rays.indexToClip), Depth(DepthOf(this->IndexToClip, dims))
 {
   const double footprint = scale > 0 ? scale * LargestFootprint(rays, this->IndexToClip) : 0.0;
   for (int grid = 0; grid < majorants.grids() && !this->isKnown(); ++grid) {

@@ -37,7 +37,7 @@ glm::dmat4 Inverse(const glm::dmat4& matrix, const char* message)
 /// As levels of detail see it: along an axis of a single voxel, coarser ones have no fewer.
 ProjectedVoxel VoxelOf(const RayView& view, const glm::i64vec3& dims)
 {
-  glm::dmat3 edges(view.indexToWorld);
+  glm::dmat3 edges = view.indexToWorld;
   double shortest = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
     if (dims[axis] == 1) {
@@ -62,14 +62,19 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims)
   this->View.planeCount = static_cast<int>(frame.clippingPlanes.size());
   this->View.piece = frame.piece.data();
   this->View.pieceCount = static_cast<int>(frame.piece.size());
-  this->View.worldToClip = Inverse(frame.clipToWorld, "the camera's matrix has no inverse");
-  this->View.indexToWorld =
-      Inverse(frame.worldToIndex, "the volume's matrix has no inverse (a zero scale or spacing?)");
+  Inverse(frame.clipToWorld, "the camera's matrix has no inverse");
+  Require(frame.clipToWorld[2].w + frame.clipToWorld[3].w != 0,
+          "the camera's far plane is infinitely far away");
+  this->View.indexToWorld = glm::dmat3(
+      Inverse(frame.worldToIndex, "the volume's matrix has no inverse (a zero scale or spacing?)"));
+  // Of the product, as what is far from the world's origin cancels out in it.
+  this->View.indexToClip = Inverse(frame.worldToIndex * frame.clipToWorld,
+                                   "the camera's and the volume's matrices have no common inverse");
   this->View.unit.worldToMedium = frame.worldToMedium;
   this->View.unit.isWorldMedium =
       ProjectedVoxel::IsNearOne(glm::transpose(frame.worldToMedium) * frame.worldToMedium);
   this->View.unit.length = std::numeric_limits<double>::infinity();
-  const glm::dmat3 indexToMedium = frame.worldToMedium * glm::dmat3(this->View.indexToWorld);
+  const glm::dmat3 indexToMedium = frame.worldToMedium * this->View.indexToWorld;
   for (int axis = 0; axis < 3; ++axis) {
     // A single layer of voxels is a slab one spacing thick; else the domain ends at the outer
     // points.
@@ -101,8 +106,8 @@ double RayGeometry::longest() const
   for (int corner = 0; corner < 4; ++corner) { // and the four opposite ones
     const glm::dvec3 diagonal(size.x, (corner & 1) != 0 ? -size.y : size.y,
                               (corner & 2) != 0 ? -size.z : size.z);
-    longest = std::max(longest, glm::length(this->View.unit.worldToMedium *
-                                            (glm::dmat3(this->View.indexToWorld) * diagonal)));
+    longest = std::max(
+        longest, glm::length(this->View.unit.worldToMedium * (this->View.indexToWorld * diagonal)));
   }
   return longest / this->View.unit.length;
 }

@@ -79,9 +79,9 @@ struct RayView
   int width = 0;
   int height = 0;
   glm::dmat4 clipToWorld{1.0};
-  glm::dmat4 worldToClip{1.0};
   glm::dmat4 worldToIndex{1.0};
-  glm::dmat4 indexToWorld{1.0};
+  glm::dmat3 indexToWorld{1.0}; ///< of directions
+  glm::dmat4 indexToClip{1.0};
   glm::dvec3 low{0.0}; ///< of what is shown
   glm::dvec3 high{0.0};
   UnitOfT unit;
@@ -186,7 +186,7 @@ struct RayView
   /// Window-space depth in [0, 1] of a point on a ray.
   INR_HOST_DEVICE double windowDepth(const glm::dvec3& index) const
   {
-    const glm::dvec4 clip = this->worldToClip * (this->indexToWorld * glm::dvec4(index, 1.0));
+    const glm::dvec4 clip = this->indexToClip * glm::dvec4(index, 1.0);
     return glm::clamp(0.5 * (clip.z / clip.w + 1.0), 0.0, 1.0);
   }
 

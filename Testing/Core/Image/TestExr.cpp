@@ -102,6 +102,16 @@ TEST_F(Exr, LeavesNothingBehindWhenItFails)
   EXPECT_TRUE(fs::is_empty(Folder));
 }
 
+TEST_F(Exr, RefusesPicturesWithoutTheirPixels)
+{
+  inr::Image picture = RandomImage(8, 6, 4, 1);
+  picture.width = 100000;
+  EXPECT_THROW(inr::WriteExr(Folder / "wide.exr", picture), inr::Error);
+  picture.pixels.clear();
+  EXPECT_THROW(inr::WriteExr(Folder / "empty.exr", picture), inr::Error);
+  EXPECT_TRUE(fs::is_empty(Folder));
+}
+
 TEST_F(Exr, AFullDiskLeavesThePictureThatWasThere)
 {
   const inr::Image before = RandomImage(8, 8, 4, 5);

@@ -146,13 +146,24 @@ glm::dvec2 Truth(const View& view, double sigma, int x, int y)
 
 void PrintTo(const View& view, std::ostream* stream) { *stream << view.name; }
 
+/// A few, of all values; with some of them, where they are seen is looked for first.
+inr::MacroCells CellsOf(const glm::i64vec3& dims)
+{
+  const std::int64_t longest = std::max({dims.x, dims.y, dims.z});
+  inr::MacroCells cells =
+      inr::MakeMacroCells(dims, static_cast<int>(std::max<std::int64_t>(4, longest / 4)));
+  cells.provenance = inr::MacroCellProvenance::Decoded;
+  std::fill(cells.ranges.begin(), cells.ranges.end(), inr::ValueRange{0, 1});
+  return cells;
+}
+
 class ExtremeCameras : public testing::TestWithParam<View>
 {
 protected:
   void expectTruth(bool cached) const
   {
     const View& view = this->GetParam();
-    inr::Renderer renderer = FieldRenderer(view.dims, Linear, {}, 1, cached);
+    inr::Renderer renderer = FieldRenderer(view.dims, Linear, CellsOf(view.dims), 1, cached);
     inr::TransferFunction function = UniformMedium(static_cast<float>(1 - std::exp(-Depths)));
     function.table[0] = glm::vec4(0, 0, 0, function.table[0].w);
     renderer.setTransferFunction(function);
@@ -241,6 +252,13 @@ View Elsewhere(const std::string& name, const glm::dvec3& middle)
   return view;
 }
 
+View Moved(View view, const std::string& name, const glm::dvec3& middle)
+{
+  view.name = name;
+  view.middle = middle;
+  return view;
+}
+
 View Parallel(const std::string& name, const glm::dvec3& eye, double height, double near)
 {
   View view = From(name, eye, {0, 0, 0}, 0, near);
@@ -252,6 +270,7 @@ INSTANTIATE_TEST_SUITE_P(
     Volumes, ExtremeCameras,
     testing::Values(Scaled("SpacingOf1em12", 1e-12), Scaled("SpacingOf1e12", 1e12),
                     Elsewhere("AwayBy1e9", {1e9, -1e9, 1e9}),
+                    Moved(Scaled("", 0.01), "FineAndAwayBy1e8", {1e8, -1e8, 1e8}),
                     Shaped("Flat", {33, 37, 41}, {1, 1, 1e-5}),
                     Shaped("Thin", {33, 37, 41}, {1e5, 1, 1}),
                     Close(Shaped("Thin", {33, 37, 41}, {1e5, 1, 1}), {100, 60, 50}, {0, 0, 0}),

@@ -182,6 +182,34 @@ TEST(Marching, ARefusedTransferFunctionLeavesTheOneBefore)
   EXPECT_EQ(Render(renderer, Diagonal(8)).pixels, before.pixels);
 }
 
+TEST(Marching, NeedsAFieldAndAVolume)
+{
+  const inr::ModelPointer none;
+  EXPECT_THROW(inr::Renderer{none}, inr::Error);
+  const glm::i64vec3 dims(9, 9, 9);
+  const auto ball = std::make_shared<FieldEvaluator>(Ball);
+  EXPECT_THROW(inr::Renderer(nullptr, VolumeOf(dims), {}), inr::Error);
+  EXPECT_THROW(inr::Renderer(ball, VolumeOf({9, 0, 9}), {}), inr::Error);
+  inr::VolumeInfo unknown = VolumeOf(dims);
+  unknown.low = std::nan("");
+  EXPECT_THROW(inr::Renderer(ball, unknown, {}), inr::Error);
+  inr::MacroCells cells = inr::MakeMacroCells(dims, 4);
+  EXPECT_NO_THROW(inr::Renderer(ball, VolumeOf(dims), cells));
+  cells.ranges.pop_back();
+  EXPECT_THROW(inr::Renderer(ball, VolumeOf(dims), cells), inr::Error);
+}
+
+TEST(Marching, NeedsAnEndOfTheView)
+{
+  inr::Renderer renderer = FieldRenderer({9, 9, 9}, Ball);
+  renderer.setTransferFunction(OpacityRamp(0.5f));
+  inr::Frame frame = Diagonal(8);
+  frame.clipToWorld = glm::inverse(glm::infinitePerspective(0.4, 1.0, 10.0) *
+                                   glm::lookAt(glm::dvec3(70, 45, 90), glm::dvec3(4), {0, 1, 0}));
+  inr::Image image;
+  EXPECT_THROW(renderer.render(frame, image), inr::Error);
+}
+
 TEST(Marching, NeedsATransferFunction)
 {
   inr::Renderer renderer = FieldRenderer({9, 9, 9}, Ball);
