@@ -13,7 +13,9 @@ namespace inr {
 
 namespace {
 constexpr double Patience = 0.2; ///< seconds until a busy application is asked again
-}
+/// Before the application's observers: a timer that fires must not be destroyed by what these do.
+constexpr float First = 1000;
+} // namespace
 
 RefinementTimer::RefinementTimer(std::function<bool()> mayRefine) : MayRefine(std::move(mayRefine))
 {
@@ -23,6 +25,9 @@ RefinementTimer::RefinementTimer(std::function<bool()> mayRefine) : MayRefine(st
 
 bool RefinementTimer::isWatched(vtkRenderWindow* window)
 {
+  if (!window) {
+    return false;
+  }
   vtkRenderWindowInteractor* interactor = window->GetInteractor();
   return interactor && interactor->GetInitialized() && !window->GetOffScreenRendering();
 }
@@ -63,7 +68,7 @@ void RefinementTimer::start(vtkRenderWindowInteractor* interactor, double pause)
     this->Interacting = false;
     for (const auto event : {vtkCommand::TimerEvent, vtkCommand::StartInteractionEvent,
                              vtkCommand::EndInteractionEvent}) {
-      interactor->AddObserver(event, this->Command);
+      interactor->AddObserver(event, this->Command, First);
     }
   }
   this->Timer = interactor->CreateOneShotTimer(static_cast<unsigned long>(pause * 1000));

@@ -73,7 +73,7 @@ void StillPictures::followUp(ViewPicture& picture, vtkRenderWindow* window,
 
 void StillPictures::request(vtkRenderWindow* window, double pause)
 {
-  if (pause > 0) {
+  if (pause > 0 && window && window->GetInteractor()) { // which tells the time
     this->Timer.request(window, pause);
   } else {
     this->Timer.cancel();

@@ -5,11 +5,13 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkRenderWindowInteractor.h>
+#include <vtkSmartPointer.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -234,6 +236,59 @@ TEST(Views, ClearUpWhateverOthersDo)
   EXPECT_LT(RenderUntilConverged(later.one, later.watch), 40);
   later.one.renderer->DrawOn(); // before the other one, which is finished
   EXPECT_TRUE(later.clearsUp());
+}
+
+/// Calls `then` at every timer of the interactor, whosever it is, as long as that says so; before
+/// the mapper looks for its own ones.
+class TimerObserver
+{
+public:
+  TimerObserver(IdleWindow& idle, std::function<bool()> then) : Then(std::move(then))
+  {
+    this->Command->SetClientData(this);
+    this->Command->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+      auto* self = static_cast<TimerObserver*>(data);
+      self->GoesOn = self->GoesOn && self->Then();
+    });
+    idle.interactor->AddObserver(vtkCommand::TimerEvent, this->Command);
+  }
+
+private:
+  std::function<bool()> Then;
+  bool GoesOn = true;
+  vtkNew<vtkCallbackCommand> Command;
+};
+
+// VTK's interactor for X must not lose the timer that it is telling of.
+TEST(Views, MayBeRedrawnByTheTimersOfWhatRefinesThem)
+{
+  IdleWindow idle;
+  int events = 0;
+  const TimerObserver redraws(idle, [&] {
+    idle.one.scene.window->Render();
+    return ++events < 30;
+  });
+  idle.one.mapper->SetSamplesPerPixel(60);
+  EXPECT_TRUE(idle.clearsUp());
+  EXPECT_EQ(events, 30);
+}
+
+TEST(Views, MayBeTakenAwayByTheTimersOfWhatRefinesThem)
+{
+  IdleWindow idle;
+  const vtkSmartPointer<vtkRenderer> renderer = idle.one.renderer;
+  int events = 0;
+  const TimerObserver removes(idle, [&] {
+    if (++events == 8) {
+      idle.one.scene.window->RemoveRenderer(renderer);
+    }
+    return events < 8;
+  });
+  idle.one.mapper->SetSamplesPerPixel(1000);
+  idle.one.scene.window->Render();
+  EXPECT_TRUE(RunUntilIdle(idle.one.scene.window, idle.interactor, [] {}));
+  EXPECT_EQ(events, 8);
+  EXPECT_FALSE(idle.one.mapper->GetConverged());
 }
 
 /// The window must not stand still for the time of a first look, whatever was drawn before.
