@@ -56,7 +56,7 @@ void CheckShapes(const Image& rgba, const Image& depth, const Image& samples)
       !IsWhole(samples)) {
     throw Error(ErrorCode::InvalidArgument,
                 "an EXR file takes RGBA and, of the same size, one channel of depth and two of "
-                "samples and their level");
+                "samples and their level, each with all its values");
   }
 }
 

@@ -70,7 +70,7 @@ public:
   explicit Renderer(const ModelPointer& model, const RendererOptions& options = {});
   /// Any field: normalised values over the unit cube, with a volume's dimensions and value range.
   /// Throws Error(InvalidArgument), too, where the volume or the cells (may be empty) are not
-  /// valid: see RequireValidVolume and RequireValidGeometry.
+  /// valid (see RequireValidVolume and RequireValidGeometry) or a cell has no range.
   Renderer(const std::shared_ptr<const Evaluator>& field, const VolumeInfo& volume,
            const MacroCells& cells, const RendererOptions& options = {});
   ~Renderer();

@@ -30,9 +30,9 @@
  * meet them: they throw no shadow on it; and projections, which have no depth, lie over all of
  * them.
  *
- * Several volumes in a renderer, each with a mapper of its own, are blended one after another, from the
- * furthest to the nearest, whatever their order there. Where they overlap they are not mixed; the one
- * whose middle is nearer to the camera lies over the other.
+ * Several volumes in a renderer, each with a mapper of its own, are blended one after another, from
+ * the furthest to the nearest, whatever their order there. Where they overlap they are not mixed;
+ * the one whose middle is nearer to the camera lies over the other.
  *
  * Refused with an error and not drawn: the blend mode slice, projections of a piece of the grid
  * (but see SetController) or by path tracing, paths cropped to what is no box, gradient opacity, 2D

@@ -51,11 +51,12 @@ std::string ProgressOf(const inr::FrameStatus& status, vtkINRVolumeMapper* mappe
   return text + (status.converged ? "" : " ...");
 }
 
-/// What of a picture differs from the model, because ranges of its macro-cells do not hold; rounded
-/// up, so that nothing is said where nothing does.
+/// What of a picture differs from the cached voxels, because ranges of its macro-cells do not hold;
+/// rounded up, so that nothing is said where nothing does. Straight from the network there are
+/// values between voxels outside of all ranges that do hold.
 std::string ClampedOf(const inr::FrameStatus& status)
 {
-  if (status.clamped <= 0) {
+  if (status.clamped <= 0 || status.finest < 0) {
     return {};
   }
   std::ostringstream text;

@@ -103,6 +103,7 @@ display.SampleDistance = 4
 picture(view, "status-still")
 (actor,) = actors()
 check("straight from the network" in actor.GetInput(), "without a cache:", actor.GetInput())
+check("moved" not in actor.GetInput(), "values between voxels are said to be moved:", actor.GetInput())
 
 opacities = simple.GetOpacityTransferFunction(ARRAY)
 before = list(opacities.Points)

@@ -14,8 +14,8 @@ namespace inr {
 class RayGeometry
 {
 public:
-  /// Throws Error(InvalidArgument) for singular or non-finite matrices; else the frame is valid.
-  /// Its arrays must outlive this.
+  /// Throws Error(InvalidArgument) for singular or non-finite matrices, a far plane at infinity;
+  /// else the frame is valid. Its arrays must outlive this.
   RayGeometry(const Frame& frame, const glm::i64vec3& dims);
   RayGeometry(const RayGeometry&) = delete;
   RayGeometry& operator=(const RayGeometry&) = delete;

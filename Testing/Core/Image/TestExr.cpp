@@ -107,6 +107,13 @@ TEST_F(Exr, RefusesPicturesWithoutTheirPixels)
   inr::Image picture = RandomImage(8, 6, 4, 1);
   picture.width = 100000;
   EXPECT_THROW(inr::WriteExr(Folder / "wide.exr", picture), inr::Error);
+  inr::Image depth = RandomImage(8, 6, 1, 1);
+  inr::Image samples = RandomImage(8, 6, 2, 1);
+  depth.pixels.pop_back();
+  samples.pixels.pop_back();
+  const inr::Image whole = RandomImage(8, 6, 4, 1);
+  EXPECT_THROW(inr::WriteExr(Folder / "depth.exr", whole, depth), inr::Error);
+  EXPECT_THROW(inr::WriteExr(Folder / "samples.exr", whole, {}, samples), inr::Error);
   picture.pixels.clear();
   EXPECT_THROW(inr::WriteExr(Folder / "empty.exr", picture), inr::Error);
   EXPECT_TRUE(fs::is_empty(Folder));

@@ -238,8 +238,8 @@ TEST(Views, ClearUpWhateverOthersDo)
   EXPECT_TRUE(later.clearsUp());
 }
 
-/// Calls `then` at every timer of the interactor, whosever it is, as long as that says so; before
-/// the mapper looks for its own ones.
+/// Calls `then` at every timer of the interactor, whosever it is, as long as that says so. Added
+/// before the mapper's observer, which has to come first all the same.
 class TimerObserver
 {
 public:
