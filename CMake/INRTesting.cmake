@@ -4,7 +4,8 @@ include(GoogleTest)
 set(INR_TEST_OPTIONS -O1)
 
 # inr_add_core_test(NAME SOURCES...): a GoogleTest program over Core, every case a ctest of label core. Its
-# files are compiled by sixteens, so what is in one is in a namespace of that file's name.
+# files are compiled by sixteens where CMAKE_UNITY_BUILD is on, so what is in a test's file is in a namespace
+# of that file's name.
 function (inr_add_core_test name)
   add_executable(${name} ${ARGN})
   target_link_libraries(${name} PRIVATE INRVolume::Core inr_options GTest::gtest_main)

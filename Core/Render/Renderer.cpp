@@ -52,9 +52,12 @@ const std::shared_ptr<const Evaluator>& Valid(const std::shared_ptr<const Evalua
   RequireValidVolume(volume, ErrorCode::InvalidArgument);
   if (!cells.empty()) {
     RequireValidGeometry(cells, ErrorCode::InvalidArgument);
-    RequireValidDims(cells.dims, ErrorCode::InvalidArgument);
-    const auto count = static_cast<std::size_t>(cells.dims.x * cells.dims.y * cells.dims.z);
-    Require(cells.ranges.size() == count, "macro-cells need a range each");
+    // By division, as wrong dimensions may have a product beyond all numbers.
+    const glm::i64vec3& dims = cells.dims;
+    const auto ranges = static_cast<std::int64_t>(cells.ranges.size());
+    Require(dims.x > 0 && dims.y > 0 && dims.z > 0 && ranges % dims.x == 0 &&
+                ranges / dims.x % dims.y == 0 && ranges / dims.x / dims.y == dims.z,
+            "macro-cells need a range each");
   }
   return field;
 }

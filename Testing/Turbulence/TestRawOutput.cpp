@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace test::raw_output {
+
 TEST(RawOutput, IsTheGridInBlocksOfAnySize)
 {
   const TemporaryFolder folder;
@@ -25,3 +27,5 @@ TEST(RawOutput, IsTheGridInBlocksOfAnySize)
     EXPECT_TRUE(ReadBytes(folder.file("blocks.raw")) == expected) << block;
   }
 }
+
+} // namespace test::raw_output

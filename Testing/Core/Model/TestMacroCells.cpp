@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+namespace test::macro_cells {
+
 using inr::DefaultMacroCellSize;
 using inr::MakeMacroCells;
 
@@ -57,3 +59,5 @@ TEST(MacroCells, RangesGrow)
   EXPECT_FLOAT_EQ(range.low, -2.0f);
   EXPECT_FLOAT_EQ(range.high, 0.75f);
 }
+
+} // namespace test::macro_cells

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+namespace test::scalars {
+
 using inr::ScalarType;
 
 TEST(Scalars, NamesAreUniqueAndReadBack)
@@ -46,3 +48,5 @@ TEST(ValueOf, StaysInTheRange)
     EXPECT_GT(inr::ValueOf(info, 1.5f), info.high) << k; // of no network's output
   }
 }
+
+} // namespace test::scalars

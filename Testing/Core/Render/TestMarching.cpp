@@ -193,10 +193,28 @@ TEST(Marching, NeedsAFieldAndAVolume)
   inr::VolumeInfo unknown = VolumeOf(dims);
   unknown.low = std::nan("");
   EXPECT_THROW(inr::Renderer(ball, unknown, {}), inr::Error);
-  inr::MacroCells cells = inr::MakeMacroCells(dims, 4);
+  const inr::MacroCells cells = inr::MakeMacroCells(dims, 4);
   EXPECT_NO_THROW(inr::Renderer(ball, VolumeOf(dims), cells));
-  cells.ranges.pop_back();
-  EXPECT_THROW(inr::Renderer(ball, VolumeOf(dims), cells), inr::Error);
+  const auto refuses = [&](const inr::MacroCells& wrong) {
+    EXPECT_THROW(inr::Renderer(ball, VolumeOf(dims), wrong), inr::Error);
+  };
+  inr::MacroCells wrong = cells;
+  wrong.ranges.pop_back();
+  refuses(wrong);
+  for (const std::size_t more : {1, 3}) { // 3 x 3 x 3 cells
+    wrong = cells;
+    wrong.ranges.resize(cells.ranges.size() + more);
+    refuses(wrong);
+  }
+  wrong = cells;
+  ++wrong.dims.z;
+  refuses(wrong);
+  wrong = cells;
+  wrong.spacing.y = 0;
+  refuses(wrong);
+  wrong = cells;
+  wrong.dims = glm::i64vec3(std::int64_t{1} << 32); // their product is 0 in 64 bits
+  refuses(wrong);
 }
 
 TEST(Marching, NeedsAnEndOfTheView)
