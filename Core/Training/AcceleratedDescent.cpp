@@ -27,9 +27,10 @@ bool IsNear(double a, double b, double tolerance)
 AcceleratedDescent::AcceleratedDescent(GradientDescent& host,
                                        std::unique_ptr<AcceleratedTraining> device,
                                        const Arena& arena,
-                                       std::function<void(const std::string&)> failed)
+                                       std::function<void(const std::string&)> failed,
+                                       std::function<double()> now)
     : Host(host), Device(std::move(device)), Threads(arena), Failed(std::move(failed)),
-      DrawsSamples(this->Device->drawsSamples())
+      Now(std::move(now)), DrawsSamples(this->Device->drawsSamples())
 {}
 
 void AcceleratedDescent::plan(std::uint64_t steps)
@@ -105,7 +106,7 @@ std::optional<double> AcceleratedDescent::stepOnDevice(BatchSource& batches, con
     std::rethrow_exception(stopped);
   }
   const bool isDue = this->Steps - this->Host.steps() >= CopyInterval &&
-                     this->SinceCopy.seconds() >= LeastShare * this->CopySeconds;
+                     this->Now() - this->CopiedAt >= LeastShare * this->CopySeconds;
   if (isDue) {
     this->settle();
   }
@@ -226,7 +227,7 @@ void AcceleratedDescent::settle()
 
 void AcceleratedDescent::fetch()
 {
-  const TrainingClock clock;
+  const double begun = this->Now();
   StateArrays arrays = this->Host.state();
   this->Arriving.resize(arrays.size());
   for (std::size_t k = 0; k < arrays.size(); ++k) {
@@ -234,7 +235,7 @@ void AcceleratedDescent::fetch()
     arrays[k].data = this->Arriving[k].data();
   }
   this->Device->get(arrays);
-  this->CopySeconds = clock.seconds();
+  this->CopySeconds = this->Now() - begun;
 }
 
 void AcceleratedDescent::keepCopy()
@@ -245,7 +246,7 @@ void AcceleratedDescent::keepCopy()
   }
   this->Host.goOnAfter(this->Steps);
   this->UsedDevice = true;
-  this->SinceCopy = TrainingClock();
+  this->CopiedAt = this->Now();
 }
 
 void AcceleratedDescent::giveUp(const std::string& reason)

@@ -29,9 +29,10 @@ public:
   static constexpr std::uint64_t CopyInterval = 200;
 
   /// `host`, which must outlive this, has taken no step yet. `failed` is told why the accelerator
-  /// has, once.
+  /// has, once. `now` is a clock, in seconds.
   AcceleratedDescent(GradientDescent& host, std::unique_ptr<AcceleratedTraining> device,
-                     const Arena& arena, std::function<void(const std::string&)> failed);
+                     const Arena& arena, std::function<void(const std::string&)> failed,
+                     std::function<double()> now = SteadySeconds);
 
   std::optional<double> step(BatchSource& batches, const StopCheck& check = StopCheck()) override;
   std::uint64_t steps() const override { return this->Device ? this->Steps : this->Host.steps(); }
@@ -69,6 +70,7 @@ private:
   std::unique_ptr<AcceleratedTraining> Device; ///< null = it has failed
   const Arena& Threads;
   std::function<void(const std::string&)> Failed;
+  std::function<double()> Now;
   bool DrawsSamples;
   bool UsedDevice = false;
   bool IsThere = false;    ///< the device has the state
@@ -79,8 +81,8 @@ private:
   int Buffer = 0; ///< where it is
   /// What comes from the device, which may break off; then the copy of before stays.
   std::vector<std::vector<char>> Arriving;
-  double CopySeconds = 0;
-  TrainingClock SinceCopy;
+  double CopySeconds = 0; ///< that the last one took
+  double CopiedAt = 0;    ///< by the clock
 };
 
 } // namespace inr

@@ -40,6 +40,9 @@ struct FakeTrainingDevice
   std::uint64_t planned = 0;   ///< steps of the learning rate; 0 = not known to the test
   double slowStart = 0;        ///< seconds
   double slowness = 0;         ///< seconds that a step takes more
+  double seconds = 0;          ///< of a clock that shows
+  double stepSeconds = 0;      ///< how long a step took
+  double copySeconds = 0;      ///< and a copy of its state
   bool hasRoom = true;         ///< for a volume
   std::string kernel = "fake"; ///< of the training record
   int failsAt = Never;         ///< that call and all that follow fail; 0 = to start
@@ -87,6 +90,7 @@ public:
   void get(const inr::StateArrays& state) override
   {
     ++this->Device.gets;
+    this->Device.seconds += this->Device.copySeconds;
     for (const inr::StateArray& array : state) {
       std::memset(array.data, 0xff, static_cast<std::size_t>(array.bytes / 2));
     }
@@ -120,6 +124,7 @@ public:
   {
     this->Device.call();
     ++this->Device.steps;
+    this->Device.seconds += this->Device.stepSeconds;
     std::this_thread::sleep_for(std::chrono::duration<double>(this->Device.slowness));
     this->Core.goOnAfter(this->Begun.number);
     const float wrong = this->Device.wrongLoss;

@@ -43,9 +43,11 @@ struct FewSteps
   explicit FewSteps(FakeTrainingDevice& fake)
       : Device(fake), Threads(1), Host(TinyDescription(), 1, set(), this->Threads),
         Expected(TinyDescription(), 1, set(), this->Threads),
-        Descent(this->Host,
-                FakeTrainer(fake).start({TinyDescription(), 32, this->Host.stream(), std::nullopt}),
-                this->Threads, [this](const std::string& text) { this->Told.push_back(text); })
+        Descent(
+            this->Host,
+            FakeTrainer(fake).start({TinyDescription(), 32, this->Host.stream(), std::nullopt}),
+            this->Threads, [this](const std::string& text) { this->Told.push_back(text); },
+            [&fake] { return fake.seconds; })
   {
     fake.planned = 2000;
     this->Descent.plan(2000);

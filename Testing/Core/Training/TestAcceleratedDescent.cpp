@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace test::accelerated_descent {
 
@@ -28,6 +29,22 @@ TEST(AcceleratedDescent, KeepsACopyOfLateSteps)
   few.expect(402);
   few.take(500);
   few.expect(500);
+}
+
+/// Copies that take 3 steps' time are 150 steps apart at least, and those that take 8, 400.
+TEST(AcceleratedDescent, CopiesFromTimeToTime)
+{
+  for (const auto& [copySeconds, copiedAt] : {std::pair{1.5, 401u}, {4.0, 801u}}) {
+    FakeTrainingDevice device;
+    device.stepSeconds = 0.5;
+    device.copySeconds = copySeconds;
+    FewSteps few(device);
+    few.take(copiedAt - 1);
+    EXPECT_EQ(device.gets, 2);
+    few.take(copiedAt);
+    EXPECT_EQ(few.Host.steps(), copiedAt);
+    EXPECT_EQ(device.gets, 3);
+  }
 }
 
 TEST(AcceleratedDescent, IsAskedForNothingTwice)
