@@ -33,8 +33,8 @@ public:
 
   int threads() const;
 
-  /// Calls `body(begin, end)` for the blocks [k*block, min((k+1)*block, count)). Exceptions thrown
-  /// by `body` come out of this call. May be called from several threads at once.
+  /// Calls `body(begin, end)` for the blocks [k*block, min((k+1)*block, count)), block > 0.
+  /// Exceptions thrown by `body` come out of this call. May be called from several threads at once.
   void forEachBlock(std::int64_t count, std::int64_t block,
                     const std::function<void(std::int64_t begin, std::int64_t end)>& body) const;
 

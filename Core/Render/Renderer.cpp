@@ -160,6 +160,7 @@ int Renderer::threads() const { return this->Self->Threads.threads(); }
 void Renderer::setTransferFunction(const TransferFunction& transferFunction)
 {
   Implementation& self = *this->Self;
+  Drawing::RequireNone(self.IsDrawing);
   if (self.Function == transferFunction) {
     return;
   }
@@ -258,6 +259,7 @@ FrameStatistics Renderer::render(const Frame& wanted, Image& rgba, Image* depth,
 {
   const Timer timer;
   Implementation& self = *this->Self;
+  const Drawing drawing(self.IsDrawing);
   if (!self.Colors) {
     throw Error(ErrorCode::InvalidArgument, "set a transfer function before rendering");
   }

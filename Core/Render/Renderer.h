@@ -57,7 +57,7 @@ struct RendererOptions
 /// of interpolation error, and pictures that are to make do with what the cache can hold. A
 /// renderer is not for use from two threads at once; several are, and those that share bricks take
 /// turns. In the middle of rendering (in keepGoing, on whichever thread that is asked), another
-/// that shares its bricks throws Error(Cancelled); this one must not be changed there.
+/// that shares its bricks throws Error(Cancelled); this one throws Error(InvalidArgument).
 ///
 /// Where an accelerator fails, the CPU takes over within the call and goes on: no call fails
 /// because of it, no brick is lost, and the picture is the same but for the rounding of float32.

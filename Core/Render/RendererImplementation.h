@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Error.h"
 #include "Core/Parallel.h"
 #include "Core/Render/AcceleratedFrames.h"
 #include "Core/Render/CachedRenderer.h"
@@ -40,6 +41,29 @@ struct LevelChoice
     statistics.complete = statistics.complete && this->final;
     statistics.work.networkSamples += this->points;
   }
+};
+
+/// Lasts as long as a picture is drawn, during which nothing of its renderer may change.
+class Drawing
+{
+public:
+  explicit Drawing(bool& inProgress) : InProgress(inProgress)
+  {
+    RequireNone(inProgress);
+    inProgress = true;
+  }
+  ~Drawing() { this->InProgress = false; }
+  Drawing(const Drawing&) = delete;
+  Drawing& operator=(const Drawing&) = delete;
+
+  static void RequireNone(bool inProgress)
+  {
+    Require(!inProgress, "a renderer that is asked whether to go on can neither draw something "
+                         "else nor change its transfer function; do so when it has returned");
+  }
+
+private:
+  bool& InProgress;
 };
 
 /// What a renderer consists of.
@@ -111,6 +135,7 @@ struct Renderer::Implementation
   std::optional<TransferFunction> Function;
   std::optional<ColorTable> Colors;
   std::optional<PreIntegratedColors> PreIntegrated; ///< once a frame wanted them, of `Colors`
+  bool IsDrawing = false;                           ///< see Drawing
   bool Built = false;                     ///< the majorants, for the colours and for `Seen`
   Blending Seen;                          ///< how pictures are blended that the majorants are for
   std::vector<float> Surfaces;            ///< of these pictures

@@ -34,6 +34,16 @@ glm::dmat4 Inverse(const glm::dmat4& matrix, const char* message)
   return inverse;
 }
 
+/// Whether doubles tell how far away it is. A homogeneous coordinate is the inverse of a distance,
+/// and the far plane's is the difference of two as large as the near plane's.
+bool HasFarPlane(const glm::dmat4& clipToWorld)
+{
+  constexpr double smallestRatio = 1e-12;
+  const double middle = clipToWorld[3].w;
+  const double half = clipToWorld[2].w;
+  return std::abs(middle + half) >= smallestRatio * std::abs(middle - half);
+}
+
 /// As levels of detail see it: along an axis of a single voxel, coarser ones have no fewer.
 ProjectedVoxel VoxelOf(const RayView& view, const glm::i64vec3& dims)
 {
@@ -63,8 +73,8 @@ RayGeometry::RayGeometry(const Frame& frame, const glm::i64vec3& dims)
   this->View.piece = frame.piece.data();
   this->View.pieceCount = static_cast<int>(frame.piece.size());
   Inverse(frame.clipToWorld, "the camera's matrix has no inverse");
-  Require(frame.clipToWorld[2].w + frame.clipToWorld[3].w != 0,
-          "the camera's far plane is infinitely far away");
+  Require(HasFarPlane(frame.clipToWorld),
+          "the camera's far plane is more than 1e12 times as far away as its near plane");
   this->View.indexToWorld = glm::dmat3(
       Inverse(frame.worldToIndex, "the volume's matrix has no inverse (a zero scale or spacing?)"));
   // Of the product, as what is far from the world's origin cancels out in it.

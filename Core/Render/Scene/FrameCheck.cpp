@@ -61,6 +61,15 @@ void CheckSampling(const Frame& frame)
   Require(frame.timeLimit >= 0, "the time limit must not be negative");
 }
 
+void CheckModes(const Frame& frame)
+{
+  Require(frame.mode == RenderMode::RayMarching || frame.mode == RenderMode::PathTracing,
+          "a frame's mode must be one of RenderMode's");
+  Require(frame.blending.mode >= BlendMode::Composite &&
+              frame.blending.mode <= BlendMode::Isosurface,
+          "a frame's blend mode must be one of BlendMode's");
+}
+
 void Check(const Blending& blending, RenderMode mode)
 {
   Require(mode == RenderMode::RayMarching || blending.mode == BlendMode::Composite,
@@ -136,6 +145,7 @@ void Check(const TranslucentLayers& layers, const Frame& frame)
 void RequireValid(const Frame& frame)
 {
   const bool traces = frame.mode == RenderMode::PathTracing;
+  CheckModes(frame);
   CheckSize(frame);
   CheckSampling(frame);
   CheckPlanes(frame.clippingPlanes, "clipping planes must consist of finite numbers");

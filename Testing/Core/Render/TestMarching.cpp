@@ -222,10 +222,58 @@ TEST(Marching, NeedsAnEndOfTheView)
   inr::Renderer renderer = FieldRenderer({9, 9, 9}, Ball);
   renderer.setTransferFunction(OpacityRamp(0.5f));
   inr::Frame frame = Diagonal(8);
-  frame.clipToWorld = glm::inverse(glm::infinitePerspective(0.4, 1.0, 10.0) *
-                                   glm::lookAt(glm::dvec3(70, 45, 90), glm::dvec3(4), {0, 1, 0}));
+  const glm::dmat4 toCamera = glm::lookAt(glm::dvec3(70, 45, 90), glm::dvec3(4), {0, 1, 0});
   inr::Image image;
+  frame.clipToWorld = glm::inverse(glm::infinitePerspective(0.05, 1.0, 10.0) * toCamera);
   EXPECT_THROW(renderer.render(frame, image), inr::Error);
+  frame.clipToWorld = glm::inverse(glm::perspective(0.05, 1.0, 1e-3, 1e12) * toCamera);
+  EXPECT_THROW(renderer.render(frame, image), inr::Error);
+  frame.clipToWorld = glm::inverse(glm::perspective(0.05, 1.0, 1.0, 1e11) * toCamera);
+  const inr::Image far = Render(renderer, frame);
+  frame.clipToWorld = glm::inverse(glm::perspective(0.05, 1.0, 1.0, 1e3) * toCamera);
+  const inr::Image near = Render(renderer, frame);
+  ASSERT_GT(near.pixel(4, 4)[3], 0.1f);
+  for (std::size_t k = 0; k < near.pixels.size(); ++k) {
+    EXPECT_NEAR(far.pixels[k], near.pixels[k], 0.01) << k;
+  }
+}
+
+TEST(Marching, KnowsItsModes)
+{
+  inr::Renderer renderer = FieldRenderer({9, 9, 9}, Ball);
+  renderer.setTransferFunction(OpacityRamp(0.5f));
+  inr::Image image;
+  inr::Frame frame = Diagonal(8);
+  frame.mode = static_cast<inr::RenderMode>(9);
+  EXPECT_THROW(renderer.render(frame, image), inr::Error);
+  frame = Diagonal(8);
+  frame.blending.mode = static_cast<inr::BlendMode>(77);
+  EXPECT_THROW(renderer.render(frame, image), inr::Error);
+}
+
+/// Whoever is asked whether to go on, can stop the picture, but not have it drawn otherwise.
+TEST(Marching, CannotBeChangedWhileItDraws)
+{
+  for (const bool cached : {false, true}) {
+    inr::Renderer renderer = FieldRenderer({9, 9, 9}, Ball, {}, 1, cached);
+    renderer.setTransferFunction(OpacityRamp(0.5f));
+    const inr::Frame frame = Diagonal(8);
+    const inr::Image expected = Render(renderer, frame);
+    inr::Image image;
+    int refused = 0;
+    const auto change = [&] {
+      inr::Image other;
+      EXPECT_THROW(renderer.setTransferFunction(OpacityRamp(0.1f)), inr::Error);
+      EXPECT_THROW(renderer.render(frame, other), inr::Error);
+      ++refused;
+      return true;
+    };
+    renderer.render(frame, image, nullptr, change);
+    EXPECT_GT(refused, 0);
+    EXPECT_EQ(image.pixels, expected.pixels);
+    EXPECT_THROW(renderer.render(frame, image, nullptr, [] { return false; }), inr::Error);
+    EXPECT_EQ(Render(renderer, frame).pixels, expected.pixels) << "after one that was stopped";
+  }
 }
 
 TEST(Marching, NeedsATransferFunction)
