@@ -83,9 +83,9 @@ void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options)
   for (const auto& [name, value] : {std::pair("TargetPSNR", options.targetPsnr),
                                     {"TargetRatio", options.targetRatio},
                                     {"TimeLimit", options.timeLimit}}) {
-    if (!std::isfinite(value)) { // an infinite one would pass for a limit below
+    if (!std::isfinite(value) || value < 0) { // an infinite one would pass for a limit below
       throw Error(ErrorCode::InvalidArgument, std::string(name) + " is " + std::to_string(value) +
-                                                  "; set a finite number, or 0 for none");
+                                                  "; set a finite positive number, or 0 for none");
     }
   }
   constexpr int largestEdge = 1 << 29; // so that a single layer's spacing can be told in a file

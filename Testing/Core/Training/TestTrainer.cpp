@@ -302,6 +302,9 @@ TEST(Trainer, RefusesToTrainForEverOrOnNothing)
 {
   const Field<float> field = WaveField();
   EXPECT_THROW(inr::TrainModel(field.data(), {}, Steps(0)), inr::Error);
+  inr::TrainingOptions negative = Steps(5);
+  negative.timeLimit = -1;
+  EXPECT_THROW(inr::TrainModel(field.data(), {}, negative), inr::Error);
   inr::VolumeData nothing = field.data();
   nothing.dims.y = 0;
   EXPECT_THROW(inr::TrainModel(nothing, {}, Steps(5)), inr::Error);

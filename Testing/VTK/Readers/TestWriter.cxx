@@ -370,10 +370,10 @@ TEST_F(Writer, RefusesSettingsThatMakeNoSense)
   this->expectRefusal(image, "never end");
   this->Algorithm->SetMaximumSteps(5);
   this->Algorithm->SetTargetPSNR(std::numeric_limits<double>::infinity());
-  this->expectRefusal(image, "TargetPSNR is inf; set a finite number");
+  this->expectRefusal(image, "TargetPSNR is inf; set a finite positive number");
   this->Algorithm->SetTargetPSNR(0);
   this->Algorithm->SetTargetRatio(std::nan(""));
-  this->expectRefusal(image, "TargetRatio is nan; set a finite number");
+  this->expectRefusal(image, "TargetRatio is nan; set a finite positive number");
   this->Algorithm->SetTargetRatio(0);
   const auto vast = MakeImage({4, 4, 4}, VTK_DOUBLE, 0, 1);
   vast->GetPointData()->GetArray("field")->SetTuple1(0, -1.7e308);
