@@ -31,9 +31,10 @@ def train(volume):
     shown = [0.0]
 
     def show(*_event):
-        if time.time() - shown[0] > 1:
+        text = trainer.GetProgressText()  # none at the very beginning
+        if text and time.time() - shown[0] > 1:
             shown[0] = time.time()
-            print(f"   {trainer.GetProgressText()}: {100 * trainer.GetProgress():3.0f} %", flush=True)
+            print(f"   {text}: {100 * trainer.GetProgress():3.0f} %", flush=True)
 
     trainer.AddObserver("ProgressEvent", show)
     writer.UpdatePipeline()

@@ -12,17 +12,16 @@ if ! [[ $seconds =~ ^[1-9][0-9]*$ ]]; then
   echo "usage: $0 [SECONDS]   a whole number above 0" >&2
   exit 2
 fi
-cd "$(dirname "$0")/.."
+cd "$(dirname "$(readlink -f "$0")")/.."
 
 echo "== 1/3 Packages"
 bash CMake/install-debian-packages.sh
 
 echo "== 2/3 Building the plugin"
-cmake --preset release -DINR_BUILD_TESTING=OFF > quickstart-configure.log 2>&1 || {
-  cat quickstart-configure.log
+configured=$(cmake --preset release -DINR_BUILD_TESTING=OFF 2>&1) || {
+  echo "$configured"
   exit 1
 }
-rm quickstart-configure.log
 cmake --build --preset release
 
 echo "== 3/3 Training and rendering in ParaView"

@@ -13,6 +13,7 @@ from scene import FLAME, MIXING, WIND, make_view, open_model, show
 
 SIZE = 400
 models, pictures = sys.argv[1:]
+os.makedirs(pictures, exist_ok=True)
 
 
 def save(view, name):

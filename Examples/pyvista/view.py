@@ -29,5 +29,8 @@ volume.prop.opacity_unit_distance = image.GetLength() / 100
 
 plotter = pyvista.Plotter(off_screen=True, window_size=(600, 600))
 plotter.add_actor(volume)
-plotter.screenshot(picture_file)
+try:
+    plotter.screenshot(picture_file)
+except OSError as error:
+    sys.exit(f"{picture_file} was not written: {error}")
 print(f"{picture_file}: {volume.mapper.GetFrameTime():.2f} s on {volume.mapper.GetBackendInUse()}")
