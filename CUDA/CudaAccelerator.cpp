@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/CudaAccelerator.h"
 
+#include "CUDA/Cache/CacheShares.h"
 #include "CUDA/Engine.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ public:
                                                     const glm::i64vec3& dims,
                                                     const CacheOptions& options) const override
   {
-    return MakeRenderer(this->uploaded(model), dims, options);
+    return MakeRenderer(this->uploaded(model), this->Shares, dims, options);
   }
 
   std::shared_ptr<AcceleratedRenderer> makeNetworkRenderer(const ModelPointer& model) const override
@@ -70,7 +71,8 @@ private:
 
   Device Where;
   Precision Kind;
-  mutable std::mutex Mutex; ///< guards what follows
+  std::shared_ptr<CacheShares> Shares = std::make_shared<CacheShares>(); ///< of all models
+  mutable std::mutex Mutex;                                              ///< guards what follows
   mutable std::vector<std::pair<std::weak_ptr<const Model>, std::weak_ptr<const DeviceModel>>>
       Uploaded;
 };

@@ -146,9 +146,17 @@ CacheLayout LayOutCache(const Hierarchy& hierarchy, CachePrecision precision, st
   }
   const CacheLayout smallest = planner.fit(bytes, 1, FewestRequests);
   if (smallest.capacity < BrickCache::FewestBricks) {
-    RefuseBytes(hierarchy, bytes, planner.plan(BrickCache::FewestBricks, 1, FewestRequests).bytes);
+    RefuseBytes(hierarchy, bytes, LeastCacheBytes(hierarchy, precision, needs));
   }
   return smallest;
+}
+
+std::int64_t LeastCacheBytes(const Hierarchy& hierarchy, CachePrecision precision,
+                             const CacheNeeds& needs)
+{
+  return Planner(hierarchy, precision, needs)
+      .plan(BrickCache::FewestBricks, 1, FewestRequests)
+      .bytes;
 }
 
 } // namespace cuda

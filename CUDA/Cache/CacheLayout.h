@@ -35,5 +35,9 @@ struct CacheNeeds
 CacheLayout LayOutCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes,
                         const CacheNeeds& needs);
 
+/// The bytes of the smallest one.
+std::int64_t LeastCacheBytes(const Hierarchy& hierarchy, CachePrecision precision,
+                             const CacheNeeds& needs);
+
 } // namespace cuda
 } // namespace inr

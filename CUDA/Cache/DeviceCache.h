@@ -15,6 +15,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -35,18 +36,23 @@ public:
   /// Throws what LayOutCache throws, and what the machine does, which must live longer.
   DeviceCache(Machine& machine, Inference inference, const Hierarchy& hierarchy,
               CachePrecision precision, std::int64_t bytes, const MacroCells& cells = {})
-      : Where(machine), Infer(std::move(inference)), Levels(hierarchy),
-        Layout(LayOutCache(hierarchy, precision, bytes,
-                           {this->Infer.bytes(), CellsFor(precision, cells)})),
-        Precision(precision),
-        Tables(Available(machine, this->Layout), this->Layout, hierarchy, precision)
+      : Where(machine), Infer(std::move(inference)), Levels(hierarchy), Precision(precision),
+        Needs(needs(this->Infer, precision, cells)),
+        LevelTable(machine.template allocate<HierarchyLevel>(hierarchy.levels())),
+        Ranges(machine.template allocate<ValueRange>(this->Needs.cells))
   {
-    machine.toMachine(this->Tables.levels.data(), &hierarchy.view().level(0), hierarchy.levels());
+    machine.toMachine(this->LevelTable.data(), &hierarchy.view().level(0), hierarchy.levels());
     this->putRanges(cells);
-    machine.fill(this->Tables.uses.data(), 0, this->Layout.capacity);
-    this->forgetRequests();
-    this->map();
-    this->loadCoarsest();
+    this->allocate(LayOutCache(hierarchy, precision, bytes, this->Needs));
+  }
+
+  /// Of one with these.
+  static CacheNeeds needs(const Inference& inference, CachePrecision precision,
+                          const MacroCells& cells)
+  {
+    // Floats are stored as they are.
+    const bool divides = precision != CachePrecision::Float32 && cells.rangesHold();
+    return {inference.bytes(), divides ? static_cast<std::int64_t>(cells.ranges.size()) : 0};
   }
 
   DeviceCache(const DeviceCache&) = delete;
@@ -71,22 +77,22 @@ public:
   {
     const glm::ivec3& dims = this->Levels.brickDims();
     CacheView view{};
-    view.hierarchy = {this->Tables.levels.data(), this->Levels.levels(), dims};
+    view.hierarchy = {this->LevelTable.data(), this->Levels.levels(), dims};
     view.precision = this->Precision;
     view.bytesPerBrick = this->Levels.voxelsPerBrick() * BytesPerVoxel(this->Precision);
     view.rowStride = dims.x;
     view.layerStride = std::int64_t{dims.x} * dims.y;
     view.frame = this->Frame;
     view.capacity = this->Layout.capacity;
-    view.pages = this->Tables.pages.data();
+    view.pages = this->Tables->pages.data();
     view.pageMask = static_cast<std::uint32_t>(this->Layout.pages - 1);
-    view.voxels = this->Tables.voxels.data();
-    view.scales = this->Tables.scales.data();
-    view.owners = this->Tables.owners.data();
-    view.uses = this->Tables.uses.data();
-    view.requests = {this->Tables.requests.data(),
+    view.voxels = this->Tables->voxels.data();
+    view.scales = this->Tables->scales.data();
+    view.owners = this->Tables->owners.data();
+    view.uses = this->Tables->uses.data();
+    view.requests = {this->Tables->requests.data(),
                      static_cast<std::uint32_t>(this->Layout.requests - 1),
-                     &this->Tables.counts.data()->requests};
+                     &this->Tables->counts.data()->requests};
     return view;
   }
 
@@ -163,11 +169,27 @@ public:
     return this->storeListed(this->Listed);
   }
 
+  /// Stays within so many bytes from here on, and forgets all bricks but the coarsest, those of the
+  /// present frame and what was begun included. Throws as the constructor does; what is not
+  /// Error(InvalidArgument) leaves a cache that is of no use until this has succeeded.
+  void resize(std::int64_t bytes)
+  {
+    const CacheLayout layout = LayOutCache(this->Levels, this->Precision, bytes, this->Needs);
+    if (this->isLoading()) {
+      std::exchange(this->Beside, nullptr)->wait();
+    }
+    this->Where.wait();
+    this->Mapped = 0;
+    this->Layout = {};
+    this->Tables.reset(); // before others are there: memory may be short
+    this->allocate(layout);
+  }
+
   /// Forgets all bricks but the coarsest, those of the present frame included. What was begun still
   /// comes in.
   void clear()
   {
-    this->Where.fill(this->Tables.uses.data() + Pinned, 0, this->Layout.capacity - Pinned);
+    this->Where.fill(this->Tables->uses.data() + Pinned, 0, this->Layout.capacity - Pinned);
     this->map();
     this->Mapped = Pinned;
   }
@@ -181,8 +203,7 @@ private:
   {
     Storage(const Machine& machine, const CacheLayout& layout, const Hierarchy& hierarchy,
             CachePrecision precision)
-        : levels(machine.template allocate<HierarchyLevel>(hierarchy.levels())),
-          voxels(machine.template allocate<unsigned char>(
+        : voxels(machine.template allocate<unsigned char>(
               layout.capacity * hierarchy.voxelsPerBrick() * BytesPerVoxel(precision) +
               CacheLayout::BytesBehind)),
           scales(machine.template allocate<BrickScale>(layout.capacity)),
@@ -196,11 +217,9 @@ private:
           jobs(machine.template allocate<BrickJob>(layout.atOnce)),
           values(machine.template allocate<float>(layout.atOnce * hierarchy.voxelsPerBrick())),
           marked(machine.template allocate<std::uint32_t>(layout.atOnce)),
-          ranges(machine.template allocate<ValueRange>(layout.cells)),
           counts(machine.template allocate<CacheCounts>(1))
     {}
 
-    Array<HierarchyLevel> levels;
     Array<unsigned char> voxels;
     Array<BrickScale> scales;
     Array<BrickKey> owners;
@@ -213,65 +232,62 @@ private:
     Array<BrickJob> jobs;
     Array<float> values;
     Array<std::uint32_t> marked;
-    Array<ValueRange> ranges;
     Array<CacheCounts> counts;
   };
 
-  /// How many ranges are read: floats are stored as they are.
-  static std::int64_t CellsFor(CachePrecision precision, const MacroCells& cells)
+  void allocate(const CacheLayout& layout)
   {
-    const bool divides = precision != CachePrecision::Float32 && cells.rangesHold();
-    return divides ? static_cast<std::int64_t>(cells.ranges.size()) : 0;
+    this->Where.requireFree(layout.bytes, "the cache of bricks");
+    this->Tables.emplace(this->Where, layout, this->Levels, this->Precision);
+    this->Layout = layout;
+    this->Where.fill(this->Tables->uses.data(), 0, this->Layout.capacity);
+    this->forgetRequests();
+    this->map();
+    this->loadCoarsest();
   }
 
   void putRanges(const MacroCells& cells)
   {
-    if (this->Layout.cells == 0) {
+    if (this->Needs.cells == 0) {
       return;
     }
     std::vector<ValueRange> ranges(cells.ranges);
     for (ValueRange& range : ranges) {
       range = {NormalisedOutput(range.low), NormalisedOutput(range.high)};
     }
-    this->Where.toMachine(this->Tables.ranges.data(), ranges.data(), this->Layout.cells);
-    this->Cells = {cells.dims, cells.spacing, this->Tables.ranges.data()};
-  }
-
-  static Machine& Available(Machine& machine, const CacheLayout& layout)
-  {
-    machine.requireFree(layout.bytes, "the cache of bricks");
-    return machine;
+    this->Where.toMachine(this->Ranges.data(), ranges.data(), this->Needs.cells);
+    this->Cells = {cells.dims, cells.spacing, this->Ranges.data()};
   }
 
   /// Slots that may take other bricks.
   void findSlots(std::int64_t most)
   {
-    this->Tables.selector.select(this->Where,
-                                 ReplaceableSlots{this->Tables.uses.data(), this->Frame, Pinned},
-                                 this->Layout.capacity, most, this->Tables.slots.data());
+    this->Tables->selector.select(this->Where,
+                                  ReplaceableSlots{this->Tables->uses.data(), this->Frame, Pinned},
+                                  this->Layout.capacity, most, this->Tables->slots.data());
   }
 
   /// The bricks that are to come in, as long as there are slots for them.
   void list(std::int64_t most, bool byContribution)
   {
-    this->Tables.selector.select(this->Where, WantedBricks{this->view(), byContribution},
-                                 this->Layout.requests, most, this->Tables.bricks.data());
+    this->Tables->selector.select(this->Where, WantedBricks{this->view(), byContribution},
+                                  this->Layout.requests, most, this->Tables->bricks.data());
     this->findSlots(most);
     this->listRanked(most);
   }
 
   void listRanked(std::int64_t most)
   {
-    const ListBricks kernel{this->view().hierarchy,    this->Tables.bricks.data(),
-                            this->Tables.slots.data(), most,
-                            this->Tables.jobs.data(),  this->Tables.counts.data()};
+    const ListBricks kernel{this->view().hierarchy,     this->Tables->bricks.data(),
+                            this->Tables->slots.data(), most,
+                            this->Tables->jobs.data(),  this->Tables->counts.data()};
     this->Where.run(kernel, ListBricks::Threads, ListBricks::SharedBytes);
   }
 
   void infer(Machine& machine)
   {
-    this->Infer.infer(machine, this->Tables.jobs.data(), &this->Tables.counts.data()->end,
-                      this->Tables.values.data());
+    this->Infer.infer(machine, this->Tables->jobs.data(), &this->Tables->counts.data()->end,
+                      this->Tables->values.data());
   }
 
   Loaded storeListed(std::int64_t most)
@@ -279,7 +295,7 @@ private:
     this->store(most);
     this->map();
     CacheCounts counts{};
-    this->Where.toHost(&counts, this->Tables.counts.data(), 1);
+    this->Where.toHost(&counts, this->Tables->counts.data(), 1);
     const auto stored = static_cast<std::int64_t>(counts.stored);
     if (counts.marked > 0) {
       this->repair(stored);
@@ -294,18 +310,18 @@ private:
   void store(std::int64_t most)
   {
     const StoreBricks kernel{this->view(),
-                             this->Tables.bricks.data(),
-                             this->Tables.slots.data(),
-                             this->Tables.values.data(),
-                             this->Tables.counts.data(),
-                             this->Tables.marked.data(),
+                             this->Tables->bricks.data(),
+                             this->Tables->slots.data(),
+                             this->Tables->values.data(),
+                             this->Tables->counts.data(),
+                             this->Tables->marked.data(),
                              this->Cells};
     this->Where.run(kernel, most * StoreBricks::Threads, StoreBricks::SharedBytes);
   }
 
   void map()
   {
-    this->Where.fill(this->Tables.pages.data(), 0xff, this->Layout.pages); // NoBrick, and -1
+    this->Where.fill(this->Tables->pages.data(), 0xff, this->Layout.pages); // NoBrick, and -1
     this->Where.run(MapSlots{this->view()}, this->Layout.capacity);
   }
 
@@ -317,13 +333,13 @@ private:
     }
     std::vector<RankEntry> bricks(static_cast<std::size_t>(count));
     std::vector<std::uint32_t> marked(bricks.size());
-    this->Where.toHost(bricks.data(), this->Tables.bricks.data(), count);
-    this->Where.toHost(marked.data(), this->Tables.marked.data(), count);
+    this->Where.toHost(bricks.data(), this->Tables->bricks.data(), count);
+    this->Where.toHost(marked.data(), this->Tables->marked.data(), count);
     const std::int64_t voxels = this->Levels.voxelsPerBrick();
     std::vector<float> values(static_cast<std::size_t>(voxels));
     for (std::int64_t k = 0; k < count; ++k) {
       if (marked[static_cast<std::size_t>(k)] > 0) {
-        float* const brick = this->Tables.values.data() + k * voxels;
+        float* const brick = this->Tables->values.data() + k * voxels;
         const BrickKey key = WantedBricks::KeyOf(bricks[static_cast<std::size_t>(k)]);
         this->Where.toHost(values.data(), brick, voxels);
         RepairLayers(*this->Core, key, 0, this->Levels.brickDims().z, values.data());
@@ -336,8 +352,8 @@ private:
   {
     const RankEntry brick = WantedBricks::EntryOf(this->Levels.coarsest());
     const RankEntry slot{0, 0};
-    this->Where.toMachine(this->Tables.bricks.data(), &brick, 1);
-    this->Where.toMachine(this->Tables.slots.data(), &slot, 1);
+    this->Where.toMachine(this->Tables->bricks.data(), &brick, 1);
+    this->Where.toMachine(this->Tables->slots.data(), &slot, 1);
     this->listRanked(1);
     this->infer(this->Where);
     this->storeListed(1);
@@ -346,10 +362,13 @@ private:
   Machine& Where;
   Inference Infer;
   Hierarchy Levels;
-  CacheLayout Layout;
   CachePrecision Precision;
-  Storage Tables;
+  CacheNeeds Needs;
+  CacheLayout Layout{};
+  Array<HierarchyLevel> LevelTable;
+  Array<ValueRange> Ranges;
   CellTable Cells;
+  std::optional<Storage> Tables; ///< none where there was no memory for other ones
   std::uint64_t Frame = 1;
   std::atomic<std::int64_t> Mapped{0};     ///< which others may ask for while it is used
   Machine* Beside = nullptr;               ///< that infers what was begun

@@ -58,7 +58,7 @@ public:
     return this->Paths.trace(round, this->Colors, limit, keepGoing);
   }
 
-  std::int64_t bytes() const override { return this->Shared->cache.bytes(); }
+  std::int64_t bytes() const override { return this->Shared->bytes(); }
   std::int64_t bricks() const override { return this->Shared->cache.mapped(); }
 
 private:

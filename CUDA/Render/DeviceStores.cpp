@@ -11,6 +11,7 @@ namespace cuda {
 template class DeviceRenderer<GpuMachine, GpuCache>;
 
 std::shared_ptr<GpuStore> DeviceStores::storeFor(const std::shared_ptr<const DeviceModel>& model,
+                                                 const std::shared_ptr<CacheShares>& shares,
                                                  const glm::i64vec3& dims,
                                                  const CacheOptions& options)
 {
@@ -28,22 +29,23 @@ std::shared_ptr<GpuStore> DeviceStores::storeFor(const std::shared_ptr<const Dev
     }
   }
   const int device = model->device().ordinal;
-  const std::int64_t bytes = std::min(wanted, FreeMemory(device) / 2);
+  const std::int64_t limit = std::min(wanted, (FreeMemory(device) + shares->taken()) / 2);
   const ModelPointer& source = model->source();
-  auto store =
-      std::make_shared<GpuStore>(device, DeviceInference(model, std::min(bytes / 16, mostScratch)),
-                                 Hierarchy(dims, options.brickSize, ResolutionOf(*source)),
-                                 options.precision, bytes, source->macroCells);
+  auto store = MakeSharingStore<GpuMachine, GpuCache>(
+      shares, device, DeviceInference(model, std::min(limit / 16, mostScratch)),
+      Hierarchy(dims, options.brickSize, ResolutionOf(*source)), options.precision, limit,
+      source->macroCells);
   this->Entries.push_back({dims, options.brickSize, options.precision, wanted, store});
   return store;
 }
 
 std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>& model,
+                                                  const std::shared_ptr<CacheShares>& shares,
                                                   const glm::i64vec3& dims,
                                                   const CacheOptions& options)
 {
   return std::make_shared<DeviceRenderer<GpuMachine, GpuCache>>(
-      model->stores().storeFor(model, dims, options), options);
+      model->stores().storeFor(model, shares, dims, options), options);
 }
 
 } // namespace cuda

@@ -102,11 +102,11 @@ public:
   };
   ///@{
   /**
-   * What draws; one of Backends, anything else is refused. A GPU has the model, the cache
-   * (CacheSize at most, and half of its free memory), the rays and the paths; but of pictures with
-   * an ErrorTolerance, of isosurfaces and PreIntegration where every sample asks the network, and
-   * among more than 256 MiB of translucent surfaces, the CPU draws what the GPU infers. Its values
-   * are float32, as the CPU's are, but for the order of summation.
+   * What draws; one of Backends, anything else is refused. A GPU has the model, the cache (of all
+   * volumes CacheSize at most, and half of its free memory), the rays and the paths; but of
+   * pictures with an ErrorTolerance, of isosurfaces and PreIntegration where every sample asks the
+   * network, and among more than 256 MiB of translucent surfaces, the CPU draws what the GPU
+   * infers. Its values are float32, as the CPU's are, but for the order of summation.
    * One that fails, at whatever time, or draws another picture than the CPU, is given up for the
    * CPU with a warning, without change in a picture, until this is called again, if only with the
    * same. So is one whose memory is short, of which AUTO says nothing. A change empties the cache.

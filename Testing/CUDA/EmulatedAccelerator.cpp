@@ -13,7 +13,8 @@ EmulatedAccelerator::makeRenderer(const inr::ModelPointer& model, const glm::i64
   }
   inr::CacheOptions own = options;
   own.bytes = this->Bytes > 0 ? this->Bytes : options.bytes;
-  return MakeRendererOn<HostMachine>(this->Launch, this->inferenceOf(model), dims, own);
+  return MakeRendererOn<HostMachine>(this->Launch, this->inferenceOf(model), dims, own,
+                                     this->Shares);
 }
 
 std::shared_ptr<inr::AcceleratedRenderer>

@@ -3,11 +3,14 @@
 // The GPU's kernels as an accelerator for renderers, run on the host.
 #pragma once
 
+#include "CUDA/Cache/CacheShares.h"
 #include "Core/Cache/Accelerator.h"
 #include "Testing/CUDA/Emulated.h"
 #include "Testing/CUDA/EmulatedInference.h"
 #include "Testing/CUDA/HostMachine.h"
 
+#include <cstdint>
+#include <memory>
 #include <string>
 
 /// What an accelerator does.
@@ -58,4 +61,5 @@ private:
   Duty Does;
   HostLaunch Launch;
   std::int64_t Bytes; ///< of its cache; 0 = as a renderer's options say
+  std::shared_ptr<inr::cuda::CacheShares> Shares = std::make_shared<inr::cuda::CacheShares>();
 };

@@ -12,16 +12,18 @@
 #include <memory>
 #include <utility>
 
-/// `where`: of what the machine is made.
+/// `where`: of what the machine is made. `shares`: with whom its memory is shared.
 template <class Machine, class Where>
 std::shared_ptr<inr::AcceleratedRenderer>
 MakeRendererOn(const Where& where, EmulatedInference inference, const glm::i64vec3& dims,
-               const inr::CacheOptions& options)
+               const inr::CacheOptions& options,
+               const std::shared_ptr<inr::cuda::CacheShares>& shares =
+                   std::make_shared<inr::cuda::CacheShares>())
 {
   using Cache = inr::cuda::DeviceCache<Machine, EmulatedInference>;
   const inr::ModelPointer model = inference.source();
-  auto store = std::make_shared<inr::cuda::DeviceStore<Machine, Cache>>(
-      where, std::move(inference),
+  auto store = inr::cuda::MakeSharingStore<Machine, Cache>(
+      shares, where, std::move(inference),
       inr::Hierarchy(dims, options.brickSize, inr::ResolutionOf(*model)), options.precision,
       options.bytes, model->macroCells);
   return std::make_shared<inr::cuda::DeviceRenderer<Machine, Cache>>(std::move(store), options);

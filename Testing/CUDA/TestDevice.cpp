@@ -29,7 +29,7 @@ TEST(Device, WhatIsNotUsedHasAReason)
 {
   const Devices devices = FindDevices();
   EXPECT_FALSE(devices.usable.empty() && devices.reason.empty());
-  for (const Device& device : devices.usable) {
+  for (const inr::cuda::Device& device : devices.usable) {
     EXPECT_FALSE(device.name.empty());
     EXPECT_GE(10 * device.major + device.minor, 75);
     EXPECT_GT(device.multiprocessors, 0);

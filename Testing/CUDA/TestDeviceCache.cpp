@@ -188,6 +188,44 @@ TEST(DeviceCache, StaysWithinItsBudget)
   EXPECT_LT(RuledCache(machine, {}, few, CachePrecision::Bits8, 40 << 20).capacity(), 40);
 }
 
+/// Of another size it is as a new one.
+TEST(DeviceCache, CanBeMadeSmallerAndLarger)
+{
+  const Hierarchy levels({50, 40, 30}, 6);
+  HostMachine machine;
+  HostMachine beside;
+  for (const CachePrecision precision : AllPrecisions) {
+    RuledCache cache(machine, {}, levels, precision, 64 << 10, AnyCells({10, 8, 6}));
+    for (const std::int64_t bytes : {30 << 10, 300 << 10, 64 << 10}) {
+      const std::vector<BrickKey> keys =
+          DifferentBricks(levels, static_cast<std::size_t>(cache.capacity()) / 2);
+      cache.beginFrame();
+      Ask(machine, cache.view(), WishesFor(keys));
+      cache.load(1000, true);
+      Ask(machine, cache.view(), WishesFor(DifferentBricks(levels, keys.size() + 9)));
+      cache.beginLoad(beside, 9, true);
+      cache.resize(bytes);
+      const RuledCache other(machine, {}, levels, precision, bytes, AnyCells({10, 8, 6}));
+      EXPECT_EQ(cache.bytes(), other.bytes());
+      EXPECT_EQ(cache.capacity(), other.capacity());
+      EXPECT_EQ(cache.mapped(), 1);
+      EXPECT_FALSE(cache.isLoading());
+      EXPECT_EQ(cache.finishLoad().loaded, 0);
+      EXPECT_EQ(cache.view().find(keys[0]), -1);
+      ExpectStored(cache.view().view(cache.view().find(levels.coarsest())), levels, precision,
+                   RuledBrick(levels, levels.coarsest()));
+      Ask(machine, cache.view(), WishesFor({keys[0]}));
+      EXPECT_EQ(cache.load(1000, true).loaded, 1);
+      ExpectStored(cache.view().view(cache.view().find(keys[0])), levels, precision,
+                   RuledBrick(levels, keys[0]));
+    }
+    const std::int64_t before = cache.bytes();
+    EXPECT_THROW(cache.resize(1000), inr::Error);
+    EXPECT_EQ(cache.bytes(), before);
+    EXPECT_EQ(cache.mapped(), 2);
+  }
+}
+
 /// As much as it says is enough, and a tenth less is not.
 TEST(DeviceCache, SaysWhatItNeeds)
 {

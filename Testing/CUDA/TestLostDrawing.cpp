@@ -90,16 +90,4 @@ TEST(LostDrawing, StopsOnRequest)
   }
 }
 
-TEST(LostDrawing, DoesNotWaitForItself)
-{
-  struct NoCache
-  {
-    explicit NoCache(HostMachine& /*machine*/) {}
-  };
-  using Store = inr::cuda::DeviceStore<HostMachine, NoCache>;
-  Store store{HostLaunch()};
-  const Store::Turn turn(store);
-  EXPECT_THROW(Store::Turn{store}, inr::Error);
-}
-
 } // namespace test::lost_drawing

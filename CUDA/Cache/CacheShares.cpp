@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CUDA/Cache/CacheShares.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace inr {
+namespace cuda {
+
+std::vector<std::int64_t> SharesOf(const std::vector<CacheWish>& wishes)
+{
+  std::vector<std::int64_t> shares;
+  std::int64_t left = 0;
+  for (const CacheWish& wish : wishes) {
+    left = std::max(left, wish.limit);
+  }
+  for (const CacheWish& wish : wishes) {
+    shares.push_back(wish.least);
+    left -= wish.least;
+  }
+  std::vector<std::size_t> order(wishes.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto more = [&](std::size_t k) { return wishes[k].most - wishes[k].least; };
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return more(a) < more(b); });
+  // Whoever wants less than an even part leaves the rest to those that come later.
+  auto waiting = static_cast<std::int64_t>(order.size());
+  for (const std::size_t k : order) {
+    const std::int64_t part = std::min(more(k), std::max<std::int64_t>(left, 0) / waiting--);
+    left -= part;
+    shares[k] = part == more(k) ? wishes[k].limit : shares[k] + part;
+  }
+  return shares;
+}
+
+CacheShares::Share::Share(std::shared_ptr<CacheShares> all, const CacheWish& wish)
+    : All(std::move(all)), Wish(wish)
+{
+  const std::lock_guard<std::mutex> lock(this->All->Mutex);
+  this->All->Shares.push_back(this);
+  this->All->divide();
+}
+
+CacheShares::Share::~Share()
+{
+  const std::lock_guard<std::mutex> lock(this->All->Mutex);
+  std::vector<Share*>& shares = this->All->Shares;
+  shares.erase(std::remove(shares.begin(), shares.end(), this), shares.end());
+  this->All->divide();
+}
+
+std::int64_t CacheShares::taken() const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return std::accumulate(this->Shares.begin(), this->Shares.end(), std::int64_t{0},
+                         [](std::int64_t sum, const Share* share) { return sum + share->Taken; });
+}
+
+void CacheShares::add(const std::shared_ptr<Holder>& holder)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  const auto isGone = [](const std::weak_ptr<Holder>& other) { return other.expired(); };
+  this->Holders.erase(std::remove_if(this->Holders.begin(), this->Holders.end(), isGone),
+                      this->Holders.end());
+  this->Holders.push_back(holder);
+}
+
+void CacheShares::adjust()
+{
+  std::vector<std::shared_ptr<Holder>> holders;
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    for (const std::weak_ptr<Holder>& holder : this->Holders) {
+      holders.push_back(holder.lock());
+    }
+  } // one that is let go of here takes the mutex, too
+  for (const std::shared_ptr<Holder>& holder : holders) {
+    holder ? holder->adjustIfIdle() : void();
+  }
+}
+
+void CacheShares::divide()
+{
+  std::vector<CacheWish> wishes;
+  for (const Share* share : this->Shares) {
+    wishes.push_back(share->Wish);
+  }
+  const std::vector<std::int64_t> shares = SharesOf(wishes);
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    this->Shares[k]->Bytes = shares[k];
+  }
+}
+
+} // namespace cuda
+} // namespace inr
