@@ -28,8 +28,10 @@ bool RefinementTimer::isWatched(vtkRenderWindow* window)
   if (!window) {
     return false;
   }
+  // A window that has drawn nothing yet makes its interactor ready when it does.
   vtkRenderWindowInteractor* interactor = window->GetInteractor();
-  return interactor && interactor->GetInitialized() && !window->GetOffScreenRendering();
+  return interactor && (interactor->GetInitialized() || window->GetNeverRendered()) &&
+         !window->GetOffScreenRendering();
 }
 
 bool RefinementTimer::canRefine(vtkRenderWindow* window)

@@ -42,6 +42,14 @@ view.SMProxy.InteractiveRender()
 check(value("Converged") == 0, "all bricks came in one interactive picture")
 check(value("CacheHitRate") < 1, "nothing is missing in an interactive picture")
 
+# A view's first picture comes in its time, too.
+view, display = show_model()
+display.RenderMode = "Path Tracing"
+display.SamplesPerPixel = 100
+display.StillTimeLimit = 0.05
+simple.Render(view)
+check(value("Converged") == 0, "a view's first picture took all the time that it wanted")
+
 # Processes share an isosurface and a slice out among them: together all is there, once.
 alone = vtkINRReader()
 alone.SetFileName(MODEL)
