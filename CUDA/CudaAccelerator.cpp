@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/CudaAccelerator.h"
 
-#include "CUDA/Cache/CacheShares.h"
 #include "CUDA/Engine.h"
 
 #include <algorithm>
@@ -42,7 +41,7 @@ public:
                                                     const glm::i64vec3& dims,
                                                     const CacheOptions& options) const override
   {
-    return MakeRenderer(this->uploaded(model), this->Shares, dims, options);
+    return MakeRenderer(this->uploaded(model), dims, options);
   }
 
   std::shared_ptr<AcceleratedRenderer> makeNetworkRenderer(const ModelPointer& model) const override
@@ -71,8 +70,7 @@ private:
 
   Device Where;
   Precision Kind;
-  std::shared_ptr<CacheShares> Shares = std::make_shared<CacheShares>(); ///< of all models
-  mutable std::mutex Mutex;                                              ///< guards what follows
+  mutable std::mutex Mutex; ///< guards what follows
   mutable std::vector<std::pair<std::weak_ptr<const Model>, std::weak_ptr<const DeviceModel>>>
       Uploaded;
 };

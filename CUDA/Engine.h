@@ -15,9 +15,6 @@ namespace cuda {
 /// A model in a GPU's memory. Immutable: any number of evaluators may use one at once.
 class DeviceModel;
 
-/// See CUDA/Cache/CacheShares.h.
-class CacheShares;
-
 /// Copies a model to a GPU. Throws Error(Device) with figures where its memory is short or the GPU
 /// fails, and what PackedModel throws.
 std::shared_ptr<const DeviceModel> UploadModel(ModelPointer model, const Device& device,
@@ -34,10 +31,9 @@ std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const DeviceM
                                                    const Hierarchy& hierarchy);
 
 /// What draws pictures of the model, shown with so many voxels: cache, rays and paths are on the
-/// GPU. Renderers that could share a cache do, and other ones share the memory of theirs: `shares`
-/// are the GPU's. Throws Error(Device) where the GPU fails or has too little memory.
+/// GPU. Renderers that could share a cache do. Throws Error(Device) where the GPU fails or has too
+/// little memory.
 std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>& model,
-                                                  const std::shared_ptr<CacheShares>& shares,
                                                   const glm::i64vec3& dims,
                                                   const CacheOptions& options);
 /// The same straight from its network.

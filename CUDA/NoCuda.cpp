@@ -29,7 +29,6 @@ std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const DeviceM
 }
 
 std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>&,
-                                                  const std::shared_ptr<CacheShares>&,
                                                   const glm::i64vec3&, const CacheOptions&)
 {
   Refuse();

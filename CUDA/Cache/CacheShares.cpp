@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/Cache/CacheShares.h"
 
+#include "Core/Error.h"
+
 #include <algorithm>
+#include <map>
+#include <new>
 #include <numeric>
 #include <utility>
 
@@ -39,7 +43,12 @@ CacheShares::Share::Share(std::shared_ptr<CacheShares> all, const CacheWish& wis
 {
   const std::lock_guard<std::mutex> lock(this->All->Mutex);
   this->All->Shares.push_back(this);
-  this->All->divide();
+  try {
+    this->All->divide();
+  } catch (const std::bad_alloc&) {
+    this->All->Shares.pop_back();
+    throw;
+  }
 }
 
 CacheShares::Share::~Share()
@@ -47,7 +56,24 @@ CacheShares::Share::~Share()
   const std::lock_guard<std::mutex> lock(this->All->Mutex);
   std::vector<Share*>& shares = this->All->Shares;
   shares.erase(std::remove(shares.begin(), shares.end(), this), shares.end());
-  this->All->divide();
+  try {
+    this->All->divide();
+  } catch (const std::bad_alloc&) { // the others keep what they have
+  }
+}
+
+std::shared_ptr<CacheShares> CacheShares::ofGpu(int ordinal)
+{
+  // Never destroyed: whoever holds shares may outlive this library's other statics.
+  static auto& mutex = *new std::mutex;
+  static auto& known = *new std::map<int, std::weak_ptr<CacheShares>>;
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::shared_ptr<CacheShares> shares = known[ordinal].lock();
+  if (!shares) {
+    shares = std::make_shared<CacheShares>();
+    known[ordinal] = shares;
+  }
+  return shares;
 }
 
 std::int64_t CacheShares::taken() const
@@ -66,17 +92,24 @@ void CacheShares::add(const std::shared_ptr<Holder>& holder)
   this->Holders.push_back(holder);
 }
 
-void CacheShares::adjust()
+void CacheShares::adjust(std::uint64_t& division)
 {
   std::vector<std::shared_ptr<Holder>> holders;
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (division == this->Division) {
+      return;
+    }
+    division = this->Division;
     for (const std::weak_ptr<Holder>& holder : this->Holders) {
       holders.push_back(holder.lock());
     }
   } // one that is let go of here takes the mutex, too
   for (const std::shared_ptr<Holder>& holder : holders) {
-    holder ? holder->adjustIfIdle() : void();
+    try {
+      holder ? holder->adjustIfIdle() : void();
+    } catch (const Error&) { // it is as it will be told when it draws
+    }
   }
 }
 
@@ -90,6 +123,7 @@ void CacheShares::divide()
   for (std::size_t k = 0; k < shares.size(); ++k) {
     this->Shares[k]->Bytes = shares[k];
   }
+  ++this->Division;
 }
 
 } // namespace cuda

@@ -26,15 +26,18 @@ struct CacheWish
 std::vector<std::int64_t> SharesOf(const std::vector<CacheWish>& wishes);
 
 /// The caches of a device that share memory. May be used from several threads at once.
-class CacheShares : public std::enable_shared_from_this<CacheShares>
+class CacheShares
 {
 public:
+  /// Those of a GPU in this process, as long as somebody holds them.
+  static std::shared_ptr<CacheShares> ofGpu(int ordinal);
+
   /// Who has a cache in such memory.
   class Holder
   {
   public:
     virtual ~Holder() = default;
-    /// Takes no more than its share from here on, if nobody uses the cache just now.
+    /// Takes what its share is now, if nobody uses the cache. May throw Error: see adjust.
     virtual void adjustIfIdle() = 0;
   };
 
@@ -49,7 +52,7 @@ public:
 
     std::int64_t bytes() const { return this->Bytes; } ///< that it may take, at present
     void take(std::int64_t bytes) { this->Taken = bytes; }
-    const CacheShares& all() const { return *this->All; }
+    CacheShares& all() const { return *this->All; }
 
   private:
     friend class CacheShares;
@@ -63,13 +66,16 @@ public:
   std::int64_t taken() const; ///< bytes, by all
 
   void add(const std::shared_ptr<Holder>& holder);
-  /// Has all that are idle adjust: one more share has been made. Throws what they throw.
-  void adjust();
+  /// Has all adjust that are idle, unless `division` says that they have since memory was divided
+  /// last; it does then. Who cannot tries again when it is used: the others have nothing to do with
+  /// that.
+  void adjust(std::uint64_t& division);
 
 private:
   void divide(); ///< for who holds the mutex
 
   mutable std::mutex Mutex; ///< guards what follows
+  std::uint64_t Division = 1;
   std::vector<Share*> Shares;
   std::vector<std::weak_ptr<Holder>> Holders;
 };

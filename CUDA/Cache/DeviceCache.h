@@ -41,9 +41,11 @@ public:
         LevelTable(machine.template allocate<HierarchyLevel>(hierarchy.levels())),
         Ranges(machine.template allocate<ValueRange>(this->Needs.cells))
   {
+    const CacheLayout layout = LayOutCache(hierarchy, precision, bytes, this->Needs);
+    machine.requireFree(layout.bytes, "the cache of bricks");
     machine.toMachine(this->LevelTable.data(), &hierarchy.view().level(0), hierarchy.levels());
     this->putRanges(cells);
-    this->allocate(LayOutCache(hierarchy, precision, bytes, this->Needs));
+    this->allocate(layout);
   }
 
   /// Of one with these.
@@ -169,6 +171,18 @@ public:
     return this->storeListed(this->Listed);
   }
 
+  /// Bricks that it would have room for within so many bytes.
+  std::int64_t capacityWithin(std::int64_t bytes) const
+  {
+    return LayOutCache(this->Levels, this->Precision, bytes, this->Needs).capacity;
+  }
+  /// Throws where the machine has no memory for what that takes more than it has now.
+  void requireFree(std::int64_t bytes) const
+  {
+    const std::int64_t more =
+        LayOutCache(this->Levels, this->Precision, bytes, this->Needs).bytes - this->Layout.bytes;
+    more > 0 ? this->Where.requireFree(more, "a larger cache of bricks") : void();
+  }
   /// Stays within so many bytes from here on, and forgets all bricks but the coarsest, those of the
   /// present frame and what was begun included. Throws as the constructor does; what is not
   /// Error(InvalidArgument) leaves a cache that is of no use until this has succeeded.
@@ -181,7 +195,6 @@ public:
     this->Where.wait();
     this->Mapped = 0;
     this->Layout = {};
-    this->Tables.reset(); // before others are there: memory may be short
     this->allocate(layout);
   }
 
@@ -237,7 +250,7 @@ private:
 
   void allocate(const CacheLayout& layout)
   {
-    this->Where.requireFree(layout.bytes, "the cache of bricks");
+    // Where there are some, they go before others come: memory may be short.
     this->Tables.emplace(this->Where, layout, this->Levels, this->Precision);
     this->Layout = layout;
     this->Where.fill(this->Tables->uses.data(), 0, this->Layout.capacity);

@@ -8,7 +8,6 @@
 #include "Core/Error.h"
 #include "Core/Model/MacroCells.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -21,22 +20,31 @@ namespace cuda {
 
 /// A machine and the cache of bricks on it, which all renderers of the same field with the same
 /// cache share. They take turns.
-template <class Machine, class Cache> struct DeviceStore : CacheShares::Holder
+template <class Machine, class Cache> class DeviceStore : public CacheShares::Holder
 {
-  /// `where`: of the machine; `arguments`: of the cache behind it.
-  template <class Where, class... Arguments>
-  explicit DeviceStore(const Where& where, Arguments&&... arguments)
-      : machine(where), beside(where), cache(this->machine, std::forward<Arguments>(arguments)...)
-  {}
+  std::unique_ptr<CacheShares::Share> Share; ///< first, as it is to go last
+  std::int64_t MadeFor;                      ///< bytes: the cache
+
+public:
+  /// `where`: of the machine; the others: of the cache, which takes its share.
+  template <class Where, class Inference>
+  DeviceStore(std::unique_ptr<CacheShares::Share> share, const Where& where, Inference inference,
+              const Hierarchy& levels, CachePrecision precision, const MacroCells& cells)
+      : Share(std::move(share)), MadeFor(this->Share->bytes()), machine(where), beside(where),
+        cache(this->machine, std::move(inference), levels, precision, this->MadeFor, cells)
+  {
+    this->Share->take(this->cache.bytes());
+  }
 
   /// The time of one call that draws: others wait.
   class Turn
   {
   public:
     /// Throws Error(Cancelled) where waiting would be for ever: in the middle of drawing on the
-    /// same thread; and what adjusting the cache to its share does.
-    explicit Turn(DeviceStore& store) : Turn(store, std::unique_lock<std::mutex>())
+    /// same thread; and Error(Device) where the cache cannot have its share.
+    explicit Turn(DeviceStore& store) : Turn(store, store.lock())
     {
+      store.Share->all().adjust(store.Adjusted);
       store.adjust();
     }
     ~Turn() { this->Store.User = std::thread::id(); }
@@ -46,16 +54,9 @@ template <class Machine, class Cache> struct DeviceStore : CacheShares::Holder
   private:
     friend DeviceStore;
 
-    /// With the store's mutex, if it has that already.
     Turn(DeviceStore& store, std::unique_lock<std::mutex> lock)
         : Store(store), Lock(std::move(lock))
     {
-      if (!this->Lock) {
-        if (store.isMine()) {
-          throw Error(ErrorCode::Cancelled, "rendering from a cache that is in use by this thread");
-        }
-        this->Lock = std::unique_lock<std::mutex>(store.Mutex);
-      }
       store.User = std::this_thread::get_id();
     }
 
@@ -63,13 +64,6 @@ template <class Machine, class Cache> struct DeviceStore : CacheShares::Holder
     std::unique_lock<std::mutex> Lock;
   };
 
-  /// From here on the cache, which has been made for so many bytes, takes its share.
-  void follow(std::unique_ptr<CacheShares::Share> share, std::int64_t madeFor)
-  {
-    this->Share = std::move(share);
-    this->MadeFor = madeFor;
-    this->Share->take(this->cache.bytes());
-  }
   void adjustIfIdle() override
   {
     if (this->isMine()) {
@@ -83,15 +77,8 @@ template <class Machine, class Cache> struct DeviceStore : CacheShares::Holder
   }
 
   /// Of the memory that this cache shares, by all caches.
-  std::int64_t bytes() const
-  {
-    return this->Share ? this->Share->all().taken() : this->cache.bytes();
-  }
+  std::int64_t bytes() const { return this->Share->all().taken(); }
 
-private:
-  std::unique_ptr<CacheShares::Share> Share; ///< goes when the cache has; none: that stays as it is
-
-public:
   Machine machine;
   Machine beside; ///< the same, for what goes on at the same time
   Cache cache;
@@ -99,32 +86,60 @@ public:
 private:
   bool isMine() const { return this->User == std::this_thread::get_id(); }
 
-  /// To another size, which costs all bricks: to a smaller one at once, but to a larger one only
-  /// where that is of use, or costs none.
+  std::unique_lock<std::mutex> lock()
+  {
+    if (this->isMine()) {
+      throw Error(ErrorCode::Cancelled, "rendering from a cache that is in use by this thread");
+    }
+    return std::unique_lock<std::mutex>(this->Mutex);
+  }
+
+  /// To another size, which costs all bricks: to a smaller one at once.
   void adjust()
   {
-    const std::int64_t bytes = this->Share ? this->Share->bytes() : this->MadeFor;
-    const std::int64_t bricks = this->cache.mapped();
-    const bool shrinks = bytes < this->cache.bytes();
-    const bool grows = bytes / 5 * 4 >= this->MadeFor &&
-                       (bricks == this->cache.capacity() || bricks <= 1 /* the coarsest */);
-    if (bytes != this->MadeFor && (shrinks || grows)) {
-      this->MadeFor = 0; // until it is: that may fail, and is tried again then
-      this->Share->take(0);
-      this->cache.resize(bytes);
-      this->MadeFor = bytes;
-      this->Share->take(this->cache.bytes());
+    const std::int64_t bytes = this->Share->bytes();
+    if (bytes == this->MadeFor) {
+      return;
     }
+    const bool isLost = this->cache.capacity() == 0;
+    if (isLost || bytes < this->cache.bytes()) {
+      this->resize(bytes);
+    } else if (this->hasUseFor(bytes)) {
+      try {
+        this->cache.requireFree(bytes);
+      } catch (const Error&) { // somebody else has the memory: what it has will do
+        this->MadeFor = bytes;
+        return;
+      }
+      this->resize(bytes);
+    }
+  }
+
+  /// Whether a larger cache is worth its bricks, or costs none but the coarsest.
+  bool hasUseFor(std::int64_t bytes) const
+  {
+    const std::int64_t bricks = this->cache.mapped();
+    const std::int64_t now = this->cache.capacity();
+    const std::int64_t then = this->cache.capacityWithin(bytes);
+    return (bricks == now && then > now + now / 4) || (bricks <= 1 && then > now);
+  }
+
+  void resize(std::int64_t bytes)
+  {
+    this->MadeFor = 0; // until it is: that may fail, and is tried again then
+    this->cache.resize(bytes);
+    this->MadeFor = bytes;
+    this->Share->take(this->cache.bytes());
   }
 
   std::mutex Mutex;
   std::atomic<std::thread::id> User{};
-  std::int64_t MadeFor = 0; ///< bytes
+  std::uint64_t Adjusted = 0; ///< the division of memory to which all were adjusted
 };
 
-/// A store whose cache takes at most `limit` and shares memory with others, which are adjusted
-/// first, as far as nobody uses them. `where`: of its machine; the rest, and what is thrown: see
-/// the cache.
+/// A store whose cache takes at most `limit` and shares memory with others. These make room at the
+/// first turn of any: whom the new one replaces has gone by then. For the rest, and what is thrown,
+/// see the cache.
 template <class Machine, class Cache, class Where, class Inference>
 std::shared_ptr<DeviceStore<Machine, Cache>>
 MakeSharingStore(const std::shared_ptr<CacheShares>& shares, const Where& where,
@@ -132,14 +147,11 @@ MakeSharingStore(const std::shared_ptr<CacheShares>& shares, const Where& where,
                  std::int64_t limit, const MacroCells& cells)
 {
   const CacheNeeds needs = Cache::needs(inference, precision, cells);
-  const std::int64_t most = LayOutCache(levels, precision, limit, needs).bytes;
-  const std::int64_t least = std::min(LeastCacheBytes(levels, precision, needs), most);
-  auto share = std::make_unique<CacheShares::Share>(shares, CacheWish{least, most, limit});
-  shares->adjust();
-  const std::int64_t bytes = share->bytes();
-  auto store = std::make_shared<DeviceStore<Machine, Cache>>(where, std::move(inference), levels,
-                                                             precision, bytes, cells);
-  store->follow(std::move(share), bytes);
+  const CacheWish wish{LeastCacheBytes(levels, precision, needs),
+                       LayOutCache(levels, precision, limit, needs).bytes, limit};
+  auto store = std::make_shared<DeviceStore<Machine, Cache>>(
+      std::make_unique<CacheShares::Share>(shares, wish), where, std::move(inference), levels,
+      precision, cells);
   shares->add(store);
   return store;
 }

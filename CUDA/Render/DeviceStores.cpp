@@ -11,7 +11,6 @@ namespace cuda {
 template class DeviceRenderer<GpuMachine, GpuCache>;
 
 std::shared_ptr<GpuStore> DeviceStores::storeFor(const std::shared_ptr<const DeviceModel>& model,
-                                                 const std::shared_ptr<CacheShares>& shares,
                                                  const glm::i64vec3& dims,
                                                  const CacheOptions& options)
 {
@@ -29,6 +28,7 @@ std::shared_ptr<GpuStore> DeviceStores::storeFor(const std::shared_ptr<const Dev
     }
   }
   const int device = model->device().ordinal;
+  const std::shared_ptr<CacheShares> shares = CacheShares::ofGpu(device);
   const std::int64_t limit = std::min(wanted, (FreeMemory(device) + shares->taken()) / 2);
   const ModelPointer& source = model->source();
   auto store = MakeSharingStore<GpuMachine, GpuCache>(
@@ -40,12 +40,11 @@ std::shared_ptr<GpuStore> DeviceStores::storeFor(const std::shared_ptr<const Dev
 }
 
 std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>& model,
-                                                  const std::shared_ptr<CacheShares>& shares,
                                                   const glm::i64vec3& dims,
                                                   const CacheOptions& options)
 {
   return std::make_shared<DeviceRenderer<GpuMachine, GpuCache>>(
-      model->stores().storeFor(model, shares, dims, options), options);
+      model->stores().storeFor(model, dims, options), options);
 }
 
 } // namespace cuda

@@ -282,9 +282,10 @@ public:
    * quarter of the memory that the process may use, at most 16 GiB; memory is taken as bricks come
    * in. All mappers of a process together stay within the largest CacheSize among them (or what
    * eight bricks for each volume take, should that be more): what was not looked at for longest
-   * makes room. Mappers of one model that agree in this, CachePrecision and BrickSize share their
-   * bricks. What does not hold eight bricks and their tables (1 MiB by default) is refused with an
-   * error at the next frame. A change empties the cache unless another mapper shares it.
+   * makes room; on a GPU all models have equal parts. Mappers of one model that agree in this,
+   * CachePrecision and BrickSize share their bricks. What does not hold eight bricks and their
+   * tables (1 MiB by default) is refused with an error at the next frame. A change empties the
+   * cache unless another mapper shares it.
    */
   vtkSetClampMacro(CacheSize, int, 0, VTK_INT_MAX);
   vtkGetMacro(CacheSize, int);

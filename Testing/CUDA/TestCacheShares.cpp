@@ -17,6 +17,8 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace test::cache_shares {
@@ -85,50 +87,101 @@ TEST(CacheShares, AreAllThatThereIsAndFair)
   EXPECT_GT(short_, 10);
 }
 
-using RuledCache = inr::cuda::DeviceCache<HostMachine, RuledInference>;
-using RuledStore = inr::cuda::DeviceStore<HostMachine, RuledCache>;
+/// The memory of a machine.
+struct Memory
+{
+  std::int64_t free = std::int64_t{1} << 40;
+  std::int64_t reserve = 0; ///< that stays for others
+  bool fails = false;       ///< to be had
+};
+
+/// One whose memory can be short.
+class MeteredMachine : public HostMachine
+{
+public:
+  template <class T> class Array : public HostMachine::Array<T>
+  {
+  public:
+    Array(std::shared_ptr<Memory> memory, std::int64_t count)
+        : HostMachine::Array<T>(count), From(std::move(memory)), Bytes(count * sizeof(T))
+    {
+      if (this->From->fails || this->From->free < this->Bytes) {
+        throw inr::Error(inr::ErrorCode::Device, "out of memory");
+      }
+      this->From->free -= this->Bytes;
+    }
+    Array(Array&& other) noexcept
+        : HostMachine::Array<T>(std::move(other)), From(std::move(other.From)), Bytes(other.Bytes)
+    {}
+    ~Array() { this->From ? void(this->From->free += this->Bytes) : void(); }
+
+  private:
+    std::shared_ptr<Memory> From;
+    std::int64_t Bytes;
+  };
+
+  explicit MeteredMachine(std::shared_ptr<Memory> memory) : Has(std::move(memory)) {}
+  template <class T> Array<T> allocate(std::int64_t count) const
+  {
+    return Array<T>(this->Has, std::max<std::int64_t>(count, 1));
+  }
+  void requireFree(std::int64_t bytes, const char* what) const
+  {
+    if (this->Has->fails || this->Has->free - this->Has->reserve < bytes) {
+      throw inr::Error(inr::ErrorCode::Device, std::string(what) + " does not fit");
+    }
+  }
+
+private:
+  std::shared_ptr<Memory> Has;
+};
 
 class SharingStores : public testing::Test
 {
 protected:
+  using Cache = inr::cuda::DeviceCache<MeteredMachine, RuledInference>;
+  using Store = inr::cuda::DeviceStore<MeteredMachine, Cache>;
   static constexpr std::int64_t Limit = 200 << 10;
 
-  std::shared_ptr<RuledStore> make(const glm::i64vec3& dims = {90, 80, 70},
-                                   std::int64_t limit = Limit) const
+  std::shared_ptr<Store> make(const glm::i64vec3& dims = {90, 80, 70},
+                              std::int64_t limit = Limit) const
   {
-    return inr::cuda::MakeSharingStore<HostMachine, RuledCache>(
-        this->Shares, HostLaunch(), RuledInference(), inr::Hierarchy(dims, 6),
+    return inr::cuda::MakeSharingStore<MeteredMachine, Cache>(
+        this->Shares, this->Machines, RuledInference(), inr::Hierarchy(dims, 6),
         CachePrecision::Bits16, limit, {});
   }
+  static void use(Store& store) { const Store::Turn turn(store); }
   /// Has as many bricks come in as that, or as fit.
-  static void fill(RuledStore& store, std::int64_t bricks)
+  static void fill(Store& store, std::int64_t bricks = 1000)
   {
-    const RuledStore::Turn turn(store);
-    const std::int64_t most = std::min(bricks, store.cache.capacity());
+    const Store::Turn turn(store);
+    const std::int64_t most = std::min(bricks, store.cache.capacity() - 1); // and the coarsest
     store.cache.beginFrame();
-    const std::vector<BrickKey> keys =
-        DifferentBricks(store.cache.hierarchy(), static_cast<std::size_t>(most));
-    for (const BrickKey key : keys) {
+    for (const BrickKey key :
+         DifferentBricks(store.cache.hierarchy(), static_cast<std::size_t>(most))) {
       Ask(store.machine, store.cache.view(), WishesFor({key}));
       store.cache.load(1, true);
     }
   }
-  static void use(RuledStore& store) { const RuledStore::Turn turn(store); }
 
   const std::shared_ptr<CacheShares> Shares = std::make_shared<CacheShares>();
+  const std::shared_ptr<Memory> Machines = std::make_shared<Memory>();
 };
 
 TEST_F(SharingStores, StayWithinOneLimit)
 {
+  const std::int64_t free = this->Machines->free;
   const auto first = this->make();
   const std::int64_t alone = first->cache.bytes();
   EXPECT_GT(alone, Limit * 9 / 10);
   EXPECT_EQ(first->bytes(), alone);
   fill(*first, 50);
   const auto second = this->make();
+  use(*second); // a cache that nobody looks at gives, too
   EXPECT_LE(first->bytes(), Limit);
   EXPECT_EQ(first->bytes(), first->cache.bytes() + second->cache.bytes());
   EXPECT_EQ(second->bytes(), first->bytes());
+  EXPECT_NEAR(free - this->Machines->free, first->bytes(), 16); // of two empty arrays
   EXPECT_GT(first->cache.bytes(), Limit / 3);
   EXPECT_GT(second->cache.bytes(), Limit / 3);
   EXPECT_EQ(first->cache.mapped(), 1);
@@ -136,6 +189,7 @@ TEST_F(SharingStores, StayWithinOneLimit)
   EXPECT_GT(first->cache.mapped(), 15);
 
   const auto larger = this->make({90, 80, 70}, 4 * Limit);
+  use(*larger);
   EXPECT_GT(first->bytes(), 2 * Limit);
   EXPECT_LE(first->bytes(), 4 * Limit);
 }
@@ -145,6 +199,7 @@ TEST_F(SharingStores, LeaveToOthersWhatASmallVolumeDoesNotNeed)
   const auto small = this->make({12, 12, 12});
   const std::int64_t needed = small->cache.bytes();
   const auto large = this->make();
+  use(*large);
   EXPECT_EQ(small->cache.bytes(), needed);
   EXPECT_GT(large->cache.bytes(), Limit * 9 / 10 - needed);
 }
@@ -155,6 +210,7 @@ TEST_F(SharingStores, GrowWhereOthersHaveGone)
   const auto first = this->make();
   const std::int64_t alone = first->cache.bytes();
   auto second = this->make();
+  use(*second);
   const std::int64_t together = first->cache.bytes();
   fill(*first, 10);
   const std::int64_t mapped = first->cache.mapped();
@@ -162,27 +218,82 @@ TEST_F(SharingStores, GrowWhereOthersHaveGone)
   use(*first);
   EXPECT_EQ(first->cache.bytes(), together);
   EXPECT_EQ(first->cache.mapped(), mapped);
-  fill(*first, 1000);
+  fill(*first);
   use(*first);
   EXPECT_EQ(first->cache.bytes(), alone);
 
   second = this->make();
-  first->cache.clear();
-  use(*first);
+  use(*second);
   EXPECT_EQ(first->cache.bytes(), together);
   second.reset();
   use(*first); // nothing would be lost
   EXPECT_EQ(first->cache.bytes(), alone);
 }
 
+/// And where it is little, or none at all.
+TEST_F(SharingStores, DoNotGrowForAFewBricks)
+{
+  constexpr std::int64_t limit = Limit * 3 / 2; // well between two sizes of the page table
+  const auto first = this->make({90, 80, 70}, limit);
+  auto small = this->make({12, 12, 12}, limit);
+  use(*small);
+  fill(*first);
+  const std::int64_t bricks = first->cache.mapped();
+  EXPECT_EQ(bricks, first->cache.capacity());
+  small.reset();
+  EXPECT_GT(first->cache.capacityWithin(limit), bricks);
+  use(*first);
+  EXPECT_EQ(first->cache.mapped(), bricks);
+}
+
+TEST_F(SharingStores, DoNotGrowWhereAllIsThere)
+{
+  constexpr std::int64_t limit = 100 << 10;
+  const auto whole = this->make({24, 18, 18}, limit);
+  const std::int64_t all = whole->cache.capacity();
+  const std::int64_t alone = whole->cache.bytes();
+  std::vector<std::shared_ptr<Store>> others;
+  while (whole->cache.bytes() == alone && others.size() < 40) {
+    others.push_back(this->make({7, 7, 7}, limit));
+    use(*whole);
+  }
+  ASSERT_EQ(whole->cache.capacity(), all) << "smaller buffers, as many bricks: " << others.size();
+  fill(*whole);
+  others.clear();
+  use(*whole);
+  EXPECT_EQ(whole->cache.mapped(), all);
+  EXPECT_LT(whole->cache.bytes(), alone);
+}
+
+/// As those of the time steps of a series are: the others keep their bricks.
+TEST_F(SharingStores, AreLeftAloneWhereOneTakesTheOthersPlace)
+{
+  const auto still = this->make();
+  auto step = this->make();
+  use(*step);
+  fill(*still);
+  fill(*step);
+  const std::int64_t bricks = still->cache.mapped();
+  const std::int64_t bytes = step->cache.bytes();
+  for (int k = 0; k < 5; ++k) {
+    step = this->make(); // before the one before goes
+    fill(*step);
+    use(*still);
+    EXPECT_EQ(still->cache.mapped(), bricks);
+    EXPECT_EQ(step->cache.bytes(), bytes);
+    EXPECT_EQ(step->cache.mapped(), step->cache.capacity());
+  }
+}
+
 /// Nobody waits for who is drawing, which may be the same thread.
 TEST_F(SharingStores, AdjustAtTheNextCallWhereOneIsInProgress)
 {
   const auto first = this->make();
-  std::shared_ptr<RuledStore> second;
+  std::shared_ptr<Store> second;
   {
-    const RuledStore::Turn turn(*first);
+    const Store::Turn turn(*first);
     second = this->make();
+    use(*second);
     EXPECT_GT(first->bytes(), Limit);
     EXPECT_LE(second->cache.bytes(), Limit / 2);
   }
@@ -190,44 +301,63 @@ TEST_F(SharingStores, AdjustAtTheNextCallWhereOneIsInProgress)
   EXPECT_LE(first->bytes(), Limit);
   EXPECT_THROW(
       {
-        const RuledStore::Turn turn(*first);
+        const Store::Turn turn(*first);
         use(*first);
       },
       inr::Error);
   use(*first);
 }
 
-/// Where memory can be short.
-struct ShortMachine : HostMachine
+/// Growing is no need, and who becomes smaller needs nothing.
+TEST_F(SharingStores, WorkOnWhereOthersHaveTakenTheMemory)
 {
-  explicit ShortMachine(std::shared_ptr<bool> isShort) : IsShort(std::move(isShort)) {}
-  void requireFree(std::int64_t, const char*) const
-  {
-    if (*this->IsShort) {
-      throw inr::Error(inr::ErrorCode::Device, "there is no memory");
-    }
-  }
-  std::shared_ptr<bool> IsShort;
-};
+  const auto first = this->make();
+  auto second = this->make();
+  use(*second);
+  fill(*first);
+  const std::int64_t bytes = first->cache.bytes();
+  const std::int64_t bricks = first->cache.mapped();
+  second.reset();
+  const std::int64_t free = std::exchange(this->Machines->free, 1000);
+  use(*first);
+  EXPECT_EQ(first->cache.bytes(), bytes);
+  EXPECT_EQ(first->cache.mapped(), bricks);
 
-TEST_F(SharingStores, TryAgainWhereMemoryWasShort)
+  this->Machines->free = free;
+  second = this->make();
+  const auto third = this->make();
+  this->Machines->reserve = free;
+  use(*first);
+  EXPECT_LT(first->cache.bytes(), bytes);
+  EXPECT_LE(first->bytes(), Limit);
+  EXPECT_THROW(this->make(), inr::Error);
+  use(*first);
+}
+
+/// And who fails leaves the others alone.
+TEST_F(SharingStores, TryAgainWhereThereWasNoMemory)
 {
-  using Cache = inr::cuda::DeviceCache<ShortMachine, RuledInference>;
-  const auto isShort = std::make_shared<bool>(false);
-  const auto first = inr::cuda::MakeSharingStore<ShortMachine, Cache>(
-      this->Shares, isShort, RuledInference(), inr::Hierarchy({90, 80, 70}, 6),
-      CachePrecision::Bits16, Limit, {});
-  using Turn = inr::cuda::DeviceStore<ShortMachine, Cache>::Turn;
-  *isShort = true;
-  EXPECT_THROW(this->make(), inr::Error); // as it goes where the first one has to become smaller
+  const auto first = this->make();
+  const std::int64_t alone = first->cache.bytes();
+  auto second = this->make();
+  this->Machines->fails = true;
+  EXPECT_NO_THROW(use(*second));
   for (int k = 0; k < 2; ++k) {
-    EXPECT_THROW(const Turn turn(*first), inr::Error);
-    EXPECT_EQ(first->bytes(), 0);
+    EXPECT_THROW(const Store::Turn turn(*first), inr::Error);
+    EXPECT_EQ(first->cache.mapped(), 0);
   }
-  *isShort = false;
-  const Turn turn(*first);
+  this->Machines->fails = false;
+  second.reset();
+  use(*first);
   EXPECT_EQ(first->cache.mapped(), 1);
-  EXPECT_GT(first->bytes(), Limit * 9 / 10);
+  EXPECT_EQ(first->bytes(), alone);
+}
+
+TEST(CacheShares, AreOneForEachGpu)
+{
+  const std::shared_ptr<CacheShares> shares = CacheShares::ofGpu(3);
+  EXPECT_EQ(CacheShares::ofGpu(3), shares);
+  EXPECT_NE(CacheShares::ofGpu(4), shares);
 }
 
 /// In the middle of a picture, too: of few bricks at a time, and more than the cache holds.

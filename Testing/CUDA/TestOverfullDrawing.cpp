@@ -284,8 +284,8 @@ public:
                const inr::CacheOptions& options) const override
   {
     if (!this->Store) {
-      this->Store = std::make_shared<WatchedStore>(
-          this->Orders, this->inferenceOf(model),
+      this->Store = inr::cuda::MakeSharingStore<FailingMachine, WatchedCache>(
+          std::make_shared<inr::cuda::CacheShares>(), this->Orders, this->inferenceOf(model),
           inr::Hierarchy(dims, options.brickSize, inr::ResolutionOf(*model)), options.precision,
           BytesFor(this->Capacity, 0), model->macroCells);
     }
