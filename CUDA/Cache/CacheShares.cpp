@@ -108,7 +108,7 @@ void CacheShares::adjust(std::uint64_t& division)
   for (const std::shared_ptr<Holder>& holder : holders) {
     try {
       holder ? holder->adjustIfIdle() : void();
-    } catch (const Error&) { // it is as it will be told when it draws
+    } catch (const Error&) { // it is told so when it draws itself
     }
   }
 }
