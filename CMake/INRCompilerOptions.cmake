@@ -35,6 +35,9 @@ if (INR_SANITIZE)
   target_compile_options(inr_options INTERFACE
     -fsanitize=${INR_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(inr_options INTERFACE -fsanitize=${INR_SANITIZE})
+  if (INR_SANITIZE_EXCEPT)
+    target_compile_options(inr_options INTERFACE -fno-sanitize=${INR_SANITIZE_EXCEPT})
+  endif ()
   # Each compiler has other words of its own for it.
   target_compile_definitions(inr_options INTERFACE INR_SANITIZED)
   if (INR_SANITIZE MATCHES "thread")

@@ -3,6 +3,11 @@ include(GoogleTest)
 # Tests take longer to compile than to run.
 set(INR_TEST_OPTIONS -O1)
 
+# Of tests in several processes. One that waits for another lets a third work meanwhile; otherwise it would
+# keep a core for itself, as long as there are as many cores as processes.
+set(INR_MPI_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  OMPI_MCA_mpi_yield_when_idle=1)
+
 # inr_add_core_test(NAME SOURCES...): a GoogleTest program over Core, every case a ctest of label core. Its
 # files are compiled by sixteens where CMAKE_UNITY_BUILD is on, so what is in a test's file is in a namespace
 # of that file's name.
