@@ -13,7 +13,7 @@ namespace inr {
 class SampleShader
 {
 public:
-  SampleShader(const Shading& shading, BrickGradients gradients)
+  SampleShader(const Shading& shading, const BrickGradients& gradients)
       : Lighting(shading), Gradients(gradients)
   {}
 
