@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/Cache/CacheShares.h"
 
-#include "Core/Error.h"
-
 #include <algorithm>
+#include <exception>
 #include <map>
 #include <new>
 #include <numeric>
@@ -92,25 +91,30 @@ void CacheShares::add(const std::shared_ptr<Holder>& holder)
   this->Holders.push_back(holder);
 }
 
-void CacheShares::adjust(std::uint64_t& division)
+void CacheShares::adjust(const Holder& who, std::uint64_t& division)
 {
   std::vector<std::shared_ptr<Holder>> holders;
+  std::uint64_t present = 0;
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     if (division == this->Division) {
       return;
     }
-    division = this->Division;
+    present = this->Division;
     for (const std::weak_ptr<Holder>& holder : this->Holders) {
       holders.push_back(holder.lock());
     }
   } // one that is let go of here takes the mutex, too
+  bool wereIdle = true;
   for (const std::shared_ptr<Holder>& holder : holders) {
     try {
-      holder ? holder->adjustIfIdle() : void();
-    } catch (const Error&) { // it is told so when it draws itself
+      if (holder && holder.get() != &who) {
+        wereIdle = holder->adjustIfIdle() && wereIdle;
+      }
+    } catch (const std::exception&) { // it is told so when it draws itself
     }
   }
+  division = wereIdle ? present : division;
 }
 
 void CacheShares::divide()

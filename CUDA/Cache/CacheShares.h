@@ -37,8 +37,9 @@ public:
   {
   public:
     virtual ~Holder() = default;
-    /// Takes what its share is now, if nobody uses the cache. May throw Error: see adjust.
-    virtual void adjustIfIdle() = 0;
+    /// Takes what its share is now, if nobody uses the cache, and says whether nobody did. May
+    /// throw: see adjust.
+    virtual bool adjustIfIdle() = 0;
   };
 
   /// Of one cache, from when it wishes for memory until it has given all back.
@@ -66,10 +67,10 @@ public:
   std::int64_t taken() const; ///< bytes, by all
 
   void add(const std::shared_ptr<Holder>& holder);
-  /// Has all adjust that are idle, unless `division` says that they have since memory was divided
-  /// last; it does then. Who cannot tries again when it is used: the others have nothing to do with
-  /// that.
-  void adjust(std::uint64_t& division);
+  /// Has all adjust that are idle, but for `who` sees to itself, unless `division` says that they
+  /// have since memory was divided last; it does once none was in use. Who cannot tries again when
+  /// it is used: the others have nothing to do with that.
+  void adjust(const Holder& who, std::uint64_t& division);
 
 private:
   void divide(); ///< for who holds the mutex

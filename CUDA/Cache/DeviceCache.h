@@ -184,7 +184,8 @@ public:
     more > 0 ? this->Where.requireFree(more, "a larger cache of bricks") : void();
   }
   /// Stays within so many bytes from here on, and forgets all bricks but the coarsest, those of the
-  /// present frame and what was begun included. Throws as the constructor does; what is not
+  /// present frame and what was begun included. Throws as the constructor does, but does not ask
+  /// whether so much is free beside the machine's reserve: see requireFree. What is not
   /// Error(InvalidArgument) leaves a cache that is of no use until this has succeeded.
   void resize(std::int64_t bytes)
   {

@@ -23,7 +23,7 @@ namespace cuda {
 template <class Machine, class Cache> class DeviceStore : public CacheShares::Holder
 {
   std::unique_ptr<CacheShares::Share> Share; ///< first, as it is to go last
-  std::int64_t MadeFor;                      ///< bytes: the cache
+  std::int64_t MadeFor;                      ///< bytes: the cache; 0: it is of no use
 
 public:
   /// `where`: of the machine; the others: of the cache, which takes its share.
@@ -44,7 +44,7 @@ public:
     /// same thread; and Error(Device) where the cache cannot have its share.
     explicit Turn(DeviceStore& store) : Turn(store, store.lock())
     {
-      store.Share->all().adjust(store.Adjusted);
+      store.Share->all().adjust(store, store.Adjusted);
       store.adjust();
     }
     ~Turn() { this->Store.User = std::thread::id(); }
@@ -64,16 +64,18 @@ public:
     std::unique_lock<std::mutex> Lock;
   };
 
-  void adjustIfIdle() override
+  bool adjustIfIdle() override
   {
     if (this->isMine()) {
-      return;
+      return false;
     }
     std::unique_lock<std::mutex> lock(this->Mutex, std::try_to_lock);
-    if (lock) {
-      const Turn turn(*this, std::move(lock));
-      this->adjust();
+    if (!lock) {
+      return false;
     }
+    const Turn turn(*this, std::move(lock));
+    this->adjust();
+    return true;
   }
 
   /// Of the memory that this cache shares, by all caches.
@@ -101,18 +103,29 @@ private:
     if (bytes == this->MadeFor) {
       return;
     }
-    const bool isLost = this->cache.capacity() == 0;
-    if (isLost || bytes < this->cache.bytes()) {
+    if (this->MadeFor == 0) { // it is lost
+      this->cache.requireFree(bytes);
+      this->resize(bytes);
+    } else if (bytes < this->cache.bytes()) {
       this->resize(bytes);
     } else if (this->hasUseFor(bytes)) {
-      try {
-        this->cache.requireFree(bytes);
-      } catch (const Error&) { // somebody else has the memory: what it has will do
-        this->MadeFor = bytes;
-        return;
-      }
-      this->resize(bytes);
+      this->grow(bytes);
     }
+  }
+
+  void grow(std::int64_t bytes)
+  {
+    if (this->Refusal > 0) {
+      --this->Refusal;
+      return;
+    }
+    try {
+      this->cache.requireFree(bytes);
+    } catch (const Error&) { // somebody else has the memory: what it has will do for a while
+      this->Refusal = TurnsUntilAskedAgain;
+      return;
+    }
+    this->resize(bytes);
   }
 
   /// Whether a larger cache is worth its bricks, or costs none but the coarsest.
@@ -127,19 +140,29 @@ private:
   void resize(std::int64_t bytes)
   {
     this->MadeFor = 0; // until it is: that may fail, and is tried again then
-    this->cache.resize(bytes);
+    try {
+      this->cache.resize(bytes);
+    } catch (...) {
+      this->Share->take(this->cache.bytes());
+      throw;
+    }
     this->MadeFor = bytes;
     this->Share->take(this->cache.bytes());
   }
 
+  static constexpr int TurnsUntilAskedAgain =
+      100; ///< how much is free takes a GPU some time to say
+
   std::mutex Mutex;
   std::atomic<std::thread::id> User{};
   std::uint64_t Adjusted = 0; ///< the division of memory to which all were adjusted
+  int Refusal = 0;            ///< turns for which a larger cache is not asked for
 };
 
 /// A store whose cache takes at most `limit` and shares memory with others. These make room at the
-/// first turn of any: whom the new one replaces has gone by then. For the rest, and what is thrown,
-/// see the cache.
+/// first turn of any, not before: the new one has to find its share free beside them. Whom it
+/// replaces has mostly gone by that turn, but where a second view still shows it. For the rest, and
+/// what is thrown, see the cache.
 template <class Machine, class Cache, class Where, class Inference>
 std::shared_ptr<DeviceStore<Machine, Cache>>
 MakeSharingStore(const std::shared_ptr<CacheShares>& shares, const Where& where,
