@@ -8,8 +8,10 @@
 #include "Core/Error.h"
 #include "Core/Model/MacroCells.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -26,11 +28,13 @@ template <class Machine, class Cache> class DeviceStore : public CacheShares::Ho
   std::int64_t MadeFor;                      ///< bytes: the cache; 0: it is of no use
 
 public:
-  /// `where`: of the machine; the others: of the cache, which takes its share.
+  /// `where`: of the machine; the others: of the cache, which takes so many bytes until its first
+  /// turn, and its share from then on.
   template <class Where, class Inference>
-  DeviceStore(std::unique_ptr<CacheShares::Share> share, const Where& where, Inference inference,
-              const Hierarchy& levels, CachePrecision precision, const MacroCells& cells)
-      : Share(std::move(share)), MadeFor(this->Share->bytes()), machine(where), beside(where),
+  DeviceStore(std::unique_ptr<CacheShares::Share> share, std::int64_t bytes, const Where& where,
+              Inference inference, const Hierarchy& levels, CachePrecision precision,
+              const MacroCells& cells)
+      : Share(std::move(share)), MadeFor(bytes), machine(where), beside(where),
         cache(this->machine, std::move(inference), levels, precision, this->MadeFor, cells)
   {
     this->Share->take(this->cache.bytes());
@@ -160,21 +164,23 @@ private:
 };
 
 /// A store whose cache takes at most `limit` and shares memory with others. These make room at the
-/// first turn of any, not before: the new one has to find its share free beside them. Whom it
-/// replaces has mostly gone by that turn, but where a second view still shows it. For the rest, and
-/// what is thrown, see the cache.
+/// first turn of any, not before: whom the new one replaces has mostly gone by then, but where a
+/// second view still shows it. Until its own first turn it takes no more than `free`, or what it
+/// cannot do without. For the rest, and what is thrown, see the cache.
 template <class Machine, class Cache, class Where, class Inference>
 std::shared_ptr<DeviceStore<Machine, Cache>>
 MakeSharingStore(const std::shared_ptr<CacheShares>& shares, const Where& where,
                  Inference inference, const Hierarchy& levels, CachePrecision precision,
-                 std::int64_t limit, const MacroCells& cells)
+                 std::int64_t limit, const MacroCells& cells,
+                 std::int64_t free = std::numeric_limits<std::int64_t>::max())
 {
   const CacheNeeds needs = Cache::needs(inference, precision, cells);
   const CacheWish wish{LeastCacheBytes(levels, precision, needs),
                        LayOutCache(levels, precision, limit, needs).bytes, limit};
+  auto share = std::make_unique<CacheShares::Share>(shares, wish);
+  const std::int64_t bytes = std::max(wish.least, std::min(share->bytes(), free));
   auto store = std::make_shared<DeviceStore<Machine, Cache>>(
-      std::make_unique<CacheShares::Share>(shares, wish), where, std::move(inference), levels,
-      precision, cells);
+      std::move(share), bytes, where, std::move(inference), levels, precision, cells);
   shares->add(store);
   return store;
 }

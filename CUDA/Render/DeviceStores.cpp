@@ -29,12 +29,13 @@ std::shared_ptr<GpuStore> DeviceStores::storeFor(const std::shared_ptr<const Dev
   }
   const int device = model->device().ordinal;
   const std::shared_ptr<CacheShares> shares = CacheShares::ofGpu(device);
-  const std::int64_t limit = std::min(wanted, (FreeMemory(device) + shares->taken()) / 2);
+  const std::int64_t free = FreeMemory(device);
+  const std::int64_t limit = std::min(wanted, (free + shares->taken()) / 2);
   const ModelPointer& source = model->source();
   auto store = MakeSharingStore<GpuMachine, GpuCache>(
       shares, device, DeviceInference(model, std::min(limit / 16, mostScratch)),
       Hierarchy(dims, options.brickSize, ResolutionOf(*source)), options.precision, limit,
-      source->macroCells);
+      source->macroCells, free / 2);
   this->Entries.push_back({dims, options.brickSize, options.precision, wanted, store});
   return store;
 }

@@ -21,9 +21,9 @@ extern template class DeviceRenderer<GpuMachine, GpuCache>;
 class DeviceStores
 {
 public:
-  /// Takes what CacheOptions allow and the GPU's other caches leave, and with these half of its
-  /// free memory at most: others draw with it, too. Throws Error(Device) where there is too little
-  /// of it, and what DeviceCache throws.
+  /// Takes what CacheOptions allow and the GPU's other caches leave, and with these half of the
+  /// memory that was free, or theirs, when one of them came: others draw with it, too. Throws
+  /// Error(Device) where there is too little of it, and what DeviceCache throws.
   std::shared_ptr<GpuStore> storeFor(const std::shared_ptr<const DeviceModel>& model,
                                      const glm::i64vec3& dims, const CacheOptions& options);
 

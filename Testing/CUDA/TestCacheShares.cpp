@@ -157,7 +157,7 @@ protected:
   {
     return inr::cuda::MakeSharingStore<MeteredMachine, Cache>(
         this->Shares, this->Machines, RuledInference(), inr::Hierarchy(dims, 6),
-        CachePrecision::Bits16, limit, {});
+        CachePrecision::Bits16, limit, {}, this->Machines->free / 2);
   }
   static void use(Store& store) { const Store::Turn turn(store); }
   /// Has as many bricks come in as that, or as fit.
@@ -343,6 +343,23 @@ TEST_F(SharingStores, WorkOnWhereOthersHaveTakenTheMemory)
   EXPECT_LT(first->cache.bytes(), bytes);
   EXPECT_LE(first->bytes(), Limit);
   EXPECT_THROW(this->make(), inr::Error);
+  use(*first);
+}
+
+/// Who comes finds little free beside the others, which give theirs only then.
+TEST_F(SharingStores, BeginWithWhatIsFree)
+{
+  const auto first = this->make();
+  this->Machines->free = Limit / 4;
+  const auto second = this->make();
+  EXPECT_LE(second->cache.bytes(), Limit / 8);
+  use(*second);
+  EXPECT_GT(second->cache.bytes(), Limit / 3);
+  EXPECT_LE(first->bytes(), Limit);
+  EXPECT_EQ(second->cache.mapped(), 1);
+
+  this->Machines->free = 1000;
+  EXPECT_THROW(this->make(), inr::Error) << "not even eight bricks";
   use(*first);
 }
 
