@@ -123,13 +123,16 @@ private:
       --this->Refusal;
       return;
     }
+    const std::int64_t before = this->MadeFor;
     try {
       this->cache.requireFree(bytes);
+      this->resize(bytes);
     } catch (const Error&) { // somebody else has the memory: what it has will do for a while
       this->Refusal = TurnsUntilAskedAgain;
-      return;
+      if (this->MadeFor == 0) { // and took it in between
+        this->resize(before);
+      }
     }
-    this->resize(bytes);
   }
 
   /// Whether a larger cache is worth its bricks, or costs none but the coarsest.

@@ -94,6 +94,7 @@ struct Memory
   std::int64_t reserve = 0; ///< that stays for others
   bool fails = false;       ///< to be had
   int failingReads = 0;     ///< so many from here on
+  int takenBetween = 0;     ///< as often from here on, after it was asked whether there is enough
 };
 
 /// One whose memory can be short.
@@ -108,6 +109,10 @@ public:
     {
       if (this->From->fails || this->From->free < this->Bytes) {
         throw inr::Error(inr::ErrorCode::Device, "out of memory");
+      }
+      if (this->From->takenBetween > 0) {
+        --this->From->takenBetween;
+        throw inr::Error(inr::ErrorCode::Device, "out of memory since");
       }
       this->From->free -= this->Bytes;
     }
@@ -384,6 +389,27 @@ TEST_F(SharingStores, TryAgainWhereThereWasNoMemory)
   use(*first);
   EXPECT_EQ(first->cache.mapped(), 1);
   EXPECT_EQ(first->bytes(), alone);
+}
+
+/// Of which it is not said before.
+TEST_F(SharingStores, KeepTheirSizeWhereMemoryGoesWhileTheyGrow)
+{
+  const auto first = this->make();
+  auto second = this->make();
+  use(*second);
+  const std::int64_t bytes = first->cache.bytes();
+  second.reset();
+  this->Machines->takenBetween = 1;
+  EXPECT_NO_THROW(use(*first));
+  EXPECT_EQ(this->Machines->takenBetween, 0);
+  EXPECT_EQ(first->cache.bytes(), bytes);
+  EXPECT_EQ(first->bytes(), bytes);
+  EXPECT_EQ(first->cache.mapped(), 1);
+  fill(*first);
+  for (int k = 0; k < 200; ++k) {
+    use(*first);
+  }
+  EXPECT_GT(first->cache.bytes(), bytes);
 }
 
 /// After the memory was to be had, too, and whatever it was that failed.
