@@ -67,9 +67,9 @@ public:
   std::int64_t taken() const; ///< bytes, by all
 
   void add(const std::shared_ptr<Holder>& holder);
-  /// Has all adjust that are idle, but for `who` sees to itself, unless `division` says that they
-  /// have since memory was divided last; it does once none was in use. Who cannot tries again when
-  /// it is used: the others have nothing to do with that.
+  /// Has all adjust that are idle, but for `who`, which sees to itself, unless `division` says that
+  /// they have since memory was divided last; it does once none was in use. Who cannot tries again
+  /// when it is used: the others have nothing to do with that.
   void adjust(const Holder& who, std::uint64_t& division);
 
 private:

@@ -157,8 +157,8 @@ private:
     this->Share->take(this->cache.bytes());
   }
 
-  static constexpr int TurnsUntilAskedAgain =
-      100; ///< how much is free takes a GPU some time to say
+  /// A GPU takes some time to say how much is free.
+  static constexpr int TurnsUntilAskedAgain = 100;
 
   std::mutex Mutex;
   std::atomic<std::thread::id> User{};
