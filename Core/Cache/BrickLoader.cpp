@@ -117,10 +117,14 @@ bool BrickLoader::tryToInferOne(std::unique_lock<std::mutex>& lock)
 bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
 {
   const std::int64_t atOnce = this->Source->bricksAtOnce(); // read once: it may change
-  if (atOnce > 0) {
+  // What was begun in layers ends in layers, though the source infer whole bricks by now.
+  Brick* brick = this->withLayersLeft();
+  if (brick == nullptr && atOnce > 0) {
     return this->inferTogether(atOnce, lock);
   }
-  Brick* brick = this->claim();
+  if (brick == nullptr) {
+    brick = this->begin();
+  }
   if (brick == nullptr) {
     return false;
   }
@@ -137,15 +141,13 @@ bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
   return true;
 }
 
-/// The first brick of which a layer is left.
-BrickLoader::Brick* BrickLoader::claim()
+/// The first of the begun bricks of which nobody has begun some layer yet; null when there is none.
+BrickLoader::Brick* BrickLoader::withLayersLeft() const
 {
-  for (const std::unique_ptr<Brick>& brick : this->InWork) {
-    if (brick->begun < brick->layers) {
-      return brick.get();
-    }
-  }
-  return this->begin();
+  const auto found = std::find_if(
+      this->InWork.begin(), this->InWork.end(),
+      [](const std::unique_ptr<Brick>& brick) { return brick->begun < brick->layers; });
+  return found == this->InWork.end() ? nullptr : found->get();
 }
 
 /// The next brick that is wanted, where there is room for it.

@@ -80,7 +80,7 @@ private:
   bool inferOne(std::unique_lock<std::mutex>& lock);
   bool tryToInferOne(std::unique_lock<std::mutex>& lock);
   bool inferTogether(std::int64_t atOnce, std::unique_lock<std::mutex>& lock);
-  Brick* claim();
+  Brick* withLayersLeft() const;
   Brick* begin();
   void inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock);
   void inferBricks(const std::vector<Brick*>& bricks, std::unique_lock<std::mutex>& lock);

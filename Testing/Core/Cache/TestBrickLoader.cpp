@@ -262,6 +262,31 @@ TEST_P(BrickLoaderTest, ForgetsNothingWhenBricksAreNoLongerInferredTogether)
   }
 }
 
+/// The other way round.
+class SucceedingTogether : public TogetherSource
+{
+public:
+  explicit SucceedingTogether(int looks) : Left(looks) {}
+  std::int64_t bricksAtOnce() const override { return this->Left-- > 0 ? 0 : 3; }
+
+private:
+  mutable std::atomic<int> Left;
+};
+
+TEST_P(BrickLoaderTest, EndsWhatWasBegunInLayersWhenBricksAreInferredTogether)
+{
+  for (int looks = 1; looks < 20; ++looks) { // a brick has 8 layers
+    const auto source = std::make_shared<SucceedingTogether>(looks);
+    inr::BrickLoader loader(source, GetParam(), 100);
+    loader.request(Whole(Bricks(5, 20)));
+    loader.loadFor(Forever);
+    std::vector<inr::BrickKey> keys = Receive(loader);
+    std::sort(keys.begin(), keys.end());
+    ASSERT_EQ(keys, Bricks(5, 20)) << looks;
+    ASSERT_GT(source->calls, 0) << looks;
+  }
+}
+
 TEST_P(BrickLoaderTest, OfBricksThatFailTogetherNoneComes)
 {
   const auto source = std::make_shared<TogetherSource>();
