@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TransferFunctionBuilder.h"
 
+#include "LogarithmicTable.h"
+
 #include <vtkColorTransferFunction.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkVolumeProperty.h>
@@ -66,12 +68,21 @@ struct Functions
       }
     }
     this->Opacity->GetTable(low, high, n, alpha.data());
-    std::vector<glm::vec4> entries(size);
-    for (std::size_t k = 0; k < size; ++k) {
-      entries[k] =
-          glm::vec4(rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2], std::clamp(alpha[k], 0.0, 1.0));
+    return Functions::joined(rgb, alpha);
+  }
+
+  /// The same at places whose logarithms are evenly apart; of colours with a logarithmic scale.
+  std::vector<glm::vec4> evenlyInLogarithms(double low, double high, int n) const
+  {
+    const auto size = static_cast<std::size_t>(n);
+    std::vector<double> rgb(3 * size);
+    OverLogarithms(this->Rgb)->GetTable(std::log10(low), std::log10(high), n, rgb.data());
+    std::vector<double> places(size);
+    for (int k = 0; k < n; ++k) {
+      places[static_cast<std::size_t>(k)] = low * std::pow(high / low, double(k) / (n - 1));
     }
-    return entries;
+    places.back() = high; // not beyond by a rounding
+    return Functions::joined(rgb, AtRising(this->Opacity, places));
   }
 
   int intervals(double low, double high) const
@@ -81,11 +92,29 @@ struct Functions
     return std::max(IntervalsFor(this->Opacity, low, high), colour);
   }
 
+  int intervalsInLogarithms(double low, double high) const
+  {
+    return std::max(LogarithmicIntervals(NodesOf(this->Opacity), low, high),
+                    LogarithmicIntervals(NodesOf(this->Rgb), low, high));
+  }
+
   vtkObject* colour() const { return this->Rgb ? static_cast<vtkObject*>(this->Rgb) : this->Gray; }
 
   vtkColorTransferFunction* Rgb;
   vtkPiecewiseFunction* Gray;
   vtkPiecewiseFunction* Opacity;
+
+private:
+  static std::vector<glm::vec4> joined(const std::vector<double>& rgb,
+                                       const std::vector<double>& alpha)
+  {
+    std::vector<glm::vec4> entries(alpha.size());
+    for (std::size_t k = 0; k < alpha.size(); ++k) {
+      entries[k] =
+          glm::vec4(rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2], std::clamp(alpha[k], 0.0, 1.0));
+    }
+    return entries;
+  }
 };
 
 struct Range
@@ -150,16 +179,8 @@ Range Inside(const TransferFunction& table)
 std::vector<glm::vec4> Sampled(const Functions& functions, const TransferFunction& table, int n)
 {
   const Range range = Inside(table);
-  if (!table.logarithmic) {
-    return functions.evenly(range.low, range.high, n);
-  }
-  std::vector<glm::vec4> entries;
-  entries.reserve(static_cast<std::size_t>(n));
-  for (int k = 0; k < n; ++k) {
-    const double value = table.low * std::pow(table.high / table.low, double(k) / (n - 1));
-    entries.push_back(functions.at(std::clamp(value, range.low, range.high)));
-  }
-  return entries;
+  return table.logarithmic ? functions.evenlyInLogarithms(range.low, range.high, n)
+                           : functions.evenly(range.low, range.high, n);
 }
 
 /// Every n-th of them, each the mean of those around it, the less the further: a peak between two
@@ -186,7 +207,8 @@ std::vector<glm::vec4> Thinned(const std::vector<glm::vec4>& fine, int n)
 
 std::vector<glm::vec4> Entries(const Functions& functions, const TransferFunction& table)
 {
-  const int wanted = functions.intervals(table.low, table.high);
+  const int wanted = table.logarithmic ? functions.intervalsInLogarithms(table.low, table.high)
+                                       : functions.intervals(table.low, table.high);
   if (wanted <= LargestTable) {
     return Sampled(functions, table, std::max(wanted, SmallestTable) + 1);
   }

@@ -127,6 +127,54 @@ TEST_F(TransferFunctions, AreSampledInLogSpaceForALogScale)
   ExpectColour(table.table.back(), 1, 1, 1, 1e-6);
 }
 
+/// Nodes that are evenly apart on a logarithmic axis, as ParaView's maps have them: no more entries
+/// than their logarithms ask for.
+TEST_F(TransferFunctions, OfALogScaleAreAsFineAsItsLogarithmsAskFor)
+{
+  for (int k = 0; k < 256; ++k) {
+    this->colour->AddRGBPoint(std::pow(10.0, k / 63.75), k / 255.0, 0.5 + 0.5 * std::sin(0.1 * k),
+                              0.25);
+  }
+  this->colour->SetScaleToLog10();
+  this->colour->SetColorSpaceToLab();
+  this->opacity->AddPoint(10, 0.2, 0.5, 0.5);
+  this->opacity->AddPoint(100, 0.6);
+  this->opacity->AddPoint(1000, 0.4);
+  this->opacity->ClampingOff();
+  const auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_EQ(table.table.size(), 1025u);
+  for (double value = 1.001; value < 1e4; value *= 1.037) {
+    double rgb[3];
+    this->colour->GetColor(value, rgb);
+    const glm::vec4 actual = LookUp(table, value);
+    ExpectColour(actual, rgb[0], rgb[1], rgb[2], 0.01);
+    if (std::abs(value - 10) > 0.2 && std::abs(value - 1000) > 20) { // where it jumps
+      EXPECT_NEAR(actual.a, this->opacity->GetValue(value), 0.01) << value;
+    }
+  }
+}
+
+/// Which takes time for nodes and for entries, not for each node at each entry.
+TEST_F(TransferFunctions, OfALogScaleMayHaveTenThousandNodes)
+{
+  const auto alpha = [](double x) { return 0.3 + 0.2 * std::cos(2 * x); };
+  std::vector<double> opacities;
+  for (int k = 0; k < 10000; ++k) {
+    const double x = (k + 0.499 * std::sin(k)) / 2500; // logarithm, to 4
+    opacities.insert(opacities.end(), {std::pow(10.0, x), alpha(x)});
+  }
+  this->opacity->FillFromDataPointer(10000, opacities.data());
+  this->colour->AddRGBPoint(1, 0, 0, 0);
+  this->colour->AddRGBPoint(1e4, 1, 1, 1);
+  this->colour->SetScaleToLog10();
+  const auto table = inr::BuildTransferFunction(this->property);
+  for (double x = 0.001; x < 3.999; x += 0.00737) {
+    const glm::vec4 actual = LookUp(table, std::pow(10.0, x));
+    ExpectColour(actual, x / 4, x / 4, x / 4, 0.002);
+    EXPECT_NEAR(actual.a, alpha(x), 0.002) << x;
+  }
+}
+
 TEST_F(TransferFunctions, KeepALogScalePositiveWhenTheOpacityIsNot)
 {
   this->colour->AddRGBPoint(0.1, 0, 0, 0);
