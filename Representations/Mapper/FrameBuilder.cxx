@@ -222,27 +222,6 @@ Blending BlendingOf(vtkVolumeMapper* mapper, vtkVolumeProperty* property)
   return blending;
 }
 
-std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* mapper)
-{
-  if (!mapper->GetCropping()) {
-    return {};
-  }
-  const glm::dmat4 toNative = PresentedToNative(grid);
-  const double* planes = mapper->GetCroppingRegionPlanes();
-  const auto indexOf = [&](int axis, double plane) {
-    const double presented =
-        (plane - grid.image->GetOrigin()[axis]) / grid.image->GetSpacing()[axis] - grid.shift[axis];
-    return presented * toNative[axis][axis];
-  };
-  Cropping cropping;
-  for (int axis = 0; axis < 3; ++axis) {
-    cropping.low[axis] = indexOf(axis, planes[2 * axis]);
-    cropping.high[axis] = indexOf(axis, planes[2 * axis + 1]);
-  }
-  cropping.flags = static_cast<std::uint32_t>(mapper->GetCroppingRegionFlags());
-  return cropping;
-}
-
 bool IsPiece(const PresentedGrid& grid)
 {
   const std::array<int, 6> extent = OwnExtent(grid);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "Core/Render/Scene/Blending.h"
-#include "Core/Render/Scene/Cropping.h"
 
 #include <glm/gtc/type_precision.hpp>
 #include <glm/mat4x4.hpp>
@@ -10,7 +9,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 class vtkImageData;
@@ -67,10 +65,6 @@ std::vector<glm::dvec4> PiecePlanes(const PresentedGrid& grid, const glm::dmat4&
 
 /// How a mapper blends, and which isosurfaces; its mode must be one that BlendMode has.
 Blending BlendingOf(vtkVolumeMapper* mapper, vtkVolumeProperty* property);
-
-/// Which regions of the grid a mapper shows; its planes are in the image's coordinates, but for a
-/// direction matrix.
-std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* mapper);
 
 /// Whether less than the whole grid is the image's own.
 bool IsPiece(const PresentedGrid& grid);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneCheck.h"
 
+#include "CroppingRegions.h"
+
 #include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkPiecewiseFunction.h>
@@ -70,6 +72,9 @@ std::string WhyRefused(vtkVolumeMapper* mapper, vtkVolumeProperty* property,
 {
   vtkImageData* image = grid.image;
   std::string problem = WhyNotBlended(mapper, grid, mode, together);
+  if (problem.empty()) {
+    problem = WhyNotCropped(grid, mapper);
+  }
   if (!problem.empty()) {
     return problem;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SceneFrame.h"
 
+#include "CroppingRegions.h"
 #include "SceneLights.h"
 
 #include <vtkRenderer.h>

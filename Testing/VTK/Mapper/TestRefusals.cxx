@@ -183,6 +183,22 @@ TEST_F(Refusals, PathsThatAreCroppedToWhatIsNoBox)
   EXPECT_TRUE(this->draws());
 }
 
+TEST_F(Refusals, CroppingAcrossAxesThatAreTurned)
+{
+  vtkNew<vtkImageData> turned;
+  this->mapper->Update();
+  turned->ShallowCopy(this->mapper->GetDataSetInput());
+  const double direction[] = {0.8, -0.6, 0, 0.6, 0.8, 0, 0, 0, 1};
+  turned->SetDirectionMatrix(direction);
+  this->mapper->SetInputData(turned);
+  EXPECT_TRUE(this->draws());
+  this->mapper->CroppingOn();
+  this->mapper->SetCroppingRegionPlanes(this->mapper->GetBounds());
+  this->expectRefused("turns by other than right angles");
+  this->mapper->CroppingOff();
+  EXPECT_TRUE(this->draws());
+}
+
 TEST_F(Refusals, OrdinaryVoxels)
 {
   this->mapper->SetInputData(test::Decode(test::MakeModel()));

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Render/Scene/Cropping.h"
+#include "FrameBuilder.h"
+
+#include <optional>
+
+class vtkVolumeMapper;
+
+namespace inr {
+
+/// Which regions of the native grid a mapper shows, nothing when it does not crop. The mapper's
+/// planes are across the axes of the image's physical space; those that are not across the axes of
+/// its points, as a direction matrix turns them, cannot be followed: see WhyNotCropped. Along an
+/// axis of one point they are half a voxel further apart, as that is what bounds of points lack.
+std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* mapper);
+
+/// Why CroppingOf would not be what the mapper asks for; empty when it would.
+const char* WhyNotCropped(const PresentedGrid& grid, vtkVolumeMapper* mapper);
+
+} // namespace inr
