@@ -2,6 +2,9 @@ include(GoogleTest)
 
 # Tests take longer to compile than to run.
 set(INR_TEST_OPTIONS -O1)
+if (INR_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  list(APPEND INR_TEST_OPTIONS "-fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/Testing/unsanitized.txt")
+endif ()
 
 # Of tests in several processes. One that waits for another lets a third work meanwhile; otherwise it would
 # keep a core for itself, as long as there are as many cores as processes.
