@@ -4,7 +4,7 @@
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
 #include <vtkDataSetAttributes.h>
-#include <vtkFloatArray.h>
+#include <vtkDoubleArray.h>
 #include <vtkImageAlgorithm.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
@@ -29,8 +29,8 @@ public:
   static PieceSource* New() { VTK_STANDARD_NEW_BODY(PieceSource); }
   vtkTypeMacro(PieceSource, vtkImageAlgorithm);
 
-  int Extent[6] = {10, 329, -5, 314, 0, 159};
-  int Type = VTK_FLOAT;
+  int Extent[6] = {10, 329, -5, 154, 0, 159};
+  int Type = VTK_DOUBLE;
   bool GivesParts = true;
   bool IsMadeOfRequest = false; ///< all of it, of as much of something else as it is asked for
   int FailingRequest = 0;       ///< by number from 1; 0 = none
@@ -58,7 +58,7 @@ protected:
     vtkDataObject::SetPointDataActiveScalarInfo(info, this->Type, 1);
     for (int k = 0; this->TellsOfArrays && k < this->MoreArrays; ++k) {
       vtkNew<vtkInformation> array;
-      array->Set(vtkDataObject::FIELD_ARRAY_TYPE(), VTK_FLOAT);
+      array->Set(vtkDataObject::FIELD_ARRAY_TYPE(), VTK_DOUBLE);
       array->Set(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS(), 1);
       info->Get(vtkDataObject::POINT_DATA_VECTOR())->Append(array);
     }
@@ -92,7 +92,7 @@ protected:
     values->SetName("field");
     this->LargestRequest = std::max(this->LargestRequest, values->GetNumberOfTuples());
     for (int k = 0; k < this->MoreArrays; ++k) {
-      vtkNew<vtkFloatArray> other;
+      vtkNew<vtkDoubleArray> other;
       other->SetName(("other" + std::to_string(k)).c_str());
       other->SetNumberOfTuples(values->GetNumberOfTuples());
       image->GetPointData()->AddArray(other);
