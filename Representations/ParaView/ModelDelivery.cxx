@@ -2,10 +2,12 @@
 #include "ModelDelivery.h"
 
 #include "Core/Model/ModelBytes.h"
+#include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
-#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkINRDataArray.h"
 #include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -13,34 +15,57 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
+#include <string>
 #include <utility>
 
 namespace inr {
 namespace {
 
-vtkSmartPointer<vtkImageData> ImageOf(const ModelPointer& model, const char* name)
+/// The array that a model computes: the active scalars, or else the first one; null for none.
+vtkAbstractArray* FindModel(vtkPointData* points)
 {
-  const VolumeInfo& volume = model->volume;
+  vtkAbstractArray* found = points->GetScalars();
+  for (int k = 0; !vtkINRDataArray::SafeDownCast(found) && k < points->GetNumberOfArrays(); ++k) {
+    found = points->GetAbstractArray(k);
+  }
+  return vtkINRDataArray::SafeDownCast(found) ? found : nullptr;
+}
+
+/// Where an image presents a model, which filters may have moved: origin, what is between the first
+/// and the last point along each axis (of one point, its spacing), and the direction matrix by
+/// rows.
+std::array<double, 15> PlacementOf(vtkImageData* image, const vtkINRDataArray& array)
+{
+  std::array<double, 15> placement{};
+  int first[3];
+  array.GetShift(image, first);
+  image->TransformIndexToPhysicalPoint(first, placement.data());
+  int presented[3];
+  array.GetPresentedDimensions(presented);
+  for (int axis = 0; axis < 3; ++axis) {
+    placement[3 + axis] = image->GetSpacing()[axis] * std::max(presented[axis] - 1, 1);
+  }
+  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, placement.begin() + 6);
+  return placement;
+}
+
+vtkSmartPointer<vtkImageData> ImageOf(const ModelPointer& model, const char* name,
+                                      const double placement[15])
+{
   int dims[3];
   int extent[6] = {};
-  double spacing[3];
-  double direction[9];
   for (int axis = 0; axis < 3; ++axis) {
-    dims[axis] = volume.dims[axis] > 1 ? 2 : 1;
+    dims[axis] = model->volume.dims[axis] > 1 ? 2 : 1;
     extent[2 * axis + 1] = dims[axis] - 1;
-    spacing[axis] =
-        volume.spacing[axis] * (dims[axis] > 1 ? static_cast<double>(volume.dims[axis] - 1) : 1.0);
-    for (int column = 0; column < 3; ++column) {
-      direction[3 * axis + column] = volume.direction[column][axis];
-    }
   }
   const auto array = vtkINRDataArray::Create(model, dims, extent);
   array->SetName(name);
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetExtent(extent);
-  image->SetOrigin(volume.origin.x, volume.origin.y, volume.origin.z);
-  image->SetSpacing(spacing);
-  image->SetDirectionMatrix(direction);
+  image->SetOrigin(placement);
+  image->SetSpacing(placement + 3);
+  image->SetDirectionMatrix(placement + 6);
   image->GetPointData()->SetScalars(array);
   return image;
 }
@@ -60,9 +85,9 @@ void AddPoint(vtkPolyData* carrier)
 
 void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
 {
-  vtkDataArray* scalars = image ? image->GetPointData()->GetScalars() : nullptr;
-  const vtkINRDataArray* handle = vtkINRDataArray::SafeDownCast(scalars);
-  if (!scalars || !handle || !handle->GetModel()) {
+  vtkAbstractArray* array = image ? FindModel(image->GetPointData()) : nullptr;
+  const vtkINRDataArray* handle = vtkINRDataArray::SafeDownCast(array);
+  if (!handle || !handle->GetModel()) {
     return;
   }
   if (handle->GetModel() != this->Packed) {
@@ -73,22 +98,30 @@ void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
     std::copy(bytes.begin(), bytes.end(), this->Bytes->GetPointer(0));
     this->Packed = handle->GetModel();
   }
-  this->Bytes->SetName(scalars->GetName());
+  this->Bytes->SetName(array->GetName());
+  const std::array<double, 15> places = PlacementOf(image, *handle);
+  vtkNew<vtkDoubleArray> placement;
+  placement->SetName("placement");
+  placement->SetNumberOfComponents(15);
+  placement->InsertNextTuple(places.data());
   AddPoint(carrier);
   carrier->GetPointData()->AddArray(this->Bytes);
+  carrier->GetPointData()->AddArray(placement);
 }
 
 vtkImageData* ModelDelivery::receive(vtkPolyData* carrier)
 {
-  auto* bytes =
-      carrier ? vtkUnsignedCharArray::SafeDownCast(carrier->GetPointData()->GetArray(0)) : nullptr;
-  if (bytes != this->Bytes) {
+  vtkPointData* const points = carrier ? carrier->GetPointData() : nullptr;
+  auto* bytes = points ? vtkUnsignedCharArray::SafeDownCast(points->GetArray(0)) : nullptr;
+  auto* placement = bytes ? vtkDoubleArray::SafeDownCast(points->GetArray(1)) : nullptr;
+  if (bytes != this->Bytes || placement != this->Placement) {
     this->Bytes = bytes;
+    this->Placement = placement;
     this->Image = nullptr;
-    if (bytes) {
+    if (placement) {
       const unsigned char* first = bytes->GetPointer(0);
-      this->Image =
-          ImageOf(ModelFromBytes({first, first + bytes->GetNumberOfValues()}), bytes->GetName());
+      this->Image = ImageOf(ModelFromBytes({first, first + bytes->GetNumberOfValues()}),
+                            bytes->GetName(), placement->GetPointer(0));
     }
   }
   return this->Image;

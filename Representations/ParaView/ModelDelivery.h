@@ -4,6 +4,7 @@
 #include "Core/Model/Model.h"
 #include "vtkSmartPointer.h"
 
+class vtkDoubleArray;
 class vtkImageData;
 class vtkPolyData;
 class vtkUnsignedCharArray;
@@ -11,9 +12,9 @@ class vtkUnsignedCharArray;
 namespace inr {
 
 /// Takes models from the process that has them to the one that draws, within data that ParaView
-/// delivers: the model's file is the one tuple of a point array under the name of the array that it
-/// stands for. That is what is left where ParaView puts the data of several processes together, of
-/// which a single one may send.
+/// delivers: the model's file is the one tuple of the first point array, under the name of the
+/// array that it stands for, and where the image is that of the second one. That is what is left
+/// where ParaView puts the data of several processes together, of which a single one may send.
 class ModelDelivery
 {
 public:
@@ -21,13 +22,15 @@ public:
   /// model. Throws Error for a model that no file can hold.
   void send(vtkImageData* image, vtkPolyData* carrier);
 
-  /// An image of the model in `carrier`, over the model's bounds with as few points as can be; null
-  /// when there is none. Unpacked once per delivery. Throws Error for bytes that are not a model.
+  /// An image of the model in `carrier`, over the bounds of the one that was sent with as few
+  /// points as can be; null when there is none. Unpacked once per delivery. Throws Error for bytes
+  /// that are not a model.
   vtkImageData* receive(vtkPolyData* carrier);
 
 private:
   ModelPointer Packed;
   vtkSmartPointer<vtkUnsignedCharArray> Bytes;
+  vtkSmartPointer<vtkDoubleArray> Placement;
   vtkSmartPointer<vtkImageData> Image;
 };
 

@@ -5,9 +5,29 @@ import os
 import sys
 
 import numpy as np
-from pvtest import check, check_same, connect, load_plugin, picture, show_model
+from paraview import simple
+from pvtest import ARRAY, MODEL, check, check_same, connect, load_plugin, picture, show_model
 
 PORT, PROCESSES = int(sys.argv[1]), int(sys.argv[2])
+
+
+# What is shown of a volume that filters have moved, and whose scalars are others now.
+MOVE = """
+image = self.GetImageDataOutput()
+image.ShallowCopy(self.GetInputDataObject(0, 0))
+image.SetOrigin(20, -30, 10)
+image.SetSpacing([0.6 * step for step in image.GetSpacing()])
+"""
+
+
+def show_moved(view):
+    source = simple.Elevation(Input=simple.OpenDataFile(MODEL))
+    display = simple.Show(simple.ProgrammableFilter(Input=source, Script=MOVE), view)
+    display.SetRepresentationType("INR Volume")
+    simple.ColorBy(display, ("POINTS", ARRAY))
+    display.SetScalarBarVisibility(view, False)
+    display.ScalarOpacityUnitDistance = 1
+    return display
 
 
 def show_scene():
@@ -36,6 +56,10 @@ def pictures(view, display, where):
     display.RenderMode = "Path Tracing"
     take("paths")
     display.RenderMode = "Ray Marching"
+    display.Visibility = 0
+    moved = show_moved(view)
+    take("moved")
+    moved.Visibility, display.Visibility = 0, 1
     return result
 
 
@@ -52,7 +76,8 @@ def compare(found, expected):
 
 load_plugin()
 expected = pictures(*show_scene(), "here")
-check(expected["plain"].std() > 0.05, "nothing is shown")
+for name in ("plain", "moved"):
+    check(expected[name].std() > 0.05, name, "shows nothing", expected[name].std())
 
 connect(PORT)
 view, display = show_scene()
