@@ -16,7 +16,7 @@ void vtkINRVolumeRepresentation::SetScatteringAlbedo(double albedo)
   this->GetMapper()->SetScatteringAlbedo(albedo);
 }
 
-void vtkINRVolumeRepresentation::SetAnisotropy(double meanCosine)
+void vtkINRVolumeRepresentation::SetScatteringAnisotropy(double meanCosine)
 {
   this->GetMapper()->SetAnisotropy(meanCosine);
 }

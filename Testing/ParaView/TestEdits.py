@@ -31,7 +31,7 @@ SETTINGS = {
     "CroppingOrigin": [[0, 0, 0], [10, 5, 20]],
     "CroppingScale": [[1, 1, 1], [0.5, 0.7, 0.1]],
     "ScatteringAlbedo": [0, 0.9],
-    "Anisotropy": [-0.5, 0, 0.8],
+    "ScatteringAnisotropy": [-0.5, 0, 0.8],
     "MaximumBounces": [0, 1, 40],
     "AmbientLight": [[0, 0, 0], [1, 0.5, 0.2]],
     "SamplesPerPixel": [1, 2, 5],

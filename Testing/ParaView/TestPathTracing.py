@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Path tracing in ParaView: the medium is ray marching's, the light is the view's."""
+import re
+
 import numpy as np
 from paraview import simple
 from pvtest import ARRAY, MODEL, check, load_plugin, look_at, picture, psnr, show_view
@@ -78,6 +80,11 @@ light.Position = [-400, 45, 45]
 left = shown("left")
 check(psnr(left, right) < 30, "the sides do not differ")
 check(psnr(shown("forward", ScatteringAnisotropy=0.8), left) < 35, "anisotropy does not show")
+display.VolumeAnisotropy = -0.5  # that of ParaView's own volumes
+simple.Render(view)
+mappers = " ".join(str(volume.GetMapper()) for volume in view.GetRenderer().GetVolumes())
+found = re.findall(r" Anisotropy: (\S+)", mappers)
+check(found == ["0.8"], "another anisotropy:", found)
 display.ScatteringAnisotropy = 0
 light.Enable = 0
 check(shown("off").max() == 0, "a light that is off")
