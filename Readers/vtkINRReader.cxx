@@ -180,6 +180,7 @@ int vtkINRReader::RequestInformation(vtkInformation*, vtkInformationVector**,
     this->ReadInformation(outInfo);
   } catch (const std::exception& error) { // inr::Error, or no memory
     outInfo->Set(Pipeline::WHOLE_EXTENT(), NoVoxels, 6);
+    this->DescribeNothing();
     this->Fail(error.what());
   }
   return 1; // a failed request would add the pipeline's own error to ours
@@ -262,6 +263,16 @@ void vtkINRReader::WarnIfLimited()
                         << ". INRDecode computes native voxels of a part, and the INR Volume "
                            "representation shows them all.");
   }
+}
+
+void vtkINRReader::DescribeNothing()
+{
+  for (int axis = 0; axis < 3; ++axis) {
+    this->NativeDimensions[axis] = this->ScaledDimensions[axis] = 0;
+    this->NativeSpacing[axis] = this->ScaledSpacing[axis] = 0;
+  }
+  this->PSNR = this->SSIM = this->MaximumError = std::numeric_limits<double>::quiet_NaN();
+  this->Ratio = 0;
 }
 
 void vtkINRReader::Describe(const inr::VolumeInfo& scaled)

@@ -95,8 +95,8 @@ public:
   ///@}
 
   ///@{
-  /// What the file says, valid after UpdateInformation: voxels per axis and their distance in the
-  /// original volume.
+  /// What the file says, valid after UpdateInformation, 0 where it cannot be read: voxels per axis
+  /// and their distance in the original volume.
   vtkGetVector3Macro(NativeDimensions, vtkIdType);
   vtkGetVector3Macro(NativeSpacing, double);
   ///@}
@@ -137,6 +137,7 @@ private:
   void Fail(const char* reason);
   void ReadData(vtkInformation* outInfo);
   void Describe(const inr::VolumeInfo& scaled);
+  void DescribeNothing();
   void WarnIfLimited();
   void AddFieldData(vtkDataObject* output);
   std::string Summary() const;

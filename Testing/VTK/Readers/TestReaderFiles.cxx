@@ -6,6 +6,7 @@
 #include <vtkFieldData.h>
 #include <vtkStringArray.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -191,6 +192,23 @@ TEST_F(Reader, SaysOnceWhatIsWrongWithAFileAndGoesOn)
   this->open(path);
   EXPECT_TRUE(messages.errors().empty()) << messages.text();
   this->expectTruth(model);
+}
+
+TEST_F(Reader, SaysNothingOfAFileThatItCannotRead)
+{
+  this->open(this->write(*MakeModel(Dims)));
+  EXPECT_EQ(this->Algorithm->GetNativeDimensions()[0], Dims.x);
+  EXPECT_GT(this->Algorithm->GetRatio(), 0);
+  const MessageCapture messages;
+  this->open(this->Folder / "missing.inr");
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(this->Algorithm->GetNativeDimensions()[axis], 0);
+    EXPECT_EQ(this->Algorithm->GetScaledDimensions()[axis], 0);
+    EXPECT_EQ(this->Algorithm->GetNativeSpacing()[axis], 0);
+    EXPECT_EQ(this->Algorithm->GetScaledSpacing()[axis], 0);
+  }
+  EXPECT_EQ(this->Algorithm->GetRatio(), 0);
+  EXPECT_TRUE(std::isnan(this->Algorithm->GetPSNR()));
 }
 
 TEST_F(Reader, NamesWhatIsNotAFile)
