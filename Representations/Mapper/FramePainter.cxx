@@ -70,6 +70,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   std::string problem;
   this->Group.together([&] { problem = this->prepare(mapper, renderer, volume, settings, frame); });
   if (!this->Group.all(problem.empty())) {
+    this->Stills.followUp(picture, renderer->GetRenderWindow(), settings); // nothing goes on
     return problem;
   }
   frame = AsItIsDrawn(std::move(frame), settings.renderer.cached);

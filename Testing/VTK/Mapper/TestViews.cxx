@@ -326,4 +326,23 @@ TEST(Views, ThatAreHiddenAskForNothing)
   }));
 }
 
+TEST(Views, ThatAreRefusedAskForNothing)
+{
+  IdleWindow idle;
+  idle.one.scene.window->Render();
+  EXPECT_FALSE(idle.one.mapper->GetConverged());
+  const test::Messages messages(idle.one.mapper);
+  idle.one.mapper->SetBlendModeToMaximumIntensity(); // which paths do not know
+  idle.one.scene.window->Render();
+  EXPECT_EQ(messages.errors, 1);
+  int asked = 0;
+  vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&asked);
+  count->SetCallback(
+      [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
+  idle.one.mapper->AddObserver(vtkINRVolumeMapper::RefineEvent, count);
+  EXPECT_TRUE(RunUntilIdle(idle.one.scene.window, idle.interactor, [] {}));
+  EXPECT_EQ(asked, 0);
+}
+
 } // namespace
