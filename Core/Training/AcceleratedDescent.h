@@ -19,7 +19,9 @@ namespace inr {
 ///
 /// The CPU's GradientDescent holds a copy of some earlier step, from where it goes on then: of the
 /// last one that somebody wanted to see, and no older than CopyInterval steps or, where that is
-/// longer, than fifty times what a copy takes, which is 14 bytes per parameter. The accelerator's
+/// longer, than fifty times what a copy takes, which is 14 bytes per parameter. Then the model is
+/// the one of a CPU that had taken all steps, but from storage once blocks are read again, which
+/// steps that are taken twice see as they are by then: as good, but another one. The accelerator's
 /// first step is compared with the CPU's: one that gives other values has failed.
 ///
 /// While the accelerator computes a step, the samples of the next are drawn, if it draws none.

@@ -28,7 +28,8 @@ std::int64_t CountDifferences(const double* a, const double* b, std::int64_t cou
 ///
 /// Two threads share it: one reads and calls sample(), put(), wanted() and offer(); the other
 /// trains. What a mini-batch holds depends on seed, step, plan and `rereads` alone, not on how fast
-/// either is.
+/// either is; but that of a step which is taken again, as an accelerator was lost behind it, is of
+/// blocks that were read again since.
 class SamplePool : public BatchSource
 {
 public:

@@ -12,9 +12,11 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <new>
 #include <string>
+#include <system_error>
 #include <thread>
 
 namespace inr {
@@ -44,6 +46,17 @@ double ShareToRead(const StreamedVolume& volume, const TrainingOptions& options)
   return std::min(volume.mostRereads(), affordable);
 }
 
+std::thread Begin(const std::function<void()>& work)
+{
+  try {
+    return std::thread(work);
+  } catch (const std::system_error& problem) {
+    throw Error(ErrorCode::TooLarge, "no thread can be had to train on while this one reads (" +
+                                         std::string(problem.what()) +
+                                         "); end other programs, or raise the limit of threads");
+  }
+}
+
 /// Trains on a thread of its own while this one reads: the reader belongs to the host application,
 /// which expects to be called where it called.
 void TrainWhileReading(TrainingRun& run, StreamedVolume& volume, BatchSource& batches,
@@ -51,7 +64,7 @@ void TrainWhileReading(TrainingRun& run, StreamedVolume& volume, BatchSource& ba
 {
   std::exception_ptr failure;
   std::atomic<bool> done{false};
-  std::thread trainer([&] {
+  std::thread trainer = Begin([&] {
     try {
       run.train(batches, volume.estimate(PsnrEstimate::UsualVoxels), arena);
     } catch (...) {

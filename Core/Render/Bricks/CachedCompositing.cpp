@@ -51,7 +51,8 @@ void CachedMarcher::compositeLast(CachedRay& state)
 {
   const int last = this->Placed.count - 1;
   float value = this->Batch.value[last];
-  ClampToRange({this->Batch.low[last], this->Batch.high[last]}, value);
+  const ValueRange range{this->Batch.low[last], this->Batch.high[last]};
+  this->Notes.statistics.clamped += ClampToRange(range, value) ? 1 : 0;
   this->compositeColor(state, this->Scene.colors.at(value), this->Placed.lastLength,
                        this->timeOf(state, last));
 }

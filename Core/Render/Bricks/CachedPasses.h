@@ -81,7 +81,7 @@ private:
   std::int64_t Next = 0; ///< first tile that was not yet at hand
   std::vector<ActiveTile> Active;
   FrameStatistics Statistics;
-  /// Tiles at work at once: some ten megabytes of waiting rays at most.
+  /// Tiles at work at once: some forty megabytes of waiting rays at most.
   std::size_t Window = 192;
   bool Alone = false; ///< only the first ray goes on
 };

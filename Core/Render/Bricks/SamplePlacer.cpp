@@ -21,9 +21,7 @@ double ShortestBlockOf(const BrickFormat& format)
   const double edge = 1.0 / static_cast<double>(format.blocksPerVoxel);
   double shortest = edge;
   for (int axis = 0; axis < 3; ++axis) {
-    if (format.lastCell[axis] >= 0) { // else the volume is one voxel thick
-      shortest = std::min(shortest, format.lastCell[axis] + 1 - format.lastBlock[axis] * edge);
-    }
+    shortest = std::min(shortest, format.lastCell[axis] + 1 - format.lastBlock[axis] * edge);
   }
   return shortest;
 }

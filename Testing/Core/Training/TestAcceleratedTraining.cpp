@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Trainings by an accelerator that computes what Core does: whatever happens to it, the model is
-// the CPU's, to the last bit.
+// the CPU's, to the last bit (or as good, where it is lost while a volume in storage is read
+// again).
 #include "Core/Error.h"
 #include "Core/Training/ParallelTraining.h"
 #include "Core/Training/StreamBudget.h"
@@ -120,6 +121,25 @@ TEST_F(Accelerated, TheCpuGoesOnWhereverTheDeviceIsLost)
         EXPECT_NE(this->Texts[0].find("the fake device is lost"), std::string::npos);
       }
     }
+  }
+}
+
+/// Where the steps that are taken again see blocks that were read again meanwhile.
+TEST_F(Accelerated, TheCpuGoesOnAsWellFromStorage)
+{
+  const inr::ModelPointer expected = this->read(this->options(12));
+  const auto lostAt = [this](int call) {
+    this->Device.calls = 0;
+    this->Device.failsAt = call;
+    return this->read(this->accelerated(12));
+  };
+  lostAt(FakeTrainingDevice::Never);
+  const int calls = this->Device.calls;
+  ASSERT_GT(calls, 12);
+  for (int k = 0; k < calls; k += 3) {
+    const inr::ModelPointer model = lostAt(k);
+    EXPECT_EQ(model->training->steps, 12u) << k;
+    EXPECT_NEAR(model->quality->psnr, expected->quality->psnr, 0.5) << k;
   }
 }
 
