@@ -5,6 +5,7 @@
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/KeptFrame.h"
 #include "Core/Render/Marching/StepTable.h"
+#include "Core/Render/Scene/PerView.h"
 
 #include <cstdint>
 #include <functional>
@@ -32,7 +33,8 @@ public:
     if (this->Unfinished && this->Unfinished->frame.isOf(job.frame)) {
       return this->refine(limit, output, keepGoing);
     }
-    if (limit.isLimited()) { // others are looked at in between: see AcceleratedFrames::prove
+    // Others are looked at in between without a limit, too: see AcceleratedFrames::prove.
+    if (limit.isLimited() && !this->isAwaited(job.frame.view)) {
       this->dropUnfinished();
     }
     const StepLookup steps = this->stepsFor(job);
@@ -45,7 +47,7 @@ public:
     const FrameStatistics statistics = inTime ? this->marchInTime(picture, limit, keepGoing)
                                               : this->marchComplete(picture, keepGoing);
     picture.copyTo(output);
-    if (this->Overfull) {
+    if (std::exchange(this->Overfull, false) && !this->Unfinished) {
       this->keepUnfinished(job.frame);
     }
     return statistics;
@@ -71,12 +73,15 @@ private:
   /// A picture that wants more than the cache holds, between the calls that it takes.
   struct Refinement
   {
-    Refinement(const Frame& of, std::unique_ptr<Picture> seen) : frame(of), picture(std::move(seen))
+    Refinement(const Frame& of, std::unique_ptr<Picture> seen)
+        : frame(of), view(of.view), picture(std::move(seen))
     {
       this->picture->begin();
     }
 
     KeptFrame frame;
+    int view;                         ///< whose it is
+    int waits = 0;                    ///< frames of other views since it went on
     std::unique_ptr<Picture> picture; ///< rays that have not ended show what was there before
     FrameStatistics soFar;            ///< of those that have, and of the others' ways
   };
@@ -97,9 +102,17 @@ private:
     return steps;
   }
 
+  /// Whether another view's picture is to come to its end before one of this view takes its place:
+  /// as long as somebody goes on with it.
+  bool isAwaited(int view)
+  {
+    constexpr int most = 2 * static_cast<int>(PerView<int>::Most); // views, each shown twice
+    return this->Unfinished && this->Unfinished->view != view &&
+           !this->Unfinished->picture->done() && ++this->Unfinished->waits < most;
+  }
+
   void keepUnfinished(const Frame& frame)
   {
-    this->Overfull = false;
     this->dropUnfinished();
     this->Unfinished.emplace(frame, std::move(this->Present));
   }
@@ -126,6 +139,7 @@ private:
                          const std::function<bool()>& keepGoing)
   {
     Picture& picture = *this->Unfinished->picture;
+    this->Unfinished->waits = 0;
     FrameStatistics& all = this->Unfinished->soFar;
     const FrameStatistics part = picture.goOn(limit, this->Options.maximumRequests, keepGoing);
     picture.copyTo(output);

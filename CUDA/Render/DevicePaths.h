@@ -37,7 +37,10 @@ public:
     if (!this->Waiting || round.first || !this->Waiting->isOf(round)) {
       this->begin(round, colors);
     }
-    this->Overfull = this->Overfull && !round.first;
+    // Paths that wait leave pixels as they were, so the latest picture has to be this view's.
+    const int view = round.tracer.frame().view;
+    this->Overfull = this->Overfull && !round.first && view == this->View;
+    this->View = view;
     const bool waits =
         !this->Options.onlyWhatFits && (!limit.isLimited() || this->Overfull || this->Waiting);
     this->Picture.clearCounts();
@@ -171,7 +174,8 @@ private:
   RayOrder Order{};                    ///< of the round
   std::uint32_t* TileMisses = nullptr; ///< of all tiles of the picture
   std::optional<Unfinished> Waiting;
-  bool Overfull = false; ///< the present picture wants more than the cache holds
+  bool Overfull = false; ///< the latest picture wants more than the cache holds
+  int View = 0;          ///< whose that is
 };
 
 } // namespace cuda

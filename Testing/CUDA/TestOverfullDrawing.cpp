@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace test::overfull_drawing {
@@ -45,6 +46,21 @@ inr::Frame FromBehind(inr::Frame frame)
   turn = glm::rotate(turn, glm::radians(180.0), glm::dvec3(0, 1, 0));
   frame.clipToWorld = glm::translate(turn, -center) * frame.clipToWorld;
   return frame;
+}
+
+/// Pixels that show something, and the same to the last bit.
+int PixelsOfBoth(const inr::Image& one, const inr::Image& other)
+{
+  int both = 0;
+  for (std::size_t k = 0; k < one.pixels.size(); k += 4) {
+    const auto begin = one.pixels.begin() + static_cast<std::ptrdiff_t>(k);
+    const bool shows = begin[0] > 0;
+    both +=
+        shows && std::equal(begin, begin + 4, other.pixels.begin() + static_cast<std::ptrdiff_t>(k))
+            ? 1
+            : 0;
+  }
+  return both;
 }
 
 /// Pixels that show neither what they showed `before` nor what they are to show in the end.
@@ -216,6 +232,54 @@ TEST_P(OverfullDrawing, GoesOnBehindAPictureInBetween)
 }
 
 /// Whose samples are as far apart as those of no other: what is made of colours for them goes.
+/// Two views that a window draws by turns until each has its picture; and one that is left alone.
+TEST_P(OverfullDrawing, ComesToItsEndForOneViewAfterAnother)
+{
+  std::array<inr::Frame, 2> frames{FullResolution(inr::RenderMode::RayMarching),
+                                   OtherFrame(inr::RenderMode::RayMarching)};
+  frames[1].view = 1;
+  inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+  std::array<inr::Image, 2> shown;
+  std::array<bool, 2> complete{};
+  for (int turns = 0; !complete[0] || !complete[1]; ++turns) {
+    ASSERT_LT(turns, MostCalls);
+    for (std::size_t k = 0; k < 2; ++k) {
+      complete[k] = complete[k] || renderer.render(Hurried(frames[k]), shown[k]).complete;
+    }
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(shown[k].pixels, Draw(frames[k], RoomFor(GetParam(), 0)).rgba.pixels) << k;
+  }
+  frames[0].clipToWorld[1][1] *= 1.1; // begins anew, and is shown no more
+  Begin(renderer, Hurried(frames[0]), shown[0]);
+  frames[1].clipToWorld[1][1] *= 1.1;
+  End(renderer, Hurried(frames[1]), shown[1]);
+  EXPECT_EQ(shown[1].pixels, Draw(frames[1], RoomFor(GetParam(), 0)).rgba.pixels);
+}
+
+/// Paths of two views by turns: what one shows is nothing of the other's.
+TEST_P(OverfullDrawing, ShowsNothingOfAnotherView)
+{
+  inr::Frame one = Hurried(FullResolution(inr::RenderMode::PathTracing));
+  one.width = 40;
+  one.height = 30;
+  one.paths.ambientLight = glm::vec3(1.0f);
+  inr::Frame other = one;
+  other.clipToWorld[0][0] *= 1.6;
+  other.clipToWorld[1][1] *= 1.6;
+  other.seed = 5;
+  other.view = 1;
+  inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
+  inr::Image shown;
+  inr::Image others;
+  for (int call = 0; call < 6; ++call) {
+    renderer.render(one, shown);
+    EXPECT_EQ(call > 0 ? PixelsOfBoth(shown, others) : 0, 0) << call;
+    renderer.render(other, others);
+    EXPECT_EQ(PixelsOfBoth(others, shown), 0) << call;
+  }
+}
+
 TEST_P(OverfullDrawing, BeginsAnewBehindOneOfOtherDistances)
 {
   const inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
