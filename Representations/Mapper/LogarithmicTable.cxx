@@ -17,7 +17,10 @@ namespace {
 class Stretch
 {
 public:
-  explicit Stretch(vtkPiecewiseFunction* function) : All(function) {}
+  explicit Stretch(vtkPiecewiseFunction* function) : All(function)
+  {
+    this->Two->SetUseLogScale(function->GetUseLogScale());
+  }
 
   /// The values between node k and k + 1, which is not the last one.
   double at(int k, double place)
@@ -48,6 +51,11 @@ vtkSmartPointer<vtkColorTransferFunction> OverLogarithms(vtkColorTransferFunctio
   result->DeepCopy(function);
   result->RemoveAllPoints();
   result->SetScaleToLinear();
+  // Which VTK does not copy.
+  result->SetUseBelowRangeColor(function->GetUseBelowRangeColor());
+  result->SetBelowRangeColor(function->GetBelowRangeColor());
+  result->SetUseAboveRangeColor(function->GetUseAboveRangeColor());
+  result->SetAboveRangeColor(function->GetAboveRangeColor());
   for (int k = 0; k < function->GetSize(); ++k) {
     double node[6]; // place, red, green, blue, midpoint, sharpness
     function->GetNodeValue(k, node);

@@ -154,8 +154,31 @@ TEST_F(TransferFunctions, OfALogScaleAreAsFineAsItsLogarithmsAskFor)
   }
 }
 
+/// Between the ends of the colours and those of the opacities; and opacities on a logarithmic axis
+/// of their own.
+TEST_F(TransferFunctions, OfALogScaleKeepWhatTheFunctionsAreSetTo)
+{
+  this->colour->AddRGBPoint(10, 1, 1, 0);
+  this->colour->AddRGBPoint(1000, 1, 0, 1);
+  this->colour->SetScaleToLog10();
+  this->colour->SetBelowRangeColor(0.1, 0.2, 0.3);
+  this->colour->SetAboveRangeColor(0.4, 0.5, 0.6);
+  this->colour->UseBelowRangeColorOn();
+  this->colour->UseAboveRangeColorOn();
+  this->opacity->AddPoint(1, 0.1);
+  this->opacity->AddPoint(1e4, 0.9);
+  this->opacity->UseLogScaleOn();
+  const auto table = inr::BuildTransferFunction(this->property);
+  ExpectColour(LookUp(table, 5), 0.1, 0.2, 0.3, 1e-6);
+  ExpectColour(LookUp(table, 5000), 0.4, 0.5, 0.6, 1e-6);
+  for (double value = 1.1; value < 9e3; value *= 1.7) {
+    EXPECT_NEAR(LookUp(table, value).a, this->opacity->GetValue(value), 0.002) << value;
+  }
+  EXPECT_NEAR(LookUp(table, 100).a, 0.5, 0.002);
+}
+
 /// Which takes time for nodes and for entries, not for each node at each entry.
-TEST_F(TransferFunctions, OfALogScaleMayHaveTenThousandNodes)
+TEST_F(TransferFunctions, OfALogScaleMayHaveTenThousandOpacities)
 {
   const auto alpha = [](double x) { return 0.3 + 0.2 * std::cos(2 * x); };
   std::vector<double> opacities;
