@@ -70,6 +70,19 @@ vtkSmartPointer<vtkImageData> ImageOf(const ModelPointer& model, const char* nam
   return image;
 }
 
+/// Longer than the array's own name, so another one.
+constexpr const char* PlacementPrefix = "placement of ";
+
+/// The first array of a type, as ParaView may put them in another order; null for none.
+template <class Array> Array* FirstOf(vtkPointData* points)
+{
+  Array* found = nullptr;
+  for (int k = 0; points && !found && k < points->GetNumberOfArrays(); ++k) {
+    found = Array::SafeDownCast(points->GetAbstractArray(k));
+  }
+  return found;
+}
+
 /// A tuple belongs to a point, and without a cell that is left out.
 void AddPoint(vtkPolyData* carrier)
 {
@@ -101,7 +114,8 @@ void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
   this->Bytes->SetName(array->GetName());
   const std::array<double, 15> places = PlacementOf(image, *handle);
   vtkNew<vtkDoubleArray> placement;
-  placement->SetName("placement");
+  placement->SetName(
+      (PlacementPrefix + std::string(array->GetName() ? array->GetName() : "")).c_str());
   placement->SetNumberOfComponents(15);
   placement->InsertNextTuple(places.data());
   AddPoint(carrier);
@@ -112,13 +126,13 @@ void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
 vtkImageData* ModelDelivery::receive(vtkPolyData* carrier)
 {
   vtkPointData* const points = carrier ? carrier->GetPointData() : nullptr;
-  auto* bytes = points ? vtkUnsignedCharArray::SafeDownCast(points->GetArray(0)) : nullptr;
-  auto* placement = bytes ? vtkDoubleArray::SafeDownCast(points->GetArray(1)) : nullptr;
+  auto* bytes = FirstOf<vtkUnsignedCharArray>(points);
+  auto* placement = FirstOf<vtkDoubleArray>(points);
   if (bytes != this->Bytes || placement != this->Placement) {
     this->Bytes = bytes;
     this->Placement = placement;
     this->Image = nullptr;
-    if (placement) {
+    if (bytes && placement) {
       const unsigned char* first = bytes->GetPointer(0);
       this->Image = ImageOf(ModelFromBytes({first, first + bytes->GetNumberOfValues()}),
                             bytes->GetName(), placement->GetPointer(0));

@@ -12,9 +12,11 @@ class vtkUnsignedCharArray;
 namespace inr {
 
 /// Takes models from the process that has them to the one that draws, within data that ParaView
-/// delivers: the model's file is the one tuple of the first point array, under the name of the
-/// array that it stands for, and where the image is that of the second one. That is what is left
-/// where ParaView puts the data of several processes together, of which a single one may send.
+/// delivers: the model's file is the one tuple of a point array of bytes, under the name of the
+/// array that it stands for, and where the image is that of one of doubles. That is what is left
+/// where ParaView puts the data of several processes together, of which a single one may send. Of
+/// an image with several models it is the active scalars' or, where these are none, the first
+/// one's.
 class ModelDelivery
 {
 public:

@@ -53,7 +53,7 @@ public:
   void SetBackend(int backend);
   void SetSamplesPerPixel(int paths);
   void SetScatteringAlbedo(double albedo);
-  void SetScatteringAnisotropy(double meanCosine);
+  void SetScatteringAnisotropy(double meanCosine); // SetAnisotropy is for ParaView's own volumes
   void SetMaximumBounces(int bounces);
   void SetAmbientLight(double red, double green, double blue);
   /// Values below 0 stand for none that is known yet: what was there before stays.
