@@ -307,6 +307,7 @@ int vtkINRReader::RequestData(vtkInformation*, vtkInformationVector**,
     this->ReadData(outInfo);
   } catch (const std::exception& error) {
     vtkImageData::GetData(outInfo)->Initialize();
+    this->DescribeNothing();
     this->Fail(error.what());
   }
   return 1;

@@ -30,6 +30,7 @@
 
 #include <vtkImageAlgorithm.h>
 
+#include <limits> // for what is not known
 #include <memory> // for Internals
 #include <string> // for Summary
 
@@ -95,8 +96,8 @@ public:
   ///@}
 
   ///@{
-  /// What the file says, valid after UpdateInformation, 0 where it cannot be read: voxels per axis
-  /// and their distance in the original volume.
+  /// What the file says, valid after UpdateInformation, 0 where nothing of it can be shown: voxels
+  /// per axis and their distance in the original volume.
   vtkGetVector3Macro(NativeDimensions, vtkIdType);
   vtkGetVector3Macro(NativeSpacing, double);
   ///@}
@@ -115,7 +116,7 @@ public:
   vtkGetMacro(MaximumError, double);
   ///@}
 
-  /// Bytes of the original volume over bytes of the file.
+  /// Bytes of the original volume over bytes of the file; 0 as above.
   vtkGetMacro(Ratio, double);
 
 protected:
@@ -150,12 +151,12 @@ private:
   int Dimensions[3] = {0, 0, 0};
 
   vtkIdType NativeDimensions[3] = {0, 0, 0};
-  double NativeSpacing[3] = {1, 1, 1};
+  double NativeSpacing[3] = {0, 0, 0};
   vtkIdType ScaledDimensions[3] = {0, 0, 0};
-  double ScaledSpacing[3] = {1, 1, 1};
-  double PSNR = 0;
-  double SSIM = 0;
-  double MaximumError = 0;
+  double ScaledSpacing[3] = {0, 0, 0};
+  double PSNR = std::numeric_limits<double>::quiet_NaN();
+  double SSIM = std::numeric_limits<double>::quiet_NaN();
+  double MaximumError = std::numeric_limits<double>::quiet_NaN();
   double Ratio = 0;
 
   std::unique_ptr<Internals> Internal;

@@ -200,6 +200,11 @@ TEST_F(Reader, SaysNothingOfAFileThatItCannotRead)
   EXPECT_EQ(this->Algorithm->GetNativeDimensions()[0], Dims.x);
   EXPECT_GT(this->Algorithm->GetRatio(), 0);
   const MessageCapture messages;
+  std::string damaged = Bytes(this->Folder / "model.inr");
+  damaged[damaged.size() / 2] = static_cast<char>(~damaged[damaged.size() / 2]);
+  std::ofstream(this->Folder / "damaged.inr", std::ios::binary) << damaged;
+  this->open(this->Folder / "damaged.inr"); // whose beginning can be read
+  EXPECT_EQ(this->Algorithm->GetNativeDimensions()[0], 0);
   this->open(this->Folder / "missing.inr");
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(this->Algorithm->GetNativeDimensions()[axis], 0);
