@@ -9,11 +9,18 @@
 
 namespace inr {
 
+bool CachedMarcher::moveIntoRange(int sample)
+{
+  float& value = this->Batch.value[sample];
+  const float found = value;
+  ClampToRange({this->Batch.low[sample], this->Batch.high[sample]}, value);
+  return std::abs(found - value) > RoundingOfStorage;
+}
+
 void CachedMarcher::takeLogarithms(int count)
 {
   for (int k = 0; k < count; ++k) {
-    const ValueRange range{this->Batch.low[k], this->Batch.high[k]};
-    this->Notes.statistics.clamped += ClampToRange(range, this->Batch.value[k]) ? 1 : 0;
+    this->Notes.statistics.clamped += this->moveIntoRange(k) ? 1 : 0;
     this->Batch.value[k] = this->Scene.colors.coordinate(this->Batch.value[k]);
     this->Batch.low[k] = -std::numeric_limits<float>::max();
     this->Batch.high[k] = std::numeric_limits<float>::max();
@@ -50,11 +57,9 @@ void CachedMarcher::noteHalfOpaque(CachedRay& state, int first, int end) const
 void CachedMarcher::compositeLast(CachedRay& state)
 {
   const int last = this->Placed.count - 1;
-  float value = this->Batch.value[last];
-  const ValueRange range{this->Batch.low[last], this->Batch.high[last]};
-  this->Notes.statistics.clamped += ClampToRange(range, value) ? 1 : 0;
-  this->compositeColor(state, this->Scene.colors.at(value), this->Placed.lastLength,
-                       this->timeOf(state, last));
+  this->Notes.statistics.clamped += this->moveIntoRange(last) ? 1 : 0;
+  this->compositeColor(state, this->Scene.colors.at(this->Batch.value[last]),
+                       this->Placed.lastLength, this->timeOf(state, last));
 }
 
 void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
@@ -78,10 +83,7 @@ void CachedMarcher::clampToRanges()
 {
   this->Clamped = 0;
   for (int k = 0; k < this->Placed.count; ++k) {
-    const float value = this->Batch.value[k];
-    ClampToRange({this->Batch.low[k], this->Batch.high[k]}, this->Batch.value[k]);
-    const bool moves = std::abs(value - this->Batch.value[k]) > RoundingOfStorage;
-    this->Clamped |= std::uint64_t{moves} << k;
+    this->Clamped |= std::uint64_t{this->moveIntoRange(k)} << k;
   }
   this->Notes.statistics.clamped += CountBits(this->Clamped);
 }
