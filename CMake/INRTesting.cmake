@@ -25,22 +25,20 @@ function (inr_add_core_test name)
     PROPERTIES LABELS core TIMEOUT 300)
 endfunction ()
 
-# inr_label_cases(NAME LABEL PATTERN... [EXCEPT PATTERN]): the labels core and LABEL, and no other, for those
+# inr_label_cases(NAME LABEL PATTERN...): the labels core and LABEL, and no other, for those
 # cases of such a program that match one of the regular expressions. One that none matches is a test that
 # fails.
 function (inr_label_cases name label)
-  cmake_parse_arguments(arg "" "EXCEPT" "" ${ARGN})
   set(quoted)
-  foreach (pattern IN LISTS arg_UNPARSED_ARGUMENTS)
+  foreach (pattern IN LISTS ARGN)
     string(APPEND quoted " [==[${pattern}]==]")
   endforeach ()
-  set(except "${arg_EXCEPT}")
   set(file "${CMAKE_CURRENT_BINARY_DIR}/${name}_${label}.cmake")
   configure_file("${PROJECT_SOURCE_DIR}/CMake/INRLabelCases.cmake.in" "${file}" @ONLY)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${file}")
 endfunction ()
 
-# inr_repeats(NAME PATTERN... [EXCEPT PATTERN]): what takes long and executes the same lines as other cases do,
+# inr_repeats(NAME PATTERN...): what takes long and executes the same lines as other cases do,
 # over and over again. Left out where there is a sanitizer.
 function (inr_repeats name)
   inr_label_cases(${name} repeated ${ARGN})

@@ -129,6 +129,7 @@ TEST_F(Accelerated, TheCpuGoesOnAsWellFromStorage)
 {
   const inr::ModelPointer expected = this->read(this->options(12));
   const auto lostAt = [this](int call) {
+    this->Texts.clear();
     this->Device.calls = 0;
     this->Device.failsAt = call;
     return this->read(this->accelerated(12));
@@ -139,6 +140,7 @@ TEST_F(Accelerated, TheCpuGoesOnAsWellFromStorage)
   for (int k = 0; k < calls; k += 3) {
     const inr::ModelPointer model = lostAt(k);
     EXPECT_EQ(model->training->steps, 12u) << k;
+    EXPECT_EQ(this->Texts.size(), 1u) << k;
     EXPECT_NEAR(model->quality->psnr, expected->quality->psnr, 0.5) << k;
   }
 }
