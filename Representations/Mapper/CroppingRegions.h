@@ -13,7 +13,7 @@ namespace inr {
 /// Which regions of the native grid a mapper shows, nothing when it does not crop. The mapper's
 /// planes are across the axes of the image's physical space; those that are not across the axes of
 /// its points, as a direction matrix turns them, cannot be followed: see WhyNotCropped. Along an
-/// axis of one point they are half a voxel further apart, as that is what bounds of points lack.
+/// axis of one point each is half a voxel further out, as that is what bounds of points lack.
 std::optional<Cropping> CroppingOf(const PresentedGrid& grid, vtkVolumeMapper* mapper);
 
 /// Why CroppingOf would not be what the mapper asks for; empty when it would.

@@ -362,10 +362,10 @@ public:
   /**
    * Seconds after which a still frame is shown with what is there and refined in the following
    * ones, which the mapper asks the window's interactor for: short ones, with pauses for events in
-   * between, and none while somebody interacts or RefineEvent is answered with no. A frame that takes
-   * the place of one that is still refined is such a short one, too. 0: a still frame is complete,
-   * however long it takes. Below 0, the default: 0.5 where the window has an interactor, else 0.
-   * Screenshots and offscreen windows are always complete.
+   * between, and none while somebody interacts or RefineEvent is answered with no. A frame that
+   * takes the place of one that is still refined is such a short one, too. 0: a still frame is
+   * complete, however long it takes. Below 0, the default: 0.5 where the window has an interactor,
+   * else 0. Screenshots and offscreen windows are always complete.
    */
   vtkSetMacro(StillTimeLimit, double);
   vtkGetMacro(StillTimeLimit, double);
