@@ -42,6 +42,38 @@ public:
       }
     }
   }
+  void requireFree(std::int64_t bytes, const char* what) const
+  {
+    this->order();
+    this->HostMachine::requireFree(bytes, what);
+  }
+  template <class T> Array<T> allocatePinned(std::int64_t count) const
+  {
+    this->order();
+    return this->HostMachine::allocatePinned<T>(count);
+  }
+  template <class T> void beginToMachine(T* to, const T* from, std::int64_t count) const
+  {
+    this->order();
+    this->HostMachine::beginToMachine(to, from, count);
+  }
+  template <class T> void copy(T* to, const T* from, std::int64_t count) const
+  {
+    this->order();
+    this->HostMachine::copy(to, from, count);
+  }
+  template <class T> void fill(T* to, int byte, std::int64_t count) const
+  {
+    this->order();
+    this->HostMachine::fill(to, byte, count);
+  }
+  void wait() const { this->order(); }
+  void after(const HostMachine& /*other*/) const { this->order(); }
+  bool isIdle() const
+  {
+    this->order();
+    return this->HostMachine::isIdle();
+  }
   template <class Kernel>
   void run(const Kernel& kernel, std::int64_t items, std::int64_t sharedBytes = 0) const
   {

@@ -57,6 +57,45 @@ TEST(LostDrawing, LeavesThePictureToTheCpu)
   }
 }
 
+/// Draws in a limited time until the picture is complete; false where that takes too long.
+bool Completes(inr::Renderer& renderer, inr::Frame frame, inr::Image& image)
+{
+  frame.timeLimit = 1e-9;
+  for (int calls = 0; calls < 2000; ++calls) {
+    if (renderer.render(frame, image).complete) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whose bricks come in behind other frames.
+TEST(LostDrawing, LeavesThePictureToTheCpuInAnyOfItsFrames)
+{
+  for (const inr::RenderMode mode : Modes) {
+    const inr::Frame frame = SmallFrame(mode);
+    const Drawn truth = Draw(frame, OptionsWith(nullptr));
+    const auto counting = std::make_shared<FailingOrders>();
+    inr::Renderer whole = RendererOf(OptionsWith(std::make_shared<FailingAccelerator>(counting)));
+    inr::Image image;
+    ASSERT_TRUE(Completes(whole, frame, image));
+    ASSERT_FALSE(whole.acceleratorFailure());
+    const int orders = counting->orders;
+    ASSERT_GT(orders, 80);
+    for (int fails = orders / 29; fails < orders; fails += orders / 17) {
+      SCOPED_TRACE(std::to_string(fails) + " of " + std::to_string(orders));
+      const auto failing = std::make_shared<FailingOrders>();
+      failing->failsAt = fails;
+      inr::Renderer renderer =
+          RendererOf(OptionsWith(std::make_shared<FailingAccelerator>(failing)));
+      EXPECT_TRUE(Completes(renderer, frame, image));
+      EXPECT_GE(inr::ImagePsnr(image, truth.rgba), 50);
+      ASSERT_TRUE(renderer.acceleratorFailure());
+      EXPECT_EQ(renderer.acceleratorFailure()->reason, "the machine is lost");
+    }
+  }
+}
+
 TEST(LostDrawing, IsNotTrustedWithOtherPictures)
 {
   const inr::Frame frame = SmallFrame(inr::RenderMode::RayMarching);
