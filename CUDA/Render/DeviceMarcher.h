@@ -81,7 +81,7 @@ private:
 
     KeptFrame frame;
     int view;                         ///< whose it is
-    int waits = 0;                    ///< frames of other views since it went on
+    int waits = 0;                    ///< limited frames of other views since it went on
     std::unique_ptr<Picture> picture; ///< rays that have not ended show what was there before
     FrameStatistics soFar;            ///< of those that have, and of the others' ways
   };
@@ -113,7 +113,6 @@ private:
 
   void keepUnfinished(const Frame& frame)
   {
-    this->dropUnfinished();
     this->Unfinished.emplace(frame, std::move(this->Present));
   }
   /// Its memory is for the next picture.

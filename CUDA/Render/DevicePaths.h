@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace inr {
@@ -37,10 +38,7 @@ public:
     if (!this->Waiting || round.first || !this->Waiting->isOf(round)) {
       this->begin(round, colors);
     }
-    // Paths that wait leave pixels as they were, so the latest picture has to be this view's.
-    const int view = round.tracer.frame().view;
-    this->Overfull = this->Overfull && !round.first && view == this->View;
-    this->View = view;
+    this->Overfull = this->Overfull && !round.first;
     const bool waits =
         !this->Options.onlyWhatFits && (!limit.isLimited() || this->Overfull || this->Waiting);
     this->Picture.clearCounts();
@@ -89,6 +87,12 @@ private:
     const PathScene scene = SceneOn(this->Where, given, colors, layers, this->OfRound);
     this->Where.toMachine(this->Scene.data(), &scene, 1);
     this->Picture.resize(std::int64_t{given.rays.width} * given.rays.height);
+    const int view = round.tracer.frame().view;
+    if (std::exchange(this->View, view) != view) { // of which paths that wait leave all as it was
+      const Image* const depth = round.output.depth;
+      this->Picture.copyFrom(round.output.rgba.pixels.data(),
+                             depth != nullptr ? depth->pixels.data() : nullptr);
+    }
     const std::vector<std::uint32_t> pixels = PixelsOf(round);
     const auto listed = static_cast<std::int64_t>(pixels.size());
     this->Order = {given.rays.width, given.rays.height,
@@ -175,7 +179,7 @@ private:
   std::uint32_t* TileMisses = nullptr; ///< of all tiles of the picture
   std::optional<Unfinished> Waiting;
   bool Overfull = false; ///< the latest picture wants more than the cache holds
-  int View = 0;          ///< whose that is
+  int View = 0;          ///< whose the pixels are
 };
 
 } // namespace cuda

@@ -76,6 +76,15 @@ public:
     }
   }
 
+  /// From images of the picture's size, `depth` of which may be null.
+  void copyFrom(const float* rgba, const float* depth)
+  {
+    this->Where.toMachine(this->Values->data(), rgba, DepthAt * this->Pixels);
+    if (depth != nullptr) {
+      this->Where.toMachine(this->Values->data() + DepthAt * this->Pixels, depth, this->Pixels);
+    }
+  }
+
 private:
   /// Of all pixels RGBA, then their depths, then two channels of samples.
   static constexpr int DepthAt = 4;

@@ -231,7 +231,6 @@ TEST_P(OverfullDrawing, GoesOnBehindAPictureInBetween)
   EXPECT_EQ(now.samples, truth.statistics.samples);
 }
 
-/// Whose samples are as far apart as those of no other: what is made of colours for them goes.
 /// Two views that a window draws by turns until each has its picture; and one that is left alone.
 TEST_P(OverfullDrawing, ComesToItsEndForOneViewAfterAnother)
 {
@@ -257,29 +256,70 @@ TEST_P(OverfullDrawing, ComesToItsEndForOneViewAfterAnother)
   EXPECT_EQ(shown[1].pixels, Draw(frames[1], RoomFor(GetParam(), 0)).rgba.pixels);
 }
 
-/// Paths of two views by turns: what one shows is nothing of the other's.
-TEST_P(OverfullDrawing, ShowsNothingOfAnotherView)
+/// Paths of two views by turns.
+class PathsOfTwoViews : public InAPlace
 {
-  inr::Frame one = Hurried(FullResolution(inr::RenderMode::PathTracing));
-  one.width = 40;
-  one.height = 30;
-  one.paths.ambientLight = glm::vec3(1.0f);
-  inr::Frame other = one;
-  other.clipToWorld[0][0] *= 1.6;
-  other.clipToWorld[1][1] *= 1.6;
-  other.seed = 5;
-  other.view = 1;
+protected:
+  PathsOfTwoViews()
+  {
+    for (inr::Frame& frame : this->frames) {
+      frame.width = 40;
+      frame.height = 30;
+      frame.paths.ambientLight = glm::vec3(1.0f);
+      frame.samplesPerPixel = 2;
+    }
+    this->frames[1].clipToWorld[0][0] *= 1.6;
+    this->frames[1].clipToWorld[1][1] *= 1.6;
+    this->frames[1].seed = 5;
+    this->frames[1].view = 1;
+  }
+
+  std::array<inr::Frame, 2> frames{FullResolution(inr::RenderMode::PathTracing),
+                                   FullResolution(inr::RenderMode::PathTracing)};
+  std::array<inr::Image, 2> shown;
+};
+
+INSTANTIATE_TEST_SUITE_P(Kernels, PathsOfTwoViews, testing::Values(Place::Host, Place::Gpu),
+                         InAPlace::nameOf);
+
+TEST_P(PathsOfTwoViews, ShowNothingOfEachOther)
+{
   inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
-  inr::Image shown;
-  inr::Image others;
-  for (int call = 0; call < 6; ++call) {
-    renderer.render(one, shown);
-    EXPECT_EQ(call > 0 ? PixelsOfBoth(shown, others) : 0, 0) << call;
-    renderer.render(other, others);
-    EXPECT_EQ(PixelsOfBoth(others, shown), 0) << call;
+  for (int call = 0; call < 12; ++call) {
+    const std::size_t k = call % 2;
+    renderer.render(Hurried(this->frames[k]), this->shown[k]);
+    if (call > 0) {
+      EXPECT_EQ(PixelsOfBoth(this->shown[0], this->shown[1]), 0) << call;
+    }
+  }
+  int asked = 0; // once without a limit, but stopped, when the paths of some tiles have ended
+  EXPECT_THROW(
+      renderer.render(this->frames[0], this->shown[0], nullptr, [&] { return ++asked < 4; }),
+      inr::Error);
+  renderer.render(Hurried(this->frames[0]), this->shown[0]);
+  EXPECT_EQ(PixelsOfBoth(this->shown[0], this->shown[1]), 0);
+}
+
+/// Whose calls do not go by the clock, and take a sample to its end.
+TEST_P(PathsOfTwoViews, ComeToTheirEndsWhereTheyAreDeterministic)
+{
+  inr::RendererOptions options = RoomFor(GetParam(), 20);
+  options.deterministic = true;
+  inr::Renderer renderer = RendererOf(options);
+  std::array<bool, 2> complete{};
+  for (int turns = 0; !complete[0] || !complete[1]; ++turns) {
+    ASSERT_LT(turns, 20);
+    for (std::size_t k = 0; k < 2; ++k) {
+      complete[k] = renderer.render(Hurried(this->frames[k]), this->shown[k]).complete;
+    }
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(this->shown[k].pixels, Draw(this->frames[k], RoomFor(GetParam(), 0)).rgba.pixels)
+        << k;
   }
 }
 
+/// Whose samples are as far apart as those of no other: what is made of colours for them goes.
 TEST_P(OverfullDrawing, BeginsAnewBehindOneOfOtherDistances)
 {
   const inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
