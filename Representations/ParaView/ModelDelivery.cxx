@@ -70,17 +70,20 @@ vtkSmartPointer<vtkImageData> ImageOf(const ModelPointer& model, const char* nam
   return image;
 }
 
-/// Longer than the array's own name, so another one.
-constexpr const char* PlacementPrefix = "placement of ";
+/// What an array's placement is called; longer than the array's own name, so another one.
+std::string PlacementName(const std::string& array) { return "placement of " + array; }
 
-/// The first array of a type, as ParaView may put them in another order; null for none.
-template <class Array> Array* FirstOf(vtkPointData* points)
+/// The one that send() has put there, whatever ParaView has added; null for none.
+vtkDoubleArray* FindPlacement(vtkPointData* points)
 {
-  Array* found = nullptr;
-  for (int k = 0; points && !found && k < points->GetNumberOfArrays(); ++k) {
-    found = Array::SafeDownCast(points->GetAbstractArray(k));
+  for (int k = 0; points && k < points->GetNumberOfArrays(); ++k) {
+    auto* array = vtkDoubleArray::SafeDownCast(points->GetAbstractArray(k));
+    const std::string name = array && array->GetName() ? array->GetName() : "";
+    if (name.rfind(PlacementName(""), 0) == 0 && array->GetNumberOfValues() == 15) {
+      return array;
+    }
   }
-  return found;
+  return nullptr;
 }
 
 /// A tuple belongs to a point, and without a cell that is left out.
@@ -111,11 +114,11 @@ void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
     std::copy(bytes.begin(), bytes.end(), this->Bytes->GetPointer(0));
     this->Packed = handle->GetModel();
   }
-  this->Bytes->SetName(array->GetName());
+  const std::string name = array->GetName() ? array->GetName() : "";
+  this->Bytes->SetName(name.c_str());
   const std::array<double, 15> places = PlacementOf(image, *handle);
   vtkNew<vtkDoubleArray> placement;
-  placement->SetName(
-      (PlacementPrefix + std::string(array->GetName() ? array->GetName() : "")).c_str());
+  placement->SetName(PlacementName(name).c_str());
   placement->SetNumberOfComponents(15);
   placement->InsertNextTuple(places.data());
   AddPoint(carrier);
@@ -126,13 +129,15 @@ void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
 vtkImageData* ModelDelivery::receive(vtkPolyData* carrier)
 {
   vtkPointData* const points = carrier ? carrier->GetPointData() : nullptr;
-  auto* bytes = FirstOf<vtkUnsignedCharArray>(points);
-  auto* placement = FirstOf<vtkDoubleArray>(points);
+  vtkDoubleArray* const placement = FindPlacement(points);
+  auto* bytes = placement ? vtkUnsignedCharArray::SafeDownCast(
+                                points->GetArray(placement->GetName() + PlacementName("").size()))
+                          : nullptr;
   if (bytes != this->Bytes || placement != this->Placement) {
     this->Bytes = bytes;
     this->Placement = placement;
     this->Image = nullptr;
-    if (bytes && placement) {
+    if (bytes) {
       const unsigned char* first = bytes->GetPointer(0);
       this->Image = ImageOf(ModelFromBytes({first, first + bytes->GetNumberOfValues()}),
                             bytes->GetName(), placement->GetPointer(0));

@@ -77,9 +77,9 @@ private:
   bool crossSurfaces(CachedRay& state, int sample);
   bool drawSurface(CachedRay& state, float value, int level, double place);
   void clampToRanges();
-  /// Of the first `count` samples.
   /// A sample's value into what its macro-cell may hold; whether by more than the storage rounds.
   bool moveIntoRange(int sample);
+  /// Of the first `count` samples.
   void takeLogarithms(int count);
 
   // Those with batches of their own first: they begin at cache lines.

@@ -69,9 +69,9 @@ struct Frame
   Blending blending; ///< for ray marching; paths know compositing only
   PathOptions paths; ///< for path tracing
   /// Which of the host's views it is for: a picture that a time limit leaves unfinished goes on
-  /// when the same is asked for again for that view, whatever was drawn for a few others in between
-  /// (see PerView); one of rays that the cache cannot hold, if the others' unitDistance, sampling and
-  /// shading are the same. Any number; the picture does not depend on it.
+  /// when the same is asked for again for that view, though others were drawn for a few others in
+  /// between (see PerView) that differ from it in camera and size. An accelerator may begin anew
+  /// behind these. Any number; the picture does not depend on it.
   int view = 0;
   /// Of path tracing: the picture is the mean of so many paths through each pixel, above 0; with a
   /// time limit, of those that were traced in time.
