@@ -238,52 +238,44 @@ TEST_P(BrickLoaderTest, BeginsTogetherWhatIsBestInferredTogether)
   EXPECT_EQ(source->calls, 5); // 3 and 2, twice, and 1
 }
 
-/// A device that fails, upon which the CPU takes over: at any time between two bricks.
-class FailingTogether : public TogetherSource
+/// A device that fails, upon which the CPU takes over, or that comes in: at any time between two
+/// bricks.
+class TogetherAtTimes : public TogetherSource
 {
 public:
-  explicit FailingTogether(int looks) : Left(looks) {}
-  std::int64_t bricksAtOnce() const override { return this->Left-- > 0 ? 3 : 0; }
+  /// For so many looks at it, or from then on.
+  TogetherAtTimes(int looks, bool atFirst) : AtFirst(atFirst), Left(looks) {}
+  std::int64_t bricksAtOnce() const override { return (this->Left-- > 0) == this->AtFirst ? 3 : 0; }
 
 private:
+  bool AtFirst;
   mutable std::atomic<int> Left;
 };
+
+void ExpectAllBricks(const std::shared_ptr<TogetherAtTimes>& source, int threads)
+{
+  inr::BrickLoader loader(source, threads, 100);
+  loader.request(Whole(Bricks(5, 20)));
+  loader.loadFor(Forever);
+  std::vector<inr::BrickKey> keys = Receive(loader);
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(keys, Bricks(5, 20));
+  EXPECT_GT(source->calls, 0);
+}
 
 TEST_P(BrickLoaderTest, ForgetsNothingWhenBricksAreNoLongerInferredTogether)
 {
   for (int looks = 1; looks < 8; ++looks) {
-    const auto source = std::make_shared<FailingTogether>(looks);
-    inr::BrickLoader loader(source, GetParam(), 100);
-    loader.request(Whole(Bricks(5, 20)));
-    loader.loadFor(Forever);
-    std::vector<inr::BrickKey> keys = Receive(loader);
-    std::sort(keys.begin(), keys.end());
-    ASSERT_EQ(keys, Bricks(5, 20)) << looks;
+    SCOPED_TRACE(looks);
+    ExpectAllBricks(std::make_shared<TogetherAtTimes>(looks, true), GetParam());
   }
 }
-
-/// The other way round.
-class SucceedingTogether : public TogetherSource
-{
-public:
-  explicit SucceedingTogether(int looks) : Left(looks) {}
-  std::int64_t bricksAtOnce() const override { return this->Left-- > 0 ? 0 : 3; }
-
-private:
-  mutable std::atomic<int> Left;
-};
 
 TEST_P(BrickLoaderTest, EndsWhatWasBegunInLayersWhenBricksAreInferredTogether)
 {
   for (int looks = 1; looks < 20; ++looks) { // a brick has 8 layers
-    const auto source = std::make_shared<SucceedingTogether>(looks);
-    inr::BrickLoader loader(source, GetParam(), 100);
-    loader.request(Whole(Bricks(5, 20)));
-    loader.loadFor(Forever);
-    std::vector<inr::BrickKey> keys = Receive(loader);
-    std::sort(keys.begin(), keys.end());
-    ASSERT_EQ(keys, Bricks(5, 20)) << looks;
-    ASSERT_GT(source->calls, 0) << looks;
+    SCOPED_TRACE(looks);
+    ExpectAllBricks(std::make_shared<TogetherAtTimes>(looks, false), GetParam());
   }
 }
 
