@@ -103,7 +103,7 @@ void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
 {
   vtkAbstractArray* array = image ? FindModel(image->GetPointData()) : nullptr;
   const vtkINRDataArray* handle = vtkINRDataArray::SafeDownCast(array);
-  if (!handle || !handle->GetModel()) {
+  if (!array || !handle || !handle->GetModel()) {
     return;
   }
   if (handle->GetModel() != this->Packed) {
