@@ -15,19 +15,6 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace {
 
-vtkAbstractArray* FindArray(vtkPointData* points)
-{
-  if (vtkINRDataArray::SafeDownCast(points->GetScalars())) {
-    return points->GetScalars();
-  }
-  for (int k = 0; k < points->GetNumberOfArrays(); ++k) {
-    if (vtkINRDataArray::SafeDownCast(points->GetAbstractArray(k))) {
-      return points->GetAbstractArray(k);
-    }
-  }
-  return nullptr;
-}
-
 /// Distance of the native voxels where the presented points stand as they do in `image`.
 glm::dvec3 SpacingOf(vtkImageData* image, const vtkINRDataArray& source)
 {
@@ -49,7 +36,7 @@ glm::dvec3 SpacingOf(vtkImageData* image, const vtkINRDataArray& source)
 std::optional<NativeGrid> FindNativeGrid(vtkDataObject* data)
 {
   auto* image = vtkImageData::SafeDownCast(data);
-  vtkAbstractArray* array = image ? FindArray(image->GetPointData()) : nullptr;
+  vtkAbstractArray* array = image ? vtkINRDataArray::FindIn(image->GetPointData()) : nullptr;
   if (!array) {
     return std::nullopt;
   }

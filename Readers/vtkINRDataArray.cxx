@@ -5,6 +5,7 @@
 #include "vtkINRTypedArray.h"
 
 #include <vtkImageData.h>
+#include <vtkPointData.h>
 
 #include <string>
 
@@ -33,6 +34,19 @@ GridPart PartOf(const int presentedDims[3], const int extent[6])
 vtkINRDataArray* vtkINRDataArray::SafeDownCast(vtkAbstractArray* array)
 {
   return dynamic_cast<vtkINRDataArray*>(array);
+}
+
+vtkAbstractArray* vtkINRDataArray::FindIn(vtkPointData* points)
+{
+  if (vtkINRDataArray::SafeDownCast(points->GetScalars())) {
+    return points->GetScalars();
+  }
+  for (int k = 0; k < points->GetNumberOfArrays(); ++k) {
+    if (vtkINRDataArray::SafeDownCast(points->GetAbstractArray(k))) {
+      return points->GetAbstractArray(k);
+    }
+  }
+  return nullptr;
 }
 
 void vtkINRDataArray::GetShift(vtkImageData* image, int shift[3]) const

@@ -20,6 +20,7 @@
 class vtkAbstractArray;
 class vtkDataArray;
 class vtkImageData;
+class vtkPointData;
 
 class VTKINRREADERS_EXPORT vtkINRDataArray
 {
@@ -34,6 +35,10 @@ public:
 
   /// The interface of `array`, or null if it is an ordinary array or null.
   static vtkINRDataArray* SafeDownCast(vtkAbstractArray* array);
+
+  /// Of several arrays the one that an INR computes: the active scalars, or else the first one;
+  /// null for none.
+  static vtkAbstractArray* FindIn(vtkPointData* points);
 
   /// An array over the points `extent` (inclusive limits) of a grid that spans the point bounds of
   /// the model's native grid with `presentedDims` points. Nothing is evaluated here. Without a

@@ -34,7 +34,7 @@ public:
       return this->refine(limit, output, keepGoing);
     }
     // Others are looked at in between without a limit, too: see AcceleratedFrames::prove.
-    if (limit.isLimited() && !this->isAwaited(job.frame.view)) {
+    if (limit.isLimited() && !this->letsOtherGoOn(job.frame.view)) {
       this->dropUnfinished();
     }
     const StepLookup steps = this->stepsFor(job);
@@ -102,9 +102,9 @@ private:
     return steps;
   }
 
-  /// Whether another view's picture is to come to its end before one of this view takes its place:
-  /// as long as somebody goes on with it.
-  bool isAwaited(int view)
+  /// For a frame of `view`: whether another view's picture, if there is one, keeps its place to
+  /// come to its end first. Counts these frames, as nobody may go on with it any more.
+  bool letsOtherGoOn(int view)
   {
     constexpr int most = 2 * static_cast<int>(PerView<int>::Most); // views, each shown twice
     return this->Unfinished && this->Unfinished->view != view &&

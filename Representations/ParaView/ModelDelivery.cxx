@@ -22,16 +22,6 @@
 namespace inr {
 namespace {
 
-/// The array that a model computes: the active scalars, or else the first one; null for none.
-vtkAbstractArray* FindModel(vtkPointData* points)
-{
-  vtkAbstractArray* found = points->GetScalars();
-  for (int k = 0; !vtkINRDataArray::SafeDownCast(found) && k < points->GetNumberOfArrays(); ++k) {
-    found = points->GetAbstractArray(k);
-  }
-  return vtkINRDataArray::SafeDownCast(found) ? found : nullptr;
-}
-
 /// Where an image presents a model, which filters may have moved: origin, what is between the first
 /// and the last point along each axis (of one point, its spacing), and the direction matrix by
 /// rows.
@@ -101,7 +91,7 @@ void AddPoint(vtkPolyData* carrier)
 
 void ModelDelivery::send(vtkImageData* image, vtkPolyData* carrier)
 {
-  vtkAbstractArray* array = image ? FindModel(image->GetPointData()) : nullptr;
+  vtkAbstractArray* array = image ? vtkINRDataArray::FindIn(image->GetPointData()) : nullptr;
   const vtkINRDataArray* handle = vtkINRDataArray::SafeDownCast(array);
   if (!array || !handle || !handle->GetModel()) {
     return;
