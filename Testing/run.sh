@@ -5,8 +5,9 @@
 # failed. What a machine cannot run, like the kernels on a GPU, is skipped, and counts as neither:
 # Testing/run_cuda.sh. The wheel has a test of its own, which wants Debian 13: Testing/Wheel/run.sh.
 #
-# Tests of windows and servers wait for other programs, which a busy machine can hold up for longer
-# than they do: those that fail run again by themselves, and the end names those that passed only then.
+# Tests of windows and servers wait for other programs, which a busy machine can hold up for longer than they
+# do, and any program can be the victim of its machine: what fails runs once more, by itself, unless much
+# does. The end names what passed only then, too, and shows what every one of them had printed.
 #
 #   Testing/run.sh [CTEST-OPTION...]     e.g. Testing/run.sh -L core
 set -uo pipefail
@@ -21,6 +22,7 @@ failed=0
 skipped=0
 failures=() # a line each
 seconds=()  # what passed at the second attempt
+printed=""  # by what had failed
 
 # build PRESET: configures and builds; a failure counts as one failed test.
 build() {
@@ -54,8 +56,10 @@ run_tests() {
     skipped=$((skipped + missed))
     mapfile -t names < <(sed -nE '/^The following tests FAILED/,$s/^\s*[0-9]+ - (\S+) .*/\1/p' \
       "$folder/ctest.log")
-    [ ${#names[@]} -eq 0 ] || run_again "$folder" "${names[@]}"
+    : > "$folder/again.log"
+    [ ${#names[@]} -eq 0 ] || [ ${#names[@]} -gt 20 ] || run_again "$folder" "${names[@]}"
     for name in "${names[@]}"; do
+      printed+=$(output_of "$name" "$folder/ctest.log")$'\n'
       if grep -F " $name " "$folder/again.log" | grep -q ' Passed '; then
         passed=$((passed + 1))
         seconds+=("$folder: $name")
@@ -68,14 +72,20 @@ run_tests() {
   fi
 }
 
-# run_again FOLDER NAME...: those of these tests that are of windows and servers, one at a time.
+# output_of NAME LOG: the last of what a test printed, below ctest's line of how it ended.
+output_of() {
+  NAME=$1 awk '/^ *[0-9]+\/[0-9]+ Test +#/ { wanted = index($0, ": " ENVIRON["NAME"] " ") > 0 }
+    /^ +Start +[0-9]+: / || /^[0-9]+% tests passed/ { wanted = 0 }
+    wanted' "$2" | sed '1!s/^/  /' | { IFS= read -r ended; printf '%s\n' "$ended"; tail -n 40; }
+}
+
+# run_again FOLDER NAME...: these tests, one at a time.
 run_again() {
   local folder=$1 names
   shift
   names=$(printf '%s\n' "$@" | sed 's/[].*+?^$()|\[]/\\&/g' | paste -sd '|')
   echo "== Once more, by themselves:"
-  ctest --test-dir "$folder" -R "^($names)\$" -L 'paraview|gui|mpi' --output-on-failure |
-    tee "$folder/again.log"
+  ctest --test-dir "$folder" -R "^($names)\$" --output-on-failure | tee "$folder/again.log"
 }
 
 # Everything: Core, the VTK modules, the plugin in ParaView's own tools and window.
@@ -93,6 +103,7 @@ fi
 # execute the same lines over and over again, and what waits for a GPU, which this build has no code of.
 build asan && run_tests build-asan -L 'core|fuzz' -LE 'long|repeated|gpu' "$@"
 
+[ -z "$printed" ] || printf '== What failed printed:\n%s' "$printed"
 [ "$skipped" -eq 0 ] || echo "== $skipped skipped, as their output says why"
 [ ${#seconds[@]} -eq 0 ] || printf '== passed only at the second attempt: %s\n' "${seconds[@]}"
 [ "$failed" -eq 0 ] || printf '== FAILED: %s\n' "${failures[@]}"
