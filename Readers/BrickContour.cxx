@@ -27,11 +27,10 @@ glm::i64vec3 CornerOf(const glm::i64vec3& cell, int corner)
 
 } // namespace
 
-BrickContour::BrickContour(const ContourBricks::Box& brick, const glm::i64vec3& size,
-                           bool gradients)
-    : Brick(brick), Box(brick), Size(size), Gradients(gradients)
+BrickContour::BrickContour(const ContourBricks::Box& brick, const glm::i64vec3& size, double unit)
+    : Brick(brick), Box(brick), Size(size), Unit(unit)
 {
-  if (gradients) {
+  if (unit > 0) {
     this->Box.first = glm::max(brick.first - std::int64_t{1}, glm::i64vec3(0));
     this->Box.size = glm::min(brick.first + brick.size + std::int64_t{1}, size) - this->Box.first;
   }
@@ -91,7 +90,7 @@ std::int32_t BrickContour::VertexOn(SurfacePatch& patch, double value, const glm
   for (int other = 0; other < 3; ++other) {
     vertex.shared |= other != axis && (local[other] == 0 || local[other] == size[other] - 1);
   }
-  if (this->Gradients) {
+  if (this->Unit > 0) {
     vertex.gradient = glm::mix(this->Gradient(from), this->Gradient(to), t);
   }
   known = static_cast<std::int32_t>(patch.vertices.size());
@@ -108,8 +107,8 @@ glm::dvec3 BrickContour::Gradient(const glm::i64vec3& voxel) const
     glm::i64vec3 after = voxel;
     before[axis] -= voxel[axis] > 0 ? 1 : 0;
     after[axis] += voxel[axis] + 1 < this->Size[axis] ? 1 : 0;
-    gradient[axis] =
-        (this->At(after) - this->At(before)) / static_cast<double>(after[axis] - before[axis]);
+    gradient[axis] = (this->At(after) - this->At(before)) / this->Unit /
+                     static_cast<double>(after[axis] - before[axis]);
   }
   return gradient;
 }

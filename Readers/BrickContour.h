@@ -16,7 +16,7 @@ struct SurfacePatch
     std::uint64_t edge; ///< of the level's grid that the vertex lies on; the same in every brick
     bool shared;        ///< on a face of the brick, so that the next brick may have it, too
     glm::dvec3 place;   ///< in voxels of the level
-    glm::vec3 gradient; ///< of the values, per voxel of the level; unused unless asked for
+    glm::vec3 gradient; ///< of the values, in units per voxel of the level; where asked for
   };
   std::vector<Vertex> vertices;
   std::vector<std::int32_t> triangles; ///< three vertices each
@@ -29,8 +29,9 @@ struct SurfacePatch
 class BrickContour
 {
 public:
-  /// `brick` of a level of `size` voxels.
-  BrickContour(const ContourBricks::Box& brick, const glm::i64vec3& size, bool gradients);
+  /// `brick` of a level of `size` voxels. Gradients are wanted in parts of `unit`, for which single
+  /// precision has to suffice: 0 = not at all.
+  BrickContour(const ContourBricks::Box& brick, const glm::i64vec3& size, double unit);
 
   /// The voxels to set `values` to, x fastest.
   const ContourBricks::Box& GetBox() const { return this->Box; }
@@ -56,6 +57,6 @@ private:
   ContourBricks::Box Brick;
   ContourBricks::Box Box;
   glm::i64vec3 Size;
-  bool Gradients;
+  double Unit;
   std::vector<std::int32_t> VertexOfEdge; ///< -1 where there is none yet
 };

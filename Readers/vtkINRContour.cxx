@@ -46,7 +46,8 @@ public:
   PatchMaker(const inr::ModelPointer& model, const ContourBricks& bricks,
              const std::vector<double>& values, bool gradients)
       : Volume(model->volume), Evaluator(inr::MakeEvaluator(model)),
-        Sampler(*model, bricks.GetLevel()), Bricks(bricks), Values(values), Gradients(gradients)
+        Sampler(*model, bricks.GetLevel()), Bricks(bricks), Values(values),
+        GradientUnit(gradients ? model->volume.high - model->volume.low : 0)
   {}
 
   /// By brick, then by value.
@@ -64,7 +65,7 @@ public:
 private:
   std::vector<SurfacePatch> MakeOne(inr::BrickKey key) const
   {
-    BrickContour brick(this->Bricks.BoxOf(key), this->Bricks.Size(), this->Gradients);
+    BrickContour brick(this->Bricks.BoxOf(key), this->Bricks.Size(), this->GradientUnit);
     for (const float y :
          this->Sampler.Box(*this->Evaluator, brick.GetBox().first, brick.GetBox().size)) {
       brick.values.push_back(inr::ValueOf(this->Volume, y));
@@ -81,7 +82,7 @@ private:
   LevelSampler Sampler;
   const ContourBricks& Bricks;
   const std::vector<double>& Values;
-  bool Gradients;
+  double GradientUnit; ///< no voxels differ by more
   inr::Arena Arena;
 };
 

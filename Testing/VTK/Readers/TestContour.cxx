@@ -430,6 +430,32 @@ TEST_F(Contour, LeavesNormalsOutWhenTold)
   EXPECT_EQ(with, without);
 }
 
+TEST_F(Contour, HasTheNormalsOfAnyRangeOfValues)
+{
+  const auto model = MakeModel({50, 37, 41}, inr::ScalarType::Float64);
+  const auto normalsAt = [&](double width) {
+    model->volume.low = -0.5 * width;
+    model->volume.high = 0.5 * width;
+    this->connect(*model);
+    this->Filter->SetValue(0, 0.0625 * width);
+    vtkSmartPointer<vtkDataArray> normals = this->update()->GetPointData()->GetNormals();
+    return normals;
+  };
+  const auto expected = normalsAt(1.0);
+  ASSERT_GT(expected->GetNumberOfTuples(), 100);
+  for (const double width : {0x1p-1000, 0x1p-150, 0x1p140, 0x1p1023}) {
+    SCOPED_TRACE(width);
+    const auto normals = normalsAt(width);
+    ASSERT_EQ(normals->GetNumberOfTuples(), expected->GetNumberOfTuples());
+    for (vtkIdType k = 0; k < normals->GetNumberOfTuples(); ++k) {
+      glm::dvec3 normal, other;
+      normals->GetTuple(k, &normal.x);
+      expected->GetTuple(k, &other.x);
+      ASSERT_LT(glm::length(normal - other), 1e-2) << k;
+    }
+  }
+}
+
 TEST_F(Contour, TakesDoubleWhereFloatsAreTooCoarse)
 {
   const auto model = MakeModel({50, 37, 41});
