@@ -161,9 +161,12 @@ vtkImageData* UpdateInput(vtkAlgorithm& consumer, const std::function<void(vtkIn
   }
   ask(consumer.GetInputInformation());
   const int port = consumer.GetInputConnection(0, 0)->GetIndex();
+  // Some readers keep the code of a failure before.
+  const unsigned long before = producer ? producer->GetAlgorithm()->GetErrorCode() : 0;
   const bool updated = producer && producer->Update(port) != 0;
   errors.check();
-  if (!updated || producer->GetAlgorithm()->GetErrorCode() != 0) {
+  const unsigned long after = producer ? producer->GetAlgorithm()->GetErrorCode() : 0;
+  if (!updated || (after != 0 && after != before)) {
     throw inr::Error(inr::ErrorCode::CannotRead,
                      "the source failed; what it reported, if anything, says why");
   }

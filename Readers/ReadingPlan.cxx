@@ -2,6 +2,7 @@
 #include "ReadingPlan.h"
 
 #include "Core/Error.h"
+#include "WholeFileReader.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
@@ -120,9 +121,18 @@ ParallelInput ReadingPlan::find(vtkDataObject* data, std::unique_ptr<UpstreamErr
   if (this->Asks != FirstAsked::VoxelToLearn) {
     group.together([&] { errors ? errors->check() : void(); });
   }
-  errors.reset(); // who reads on watches, too
-  vtkDataObject* const found =
-      this->Asks == FirstAsked::All ? data : this->afterProbe(data, failed, group);
+  if (errors) {
+    errors->endWatch(); // who reads on watches
+  }
+  vtkDataObject* found = data;
+  try {
+    found = this->Asks == FirstAsked::All ? data : this->afterProbe(data, failed, group);
+  } catch (const inr::Error&) {
+    if (errors) {
+      errors->show(); // why no voxel came may be why no more do
+    }
+    throw;
+  }
   if (group.size() > 1 && !this->InPieces) {
     return FindPiece(found, this->Whole, find, group);
   }

@@ -92,16 +92,6 @@ std::vector<std::string> SeriesOf(vtkAlgorithm* reader, vtkAlgorithm* consumer)
   return files;
 }
 
-std::string FindWholeFileReader(vtkAlgorithm* algorithm)
-{
-  for (vtkAlgorithm* reader : UpstreamOf(algorithm)) {
-    if (reader->IsA("vtkMetaImageReader")) {
-      return reader->GetClassName();
-    }
-  }
-  return {};
-}
-
 bool ComesFromApplication(vtkAlgorithm* algorithm)
 {
   const std::vector<vtkAlgorithm*> all = UpstreamOf(algorithm);
@@ -144,13 +134,16 @@ void UpstreamErrors::watch(vtkObject* object)
   this->Watched.emplace_back(object, object->AddObserver(vtkCommand::ErrorEvent, keep));
 }
 
-UpstreamErrors::~UpstreamErrors()
+UpstreamErrors::~UpstreamErrors() { this->endWatch(); }
+
+void UpstreamErrors::endWatch()
 {
   for (const auto& [object, tag] : this->Watched) {
     if (object) {
       object->RemoveObserver(tag);
     }
   }
+  this->Watched.clear();
 }
 
 void UpstreamErrors::check() const
@@ -158,11 +151,16 @@ void UpstreamErrors::check() const
   if (this->First.empty()) {
     return;
   }
-  for (const std::string& message : this->Held) {
-    Show(message.c_str());
-  }
+  this->show();
   std::string text = this->First;
   std::replace(text.begin(), text.end(), '\n', ' ');
   text.erase(text.find_last_not_of(' ') + 1);
   throw inr::Error(inr::ErrorCode::CannotRead, "the data could not be read: " + text);
+}
+
+void UpstreamErrors::show() const
+{
+  for (const std::string& message : this->Held) {
+    Show(message.c_str());
+  }
 }

@@ -18,11 +18,6 @@ std::vector<vtkAlgorithm*> UpstreamOf(vtkAlgorithm* algorithm);
 /// any other: none.
 std::vector<std::string> SeriesOf(vtkAlgorithm* reader, vtkAlgorithm* consumer);
 
-/// The class of a reader upstream that must not be asked for a part of its file; empty where there
-/// is none. vtkMetaImageReader says that it gives parts, but writes the whole file into the memory
-/// of the part.
-std::string FindWholeFileReader(vtkAlgorithm* algorithm);
-
 /// Whether what is upstream is an application's data, which has what it has: a simulation's piece
 /// of a grid.
 bool ComesFromApplication(vtkAlgorithm* algorithm);
@@ -40,13 +35,19 @@ public:
   UpstreamErrors(const UpstreamErrors&) = delete;
   UpstreamErrors& operator=(const UpstreamErrors&) = delete;
 
-  /// From now on messages wait for check(), which shows them; without it nobody sees them.
+  /// From now on messages wait for check() or show(); without these nobody sees them.
   void hold() { this->Holds = true; }
+
+  /// What comes from now on is none of its business.
+  void endWatch();
 
   bool any() const { return !this->First.empty(); }
 
   /// Throws inr::Error(CannotRead) with the first of them, if there was one.
   void check() const;
+
+  /// What was held back.
+  void show() const;
 
 private:
   void watch(vtkObject* object);

@@ -8,6 +8,7 @@
 #include "RawFiles.h"
 #include "StopSignals.h"
 #include "TrainingInput.h"
+#include "Upstream.h"
 #include "WriterInternals.h"
 
 #include <vtkAlgorithm.h>
@@ -152,10 +153,16 @@ void vtkINRWriter::WriteStep()
   self.MayProbe = true;
   this->Superclass::Write();
   self.MayProbe = false;
+  std::unique_ptr<UpstreamErrors> whyNoVoxel;
   if (self.Reading.isUnanswered()) { // who cannot give a voxel may give all
+    whyNoVoxel = self.Reading.takeErrors();
+    whyNoVoxel->endWatch();
     this->Superclass::Write();
   }
   if (!self.IsReached) {
+    if (whyNoVoxel) {
+      whyNoVoxel->show();
+    }
     this->Attempt([&] { this->RequireOfAll(false); });
   }
 }

@@ -5,6 +5,7 @@
 #include <vtkDataObject.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
 #include <vtkImageAlgorithm.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
@@ -35,6 +36,7 @@ public:
   bool IsMadeOfRequest = false; ///< all of it, of as much of something else as it is asked for
   int FailingRequest = 0;       ///< by number from 1; 0 = none
   bool FailsFromThere = false;  ///< also afterwards
+  bool SaysSoOnce = false;      ///< afterwards, it fails without a word
   bool OnlyComplains = false;   ///< and succeeds, in place of failing
   int HiddenFrom = 1 << 30;     ///< points of this z and beyond are hidden, and -1000
   int MoreArrays = 0;           ///< besides the one
@@ -74,7 +76,10 @@ protected:
     ++this->Requests;
     if (this->Requests == this->FailingRequest ||
         (this->FailsFromThere && this->Requests > this->FailingRequest)) {
-      vtkErrorMacro("the tape is torn");
+      if (!this->SaysSoOnce || this->Requests == this->FailingRequest) {
+        vtkErrorMacro("the tape is torn");
+      }
+      this->SetErrorCode(vtkErrorCode::UnknownError); // and keeps it, as some readers do
       if (!this->OnlyComplains) {
         return 0;
       }

@@ -292,6 +292,18 @@ TEST_F(Streaming, IsReadAsAWholeWhereAVoxelCannotBeGiven)
   EXPECT_FALSE(std::filesystem::exists(this->path()));
 }
 
+TEST_F(Streaming, SaysWhyThereIsNothingWhereTheFirstAttemptWasToldWhy)
+{
+  this->Source->FailingRequest = 1;
+  this->Source->FailsFromThere = this->Source->SaysSoOnce = true;
+  this->Writer->SetMemoryLimit(200);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_NE(this->Writer->GetErrorCode(), 0u);
+  EXPECT_NE(messages.text().find("the tape is torn"), std::string::npos) << messages.text();
+  EXPECT_EQ(this->Folder.entries(), 0);
+}
+
 TEST_F(Streaming, CanBeAborted)
 {
   vtkNew<vtkCallbackCommand> abort;
