@@ -19,15 +19,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What a path leads to, which need not be there yet. Of links in a circle, one of these.
 std::string FollowLinks(const std::string& path)
 {
-  std::error_code ignored;
-  const fs::path target =
-      fs::is_symlink(path, ignored) ? fs::weakly_canonical(path, ignored) : fs::path(path);
-  return target.empty() ? path : target.string();
+  constexpr int mostLinks = 40; // as Linux follows
+  fs::path target(path);
+  std::error_code problem;
+  for (int k = 0; k < mostLinks && fs::is_symlink(target, problem); ++k) {
+    const fs::path next = fs::read_symlink(target, problem);
+    if (problem) {
+      break;
+    }
+    target = target.parent_path() / next; // which is `next` alone where that is absolute
+  }
+  return target.string();
 }
 
-// Why `target` may not be replaced, as an errno; 0 when it may.
+constexpr int NotOrdinary = -1;
+
+// Why `target` may not be replaced: an errno, or NotOrdinary; 0 when it may.
 int ReasonToRefuse(const std::string& target)
 {
   struct stat status
@@ -39,7 +49,7 @@ int ReasonToRefuse(const std::string& target)
     return EISDIR;
   }
   if (!S_ISREG(status.st_mode)) {
-    return EINVAL;
+    return NotOrdinary;
   }
   return access(target.c_str(), W_OK) == 0 ? 0 : errno;
 }
@@ -183,8 +193,8 @@ void RemoveAbandonedFiles(const std::string& path)
 
 void AtomicFile::fail(int reason) const
 {
-  const std::string text =
-      reason == EINVAL ? "it is not an ordinary file" : std::generic_category().message(reason);
+  const std::string text = reason == NotOrdinary ? "it is not an ordinary file"
+                                                 : std::generic_category().message(reason);
   throw Error(ErrorCode::CannotWrite, "cannot write '" + this->Path + "': " + text);
 }
 

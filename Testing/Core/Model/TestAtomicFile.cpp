@@ -115,10 +115,24 @@ TEST_F(AtomicFileTest, TwoWritersDoNotMeet)
 TEST_F(AtomicFileTest, LinksAreFollowed)
 {
   Write(this->path("real"), "old");
-  fs::create_symlink(this->path("real"), this->path("link"));
+  fs::create_symlink("chain", this->path("link"));
+  fs::create_symlink(this->path("real"), this->path("chain"));
   Write(this->path("link"), "new");
   EXPECT_TRUE(fs::is_symlink(this->path("link")));
   EXPECT_EQ(Read(this->path("real")), "new");
+}
+
+TEST_F(AtomicFileTest, LinksToWhatIsNotThereYetAreFollowed)
+{
+  fs::create_directory(this->Folder / "store");
+  fs::create_symlink("store/chain", this->path("link"));
+  fs::create_symlink("real", this->path("store/chain"));
+  Write(this->path("link"), "new");
+  EXPECT_TRUE(fs::is_symlink(this->path("link")));
+  EXPECT_TRUE(fs::is_symlink(this->path("store/chain")));
+  EXPECT_EQ(Read(this->path("store/real")), "new");
+  fs::create_symlink("circle", this->path("circle"));
+  ExpectRefused(this->path("circle"), "Too many levels of symbolic links");
 }
 
 TEST_F(AtomicFileTest, RefusalsNamePathAndReason)
