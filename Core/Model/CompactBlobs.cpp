@@ -150,7 +150,10 @@ std::int64_t LargestCompactRanges(std::int64_t cells)
   return CompressedBound(PlainRangeBytes(cells), 1);
 }
 
-std::string EncodeQuantised(const Model& model, Packing packing)
+namespace {
+
+// As in the file, before it is packed.
+std::string PlainQuantised(const Model& model, const std::vector<Run>& runs)
 {
   const std::vector<ParameterGroup> groups = ParameterGroups(model.description);
   if (model.steps.size() != groups.size() ||
@@ -161,13 +164,32 @@ std::string EncodeQuantised(const Model& model, Packing packing)
   }
   const std::size_t count = model.parameters.size();
   std::string plain(count * Planes, '\0');
-  const std::vector<Run> runs = RunsOf(model.description);
   ForEachParameter(runs, [&](std::size_t place, std::uint64_t k, std::size_t group) {
     const std::uint16_t code = ZigZag(MultipleOf(model.parameters[k], model.steps[group], k));
     plain[place] = static_cast<char>(code & 0xff);
     plain[count + place] = static_cast<char>(code >> 8);
   });
-  return PackedReadably(plain, BoundariesOf(runs), packing);
+  return plain;
+}
+
+} // namespace
+
+std::string EncodeQuantised(const Model& model, Packing packing)
+{
+  const std::vector<Run> runs = RunsOf(model.description);
+  return PackedReadably(PlainQuantised(model, runs), BoundariesOf(runs), packing);
+}
+
+bool IsReadableQuantised(const Model& model)
+{
+  const std::int64_t bytes = PlainParameterBytes(model.parameters.size());
+  if (MayExpand(0, bytes)) {
+    return true;
+  }
+  const std::vector<Run> runs = RunsOf(model.description);
+  const std::string packed =
+      Compress(PlainQuantised(model, runs), BoundariesOf(runs), Packing::Small);
+  return MayExpand(static_cast<std::int64_t>(packed.size()), bytes);
 }
 
 AlignedVector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,

@@ -27,6 +27,10 @@ std::int64_t LargestCompactRanges(std::int64_t cells);
 /// finite or not within 16 bits of its step, and for steps that are not one for each group.
 std::string EncodeQuantised(const Model& model, Packing packing);
 
+/// Whether a reader will unpack them; not more than 2^27 that are all too equal. Throws as
+/// EncodeQuantised does, and takes as long where there are as many.
+bool IsReadableQuantised(const Model& model);
+
 /// The inverse, for a header with description and (valid) steps.
 AlignedVector<float> DecodeQuantised(const InputFile& file, const Blob& blob, const Model& header,
                                      std::uint32_t& checksum);

@@ -239,7 +239,8 @@ double TrainingLoop::storingLoss() const
   if (this->Options.storedAs != ParameterType::Quantised) {
     return 0.0;
   }
-  return this->Options.targetRatio > 0 ? lossForRatio : QuantiseLimits().loss;
+  const bool fitsRatio = this->Options.targetRatio > 0 && !this->Options.description;
+  return fitsRatio ? lossForRatio : QuantiseLimits().loss;
 }
 
 bool TrainingLoop::reachedTarget(Descent& descent, const PsnrEstimate& estimate,
