@@ -133,7 +133,7 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   options.threads = group.threads();
   options.memoryLimit = group.memoryShare(options.memoryLimit);
   options.start = this->FindStart(given.input.info);
-  this->Internal->Previous = nullptr;
+  this->Internal->Previous = options.start; // also for another attempt, where this one fails
   TrainingCheckpoint checkpoint(this, this->Internal->Target, this->CheckpointInterval,
                                 this->Resume);
   options.checkpoint = checkpoint.options();

@@ -119,6 +119,7 @@ int vtkINRWriter::Write()
   if (this->GetNumberOfInputConnections(0) < 1) {
     return this->Superclass::Write(); // says so
   }
+  const StopSignals signals; // of all steps, and while a source reads, which does not look at them
   Internals& self = *this->Internal;
   this->SetErrorCode(vtkErrorCode::NoError);
   self.Beside.reset();
@@ -184,6 +185,11 @@ bool vtkINRWriter::CheckFiles(const std::vector<int>& steps)
 {
   this->Attempt([&] {
     const ControllerGroup group(this->Internal->Controller);
+    group.together([] {
+      if (StopSignals::Received()) {
+        throw inr::Error(inr::ErrorCode::Cancelled, "stopped before it was read");
+      }
+    });
     vtkInformation* input = this->GetInputInformation();
     const StepsToRead files =
         steps.empty() ? PresentStep(input) : StepsToRead{steps, this->Internal->Steps.available()};

@@ -19,6 +19,8 @@
 #include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <cmath>
+#include <csignal>
+#include <filesystem>
 
 namespace {
 
@@ -103,7 +105,8 @@ public:
   vtkTypeMacro(MovingWaves, vtkImageAlgorithm);
 
   std::vector<double> Times = {0.25, 0.5, 1.5, 2};
-  double BadTime = -1; ///< when there is no array
+  double BadTime = -1;    ///< when there is no array
+  double SignalTime = -1; ///< when the user presses Ctrl-C
 
 protected:
   MovingWaves() { this->SetNumberOfInputPorts(0); }
@@ -130,6 +133,9 @@ protected:
     image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
     if (time == this->BadTime) {
       return 1;
+    }
+    if (time == this->SignalTime) {
+      std::raise(SIGINT);
     }
     vtkNew<vtkDoubleArray> array;
     array->SetName("waves");
@@ -237,6 +243,48 @@ TEST_F(WriterOfSteps, EndsAtAStepThatCannotBeWrittenAndKeepsTheOthers)
   this->Source->Modified();
   EXPECT_EQ(this->Algorithm->Write(), 1); // from the first on
   EXPECT_EQ(this->Folder.entries(), 4);
+}
+
+TEST_F(WriterOfSteps, EndWithOneThatIsStoppedWhileItIsRead)
+{
+  static volatile std::sig_atomic_t received;
+  received = 0;
+  const auto before = std::signal(SIGINT, [](int) { received = 1; });
+  this->Source->SignalTime = 0.5;
+  {
+    const MessageCapture messages;
+    EXPECT_EQ(this->Algorithm->Write(), 0);
+    EXPECT_TRUE(messages.onlyError("stopped")) << messages.text();
+  }
+  EXPECT_EQ(received, 1);
+  std::signal(SIGINT, before);
+  EXPECT_TRUE(std::filesystem::exists(this->Folder / "waves_0.inr"));
+  EXPECT_FALSE(std::filesystem::exists(this->Folder / "waves_1.inr"));
+}
+
+TEST_F(WriterOfSteps, GoOnFromTheStepBeforeWhereOneWasStopped)
+{
+  this->Algorithm->SetWriteTimeSteps(false);
+  const auto write = [&](double time) {
+    this->Source->UpdateTimeStep(time);
+    return this->Algorithm->Write();
+  };
+  ASSERT_EQ(write(0.5), 1);
+  {
+    const MessageCapture messages;
+    vtkNew<vtkCallbackCommand> abort;
+    abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+      vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
+    });
+    const unsigned long tag = this->Algorithm->AddObserver(vtkCommand::ProgressEvent, abort);
+    EXPECT_EQ(write(1.5), 0);
+    this->Algorithm->RemoveObserver(tag);
+    this->Algorithm->SetAbortExecute(0);
+  }
+  const MessageCapture messages;
+  ASSERT_EQ(write(1.5), 1);
+  EXPECT_TRUE(messages.warnings().empty()) << messages.text();
+  EXPECT_EQ(this->header("waves.inr").training->earlierSteps, 20u);
 }
 
 TEST_F(WriterOfSteps, RefusesStepsAndSuffixesThatMakeNoSense)
