@@ -120,8 +120,14 @@ ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
     piece->TransformIndexToPhysicalPoint(whole.extent[0], whole.extent[2], whole.extent[4],
                                          &info.origin.x);
   });
+  const std::string name = info.arrayName;
   ShareInfo(info, group);
   group.together([&] {
+    if (found.input.values && name != info.arrayName) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument,
+                       "the array to be saved is '" + name + "' here and '" + info.arrayName +
+                           "' in the first process; choose one that all processes have");
+    }
     if (found.input.values && found.input.data.type != info.type) {
       throw inr::Error(inr::ErrorCode::InvalidArgument,
                        "array '" + info.arrayName + "' holds " +

@@ -27,6 +27,9 @@ namespace {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using Extent = std::array<int, 6>;
 
+/// Neighbours that a chain of filters looks at; of longer ones that do so hardly any are.
+constexpr int MostMargin = 3;
+
 Extent ExtentOf(const inr::VoxelBox& box, const int* whole)
 {
   Extent extent{};
@@ -35,6 +38,27 @@ Extent ExtentOf(const inr::VoxelBox& box, const int* whole)
     extent[2 * axis + 1] = extent[2 * axis] + static_cast<int>(box.size[axis]) - 1;
   }
   return extent;
+}
+
+Extent Grown(const Extent& extent, int margin, const int* whole)
+{
+  Extent grown{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grown[2 * axis] = std::max(extent[2 * axis] - margin, whole[2 * axis]);
+    grown[2 * axis + 1] = std::min(extent[2 * axis + 1] + margin, whole[2 * axis + 1]);
+  }
+  return grown;
+}
+
+/// One voxel for each filter upstream. Those of VTK's imaging modules ask for what they look at.
+int MarginFor(vtkAlgorithm& consumer)
+{
+  int filters = 0;
+  for (vtkAlgorithm* algorithm : UpstreamOf(&consumer)) {
+    const bool isFilter = algorithm->GetTotalNumberOfInputConnections() > 0;
+    filters += isFilter && !algorithm->IsA("vtkThreadedImageAlgorithm") ? 1 : 0;
+  }
+  return std::min(filters, MostMargin);
 }
 
 std::string ToText(const Extent& extent)
@@ -184,14 +208,19 @@ void ForgetKept(vtkAlgorithm& consumer)
 
 PipelineReader::PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
                                Finder finder, bool afresh)
-    : Consumer(consumer), Whole(whole), Afresh(afresh), Type(finder(&first).data.type),
+    : Consumer(consumer), Whole(whole), Afresh(afresh), Margin(MarginFor(consumer)),
       Bytes(BytesPerVoxel(first)), Find(std::move(finder))
-{}
+{
+  const TrainingInput input = this->Find(&first);
+  this->Type = input.data.type;
+  this->ArrayName = input.info.arrayName;
+}
 
 vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) const
 {
   const Extent extent = ExtentOf(box, this->Whole.extent);
-  const auto ask = [&](vtkInformation* input) { Request(input, extent); };
+  const Extent wanted = Grown(extent, this->Margin, this->Whole.extent);
+  const auto ask = [&](vtkInformation* input) { Request(input, wanted); };
   vtkImageData* image = UpdateInput(this->Consumer, ask, this->Afresh);
   if (StopSignals::Received()) { // what was asked for may have stopped, too
     throw inr::Error(inr::ErrorCode::Cancelled, "stopped while the source was read");
@@ -216,5 +245,10 @@ inr::VolumePiece PipelineReader::read(const inr::VoxelBox& box)
   this->Piece = TrainingInput(); // two pieces need not be in memory
   const vtkSmartPointer<vtkImageData> image = this->request(box);
   this->Piece = this->Find(image);
+  if (this->Piece.info.arrayName != this->ArrayName) {
+    throw inr::Error(inr::ErrorCode::CannotRead,
+                     "the source gave array '" + this->Piece.info.arrayName +
+                         "' where it had given '" + this->ArrayName + "' before; choose one");
+  }
   return {this->Piece.data, box.first};
 }

@@ -7,6 +7,7 @@
 #include <vtkSmartPointer.h>
 
 #include <functional>
+#include <string>
 
 class vtkAlgorithm;
 class vtkImageData;
@@ -52,7 +53,9 @@ public:
   /// Finds what is to be trained on in an image, or throws.
   using Finder = std::function<TrainingInput(vtkImageData*)>;
 
-  /// `first`: a voxel of it, as the source gives it. `afresh`: see UpdateInput.
+  /// `first`: a voxel of it, as the source gives it. `afresh`: see UpdateInput. Where there are
+  /// filters upstream, more is asked for than the boxes, as there are some that look at neighbours
+  /// and do not ask for these themselves.
   PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, vtkImageData& first,
                  Finder finder, bool afresh);
 
@@ -60,7 +63,7 @@ public:
   inr::ScalarType type() const override { return this->Type; }
   std::int64_t bytesPerVoxel() const override { return this->Bytes; }
 
-  /// Throws inr::Error(CannotRead) when the pipeline fails.
+  /// Throws inr::Error(CannotRead) when the pipeline fails, or gives another array than at first.
   inr::VolumePiece read(const inr::VoxelBox& box) override;
 
 private:
@@ -69,7 +72,9 @@ private:
   vtkAlgorithm& Consumer;
   WholeImage Whole;
   bool Afresh;
+  int Margin; ///< voxels around a box that are asked for, too
   inr::ScalarType Type;
+  std::string ArrayName;
   std::int64_t Bytes; ///< per voxel, of all arrays
   Finder Find;
   TrainingInput Piece; ///< keeps the values alive

@@ -13,6 +13,9 @@
 
 namespace {
 
+/// No file has more bytes.
+constexpr double MostBytes = 9e18;
+
 /// Bytes of the values that a reader of one raw file was told of; 0 for any other reader.
 std::uint64_t RawBytes(vtkImageReader2* reader)
 {
@@ -21,15 +24,14 @@ std::uint64_t RawBytes(vtkImageReader2* reader)
   if (!raw || !reader->GetFileName() || reader->GetFileDimensionality() != 3) {
     return 0;
   }
-  std::uint64_t bytes =
-      static_cast<std::uint64_t>(reader->GetNumberOfScalarComponents()) *
-      static_cast<std::uint64_t>(vtkDataArray::GetDataTypeSize(reader->GetDataScalarType()));
+  double bytes = double(reader->GetNumberOfScalarComponents()) *
+                 vtkDataArray::GetDataTypeSize(reader->GetDataScalarType());
   const int* extent = reader->GetDataExtent();
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t voxels = std::int64_t{extent[2 * axis + 1]} - extent[2 * axis] + 1;
-    bytes *= static_cast<std::uint64_t>(std::max<std::int64_t>(voxels, 0));
+    bytes *= static_cast<double>(std::max<std::int64_t>(voxels, 0));
   }
-  return bytes;
+  return static_cast<std::uint64_t>(std::min(bytes, MostBytes)); // exact up to 2^53
 }
 
 std::vector<std::string> FilesOf(vtkImageReader2* reader, const std::vector<std::string>& series,

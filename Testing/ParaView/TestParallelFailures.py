@@ -14,8 +14,9 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 EXTENT = (-12, 13, -11, 12, -9, 10)
 FAILED = "process 1: the source failed"
-# What the first process says where the second one fails.
-TOLD = {"nothing": None, "information": FAILED, "extent": "leave gaps", "data": FAILED}
+# What the first process says where the second one fails, or has an array of its own.
+TOLD = {"nothing": None, "information": FAILED, "extent": "leave gaps", "data": FAILED,
+        "name": "process 1: the array to be saved is 'another' here and 'RTData' in the first process"}
 
 
 def path_of(request):
@@ -42,6 +43,8 @@ class Source(VTKPythonAlgorithmBase):
         wavelet.SetWholeExtent(*EXTENT)
         wavelet.UpdateExtent(info.Get(vtkStreamingDemandDrivenPipeline.UPDATE_EXTENT()))
         vtkImageData.GetData(outputs).ShallowCopy(wavelet.GetOutput())
+        if self.request == "name":
+            vtkImageData.GetData(outputs).GetPointData().GetScalars().SetName("another")
         return int(self.request != "data")
 
 

@@ -39,6 +39,7 @@ public:
   bool SaysSoOnce = false;      ///< afterwards, it fails without a word
   bool OnlyComplains = false;   ///< and succeeds, in place of failing
   int HiddenFrom = 1 << 30;     ///< points of this z and beyond are hidden, and -1000
+  int RenamedFrom = 1 << 30;    ///< requests by number; then the array has another name
   int MoreArrays = 0;           ///< besides the one
   bool TellsOfArrays = false;   ///< of these, too, before it is asked for them
   double Time = 0;              ///< of the last request
@@ -94,7 +95,7 @@ protected:
     image->SetExtent(extent);
     image->AllocateScalars(this->Type, 1);
     vtkDataArray* values = image->GetPointData()->GetScalars();
-    values->SetName("field");
+    values->SetName(this->Requests < this->RenamedFrom ? "field" : "another");
     this->LargestRequest = std::max(this->LargestRequest, values->GetNumberOfTuples());
     for (int k = 0; k < this->MoreArrays; ++k) {
       vtkNew<vtkDoubleArray> other;

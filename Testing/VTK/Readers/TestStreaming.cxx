@@ -8,8 +8,16 @@
 #include "vtkINRWriter.h"
 
 #include <vtkCallbackCommand.h>
+#include <vtkDataArray.h>
+#include <vtkImageAlgorithm.h>
+#include <vtkImageData.h>
 #include <vtkImageShiftScale.h>
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
 #include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <filesystem>
 
@@ -82,6 +90,75 @@ TEST_F(Streaming, GoesThroughFilters)
 }
 
 // The upper half, of most pieces nothing or all.
+namespace {
+
+constexpr double Unknown = 1000;
+
+/// Passes an image of doubles on, with Unknown next to what is, and where a neighbour was not asked
+/// for; asks for no more than it is asked for, as many filters do.
+class NeighbourFilter : public vtkImageAlgorithm
+{
+public:
+  static NeighbourFilter* New() { VTK_STANDARD_NEW_BODY(NeighbourFilter); }
+  vtkTypeMacro(NeighbourFilter, vtkImageAlgorithm);
+
+protected:
+  int RequestData(vtkInformation*, vtkInformationVector** inputs,
+                  vtkInformationVector* outputs) override
+  {
+    int whole[6];
+    inputs[0]->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(),
+                                            whole);
+    auto* input = vtkImageData::GetData(inputs[0]);
+    auto* output = vtkImageData::GetData(outputs);
+    output->DeepCopy(input);
+    const auto* from = static_cast<double*>(input->GetPointData()->GetScalars()->GetVoidPointer(0));
+    auto* to = static_cast<double*>(output->GetPointData()->GetScalars()->GetVoidPointer(0));
+    const int* extent = input->GetExtent();
+    vtkIdType steps[3] = {1, 0, 0};
+    for (int axis = 1; axis < 3; ++axis) {
+      steps[axis] = steps[axis - 1] * (extent[2 * axis - 1] - extent[2 * axis - 2] + 1);
+    }
+    for (vtkIdType k = 0; k < input->GetNumberOfPoints(); ++k) {
+      for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2;
+        const vtkIdType count = extent[2 * axis + 1] - extent[2 * axis] + 1;
+        const bool atFace = k / steps[axis] % count == (face % 2 == 0 ? 0 : count - 1);
+        const vtkIdType step = face % 2 == 0 ? -steps[axis] : steps[axis];
+        if (atFace ? extent[face] != whole[face] : from[k + step] == Unknown) {
+          to[k] = Unknown;
+        }
+      }
+    }
+    return 1;
+  }
+};
+
+} // namespace
+
+TEST_F(Streaming, AsksForTheNeighboursThatFiltersLookAt)
+{
+  vtkNew<NeighbourFilter> first;
+  vtkNew<NeighbourFilter> second;
+  first->SetInputConnection(this->Source->GetOutputPort());
+  second->SetInputConnection(first->GetOutputPort());
+  this->Writer->SetInputConnection(second->GetOutputPort());
+  this->Writer->SetMaximumSteps(2);
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.errors().empty()) << messages.text();
+  EXPECT_LT(inr::ReadModelHeader(this->path()).volume.high, 200);
+}
+
+TEST_F(Streaming, RefusesASourceThatGivesAnotherArray)
+{
+  this->Source->RenamedFrom = 12;
+  const MessageCapture messages;
+  this->Writer->Write();
+  EXPECT_TRUE(messages.onlyError("'another' where it had given 'field'")) << messages.text();
+  EXPECT_FALSE(std::filesystem::exists(this->path()));
+}
+
 TEST_F(Streaming, LeavesOutWhatIsHidden)
 {
   this->Source->HiddenFrom = 80;
