@@ -67,6 +67,16 @@ void RecolourBy(vtkSMPVRepresentationProxy* representation, const char* array)
   }
 }
 
+/// This comes while the view has its data updated, and before these are delivered to who draws:
+/// what was to be delivered is not, where a representation has been changed since.
+void DeliverAnew(vtkSMProxy* representation)
+{
+  if (auto* view = vtkSMViewProxy::SafeDownCast(vtkSMViewProxy::FindView(representation))) {
+    view->MarkDirty(nullptr);
+    view->Update();
+  }
+}
+
 /// Whether it is coloured by a point array that these data do not have.
 bool MissesItsArray(vtkSMPVRepresentationProxy* representation, vtkPVDataInformation* data)
 {
@@ -137,12 +147,19 @@ void INRFollowData(vtkSMProxy* proxy)
   if (!representation || !INRIsShown(proxy)) {
     return;
   }
-  if (!IsKnown(GetDoubles(representation, "INRUnitDistance"))) {
+  auto* unitDistance = GetDoubles(representation, "INRUnitDistance");
+  bool isChanged = false;
+  if (!IsKnown(unitDistance)) {
     INRGiveFirstLook(representation);
+    isChanged = IsKnown(unitDistance);
   }
   vtkPVDataInformation* data = InputInformation(representation);
   const char* array = data ? FirstPointArray(data) : nullptr;
   if (array && MissesItsArray(representation, data)) {
     RecolourBy(representation, array);
+    isChanged = true;
+  }
+  if (isChanged) {
+    DeliverAnew(representation);
   }
 }

@@ -2,11 +2,12 @@
 """Connected to a server, the panel shows what the server's mapper says, for it is the one that draws.
 The argument is the server's port."""
 import os
+import shutil
 import sys
 
 from inrvolume import vtkINRContour, vtkINRReader
 from paraview import simple
-from pvtest import ARRAY, MODEL, check, connect, picture, show_model
+from pvtest import ARRAY, MODEL, Messages, check, connect, look_at, output_file, picture, show_model
 
 connect(sys.argv[1])
 view, display = show_model()
@@ -33,6 +34,32 @@ check(value("Converged") == 0, "what is not drawn has converged")
 simple.ColorBy(display, ("POINTS", ARRAY))
 display.SetScalarBarVisibility(view, False)
 check(abs(picture(view, "server-again") - before).max() < 2.5 / 255, "another picture than before")
+
+# An array with another name, and a file that comes later, whoever draws.
+for threshold in (0, 1e6):
+    late = output_file("late.inr")
+    if os.path.exists(late):
+        os.remove(late)
+    other, shown = show_model()
+    other.RemoteRenderThreshold = threshold
+    expected = picture(other, f"server-named-{threshold}")
+    shown.Input.ArrayName = "renamed"
+    again = picture(other, f"server-renamed-{threshold}")
+    check(shown.ColorArrayName[1] == "renamed", "coloured by", shown.ColorArrayName[1])
+    check(abs(again - expected).max() < 2.5 / 255, "an array's other name shows", abs(again - expected).max())
+    shown.Visibility = 0
+    reader = simple.INRReader(FileName=[late])
+    coming = simple.Show(reader, other)
+    coming.SetRepresentationType("INR Volume")
+    with Messages():
+        simple.Render(other)  # of nothing, and that is said
+    shutil.copy(MODEL, late)
+    simple.ReloadFiles(reader)
+    simple.Render(other)
+    coming.SetScalarBarVisibility(other, False)
+    look_at(other)
+    again = picture(other, f"server-late-{threshold}")
+    check(abs(again - expected).max() < 2.5 / 255, "a file that comes late shows", abs(again - expected).max())
 
 # A new cache, and a picture in a limited time: so many bricks, however fast they come.
 display.BrickSize = 12
