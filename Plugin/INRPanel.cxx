@@ -49,6 +49,11 @@ bool IsOfType(vtkSMProxy* representation, const char* type)
          0;
 }
 
+void CopyToStock(vtkSMProxy* representation, const PanelProperty& property)
+{
+  representation->GetProperty(property.stock)->Copy(representation->GetProperty(property.panel));
+}
+
 } // namespace
 
 bool INRIsShown(vtkSMProxy* representation) { return IsOfType(representation, "INR Volume"); }
@@ -76,11 +81,20 @@ void INRPassOn(vtkSMProxy* representation, const char* changed)
 {
   for (const PanelProperty& property : PanelProperties) {
     if (std::strcmp(changed, property.panel) == 0) {
-      representation->GetProperty(property.stock)
-          ->Copy(representation->GetProperty(property.panel));
+      CopyToStock(representation, property);
       representation->UpdateVTKObjects();
     }
   }
+}
+
+void INRPassAllOn(vtkSMProxy* representation)
+{
+  for (const PanelProperty& property : PanelProperties) {
+    if (std::strcmp(property.panel, "INRUnitDistance") != 0) {
+      CopyToStock(representation, property);
+    }
+  }
+  representation->UpdateVTKObjects();
 }
 
 void INROfferBlendMode(vtkSMProxy* representation)

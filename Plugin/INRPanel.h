@@ -16,6 +16,10 @@ void INRHideSurfaceSettings(vtkSMProxy* representation);
 /// and state files then find the same value under both names.
 void INRPassOn(vtkSMProxy* representation, const char* changed);
 
+/// The same of all that may have been changed while nothing was passed on, as something else was
+/// shown; but for the unit distance, see INRGiveFirstLook.
+void INRPassAllOn(vtkSMProxy* representation);
+
 /// Sets BlendMode, which both kinds of volume share, to Composite where it is one that the panel of
 /// the present kind cannot show. To be called when the one becomes the other.
 void INROfferBlendMode(vtkSMProxy* representation);

@@ -46,9 +46,12 @@ private:
   void changeType(vtkSMProxy* representation)
   {
     const bool isShown = INRIsShown(representation);
+    const bool isLoading = representation->GetSessionProxyManager()->GetInLoadXMLState();
+    if (isShown && !isLoading) {
+      INRPassAllOn(representation);
+    }
     if (isShown || INRIsStockVolume(representation)) {
-      if (isShown != this->WasShown &&
-          !representation->GetSessionProxyManager()->GetInLoadXMLState()) {
+      if (isShown != this->WasShown && !isLoading) {
         INROfferBlendMode(representation);
       }
       this->WasShown = isShown;

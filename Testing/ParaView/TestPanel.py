@@ -115,6 +115,20 @@ check(stock.ScalarOpacityUnitDistance == before, "the plugin changes stock volum
 check(before < 3, "the plugin changes ParaView's default", before)
 simple.Delete(wavelet)
 
+# What the panel's names were set to while something else was shown counts when the volume is.
+reader = simple.INRReader(FileName=MODEL)
+display = simple.Show(reader, view)
+display.SetRepresentationType("Surface")
+display.INRShade = display.INRUseCropping = 1
+display.INRCroppingScale = [0.5, 0.6, 0.7]
+display.INRBlendMode = "Isosurface"
+display.INRIsosurfaceValues = [50]
+display.SetRepresentationType("INR Volume")
+found = display.Shade, display.UseCropping, list(display.CroppingScale), list(display.IsosurfaceValues)
+check(found == (1, 1, [0.5, 0.6, 0.7], [50]) and display.BlendMode == "Isosurface", "set before:", found,
+      display.BlendMode)
+simple.Delete(reader)
+
 # Blend modes that the other kind of volume does not offer are not left to it.
 reader = simple.INRReader(FileName=MODEL)
 display = simple.Show(reader, view)
