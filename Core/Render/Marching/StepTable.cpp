@@ -47,6 +47,37 @@ int Refinement(const ColorLookup& colors, double shortest, double longest)
   return pieces;
 }
 
+/// The mean of the corrected opacity where the transparency of a unit goes from `end` to `begin`.
+double MeanOpacity(double begin, double end, double length)
+{
+  const double power = length + 1.0;
+  return 1.0 - (std::pow(begin, power) - std::pow(end, power)) / (power * (begin - end));
+}
+
+/// What a row whose opacity is above those of its neighbours has to be so that linear
+/// interpolation has the mean of the corrected opacity. The power of a short length leaves an
+/// opacity of 1 with an infinite slope, which no number of rows follows.
+double PeakOpacity(const double (&perUnit)[3], double length)
+{
+  double sum = 0;
+  for (const int side : {0, 2}) {
+    const double mean = MeanOpacity(1.0 - perUnit[side], 1.0 - perUnit[1], length);
+    sum += 2.0 * mean - OpacityOf(perUnit[side], length);
+  }
+  return std::clamp(0.5 * sum, 0.0, OpacityOf(perUnit[1], length));
+}
+
+/// Of rows of all entries but the first and the last.
+void FollowPeaks(const std::vector<glm::vec4>& rows, double length, glm::vec4* corrected)
+{
+  for (std::size_t k = 1; length < 1.0 && k + 1 < rows.size(); ++k) {
+    if (rows[k].w > rows[k - 1].w && rows[k].w > rows[k + 1].w) {
+      corrected[k].w =
+          static_cast<float>(PeakOpacity({rows[k - 1].w, rows[k].w, rows[k + 1].w}, length));
+    }
+  }
+}
+
 glm::vec4 Corrected(const glm::vec4& entry, double length)
 {
   return {entry.x, entry.y, entry.z, static_cast<float>(OpacityOf(entry.w, length))};
@@ -73,15 +104,20 @@ StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
   this->Lookup.scale = colors.logarithmic ? rows : rows * colors.scale;
   this->Lookup.bias = (colors.logarithmic ? 0.0f : rows * colors.bias) + 2.0f;
   this->Entries.reserve(static_cast<std::size_t>(this->Lookup.rows) * lengths);
+  std::vector<glm::vec4> between;
+  for (int k = 0; k < nodes; ++k) {
+    const int cell = std::min(k / pieces, colors.count - 2);
+    const auto weight = static_cast<float>(k - cell * pieces) / static_cast<float>(pieces);
+    between.push_back(glm::mix(colors.entries[cell], colors.entries[cell + 1], weight));
+  }
   for (int number = 0; number < lengths; ++number) {
     const double length = lengthOf(number);
     this->Entries.insert(this->Entries.end(), 2, Corrected(colors.below, length));
-    for (int k = 0; k < nodes; ++k) {
-      const int cell = std::min(k / pieces, colors.count - 2);
-      const auto weight = static_cast<float>(k - cell * pieces) / static_cast<float>(pieces);
-      const glm::vec4 entry = glm::mix(colors.entries[cell], colors.entries[cell + 1], weight);
+    const std::size_t first = this->Entries.size();
+    for (const glm::vec4& entry : between) {
       this->Entries.push_back(Corrected(entry, length));
     }
+    FollowPeaks(between, length, this->Entries.data() + first);
     this->Entries.insert(this->Entries.end(), 2, Corrected(colors.above, length));
   }
   this->Lookup.entries = &this->Entries.data()->x;

@@ -50,6 +50,36 @@ TEST(StepTable, FollowsThePowerBetweenEntries)
   }
 }
 
+// Peaks that reach 1 or almost do, and a plateau, which has to be opaque.
+TEST(StepTable, HasTheMeanOpacityNextToPeaks)
+{
+  for (const float top : {1.0f, 0.99999f, 0.7f}) {
+    inr::TransferFunction function;
+    function.table = {{1, 0, 0, 0}, {0, 1, 0, top}, {0, 0, 1, 0.2f}, {0, 0, 0, 1}, {0, 0, 0, 1}};
+    const inr::ColorTable colors(function, inr::VolumeInfo{});
+    for (const double length : {0.001, 0.02, 0.4, 1.0, 5.0}) {
+      const inr::StepTable table(colors.lookup(), length, 2);
+      for (int number = 0; number < 2; ++number) {
+        const double power = length * static_cast<double>(inr::StepsOf(number));
+        const float rows = table.lookup().scale; // by value
+        double found = 0;
+        double expected = 0;
+        constexpr int samples = 2000;
+        for (int k = 0; k < samples; ++k) { // two rows to either side
+          const float y =
+              0.25f + (static_cast<float>(k) + 0.5f - samples / 2) / samples * 4.0f / rows;
+          found += Read(table.lookup(), y, number).w;
+          const double perUnit = colors.lookup().at(y).w;
+          expected += 1 - std::pow(1 - perUnit, power);
+        }
+        EXPECT_NEAR(found / expected, 1.0, 2e-2) << top << " " << length << " " << number;
+        EXPECT_EQ(Read(table.lookup(), 0.9f, number).w, 1.0f);
+        EXPECT_EQ(Read(table.lookup(), 0.75f, number).w, 1.0f);
+      }
+    }
+  }
+}
+
 TEST(StepTable, StepsAtTheEndsOfTheRange)
 {
   inr::TransferFunction function = UniformMedium(0.5f);
