@@ -66,7 +66,8 @@ void ForEachBlock(const Stored* voxels, const glm::ivec3& dims, const BlockLatti
 
 /// Of stored values of a type, to codes: value = low + step * code or more, by less than a step.
 /// Integers stand for half a quantum less or more, too: where a sample is moved back into the range
-/// of its macro-cell, it is by no more than that.
+/// of its macro-cell, it is by no more than that. What lies outside of `within` counts as its
+/// limit, into which its samples are moved.
 template <typename Stored> struct Coding
 {
   float low;
@@ -90,7 +91,8 @@ template <> struct Coding<float>
   float step;
 
   Coding(const BrickView& brick, const ValueRange& within, std::int64_t voxels)
-      : Coding(With(RangeOfValues(static_cast<const float*>(brick.voxels), voxels), within))
+      : Coding(within.empty() ? RangeOfValues(static_cast<const float*>(brick.voxels), voxels)
+                              : within)
   {}
   explicit Coding(const ValueRange& range)
       : low(range.low), step((range.high - range.low) / 256),
@@ -98,16 +100,10 @@ template <> struct Coding<float>
   {}
   std::uint8_t operator()(float value) const
   {
-    return static_cast<std::uint8_t>(std::min((value - this->low) * this->inverse, 255.0f));
+    return static_cast<std::uint8_t>(std::clamp((value - this->low) * this->inverse, 0.0f, 255.0f));
   }
 
 private:
-  static ValueRange With(ValueRange range, const ValueRange& other)
-  {
-    range.extend(other);
-    return range;
-  }
-
   float inverse;
 };
 

@@ -18,7 +18,7 @@ void Quantise(const float* values, std::int64_t count, float low, float step, un
   const float inverse = InverseOf(step);
   auto* stored = reinterpret_cast<Stored*>(to);
   for (std::int64_t k = 0; k < count; ++k) {
-    stored[k] = Quantised<Stored>(values[k], low, inverse);
+    stored[k] = Quantised<Stored>(values[k] > low ? values[k] : low, low, inverse);
   }
 }
 
@@ -55,8 +55,7 @@ void BrickPool::store(std::int32_t slot, const float* values, const ValueRange& 
     std::memcpy(this->brick(slot), values, static_cast<std::size_t>(this->BytesPerBrick));
     return;
   }
-  ValueRange range = RangeOfValues(values, this->VoxelsPerBrick);
-  range.extend(within);
+  const ValueRange range = within.empty() ? RangeOfValues(values, this->VoxelsPerBrick) : within;
   const bool wide = this->Precision == CachePrecision::Bits16;
   scale = {range.low, StepOf(range.low, range.high, wide ? 65535.0f : 255.0f)};
   const auto quantise = wide ? Quantise<std::uint16_t> : Quantise<std::uint8_t>;

@@ -24,8 +24,9 @@ public:
   /// `slots`: no more than there is room for. The memory of those that go is given back.
   void resize(std::int64_t slots);
   void copy(std::int32_t from, std::int32_t to);
-  /// `values`: voxelsPerBrick finite ones. `within`: what integers divide evenly; where that is
-  /// empty or not wide enough, the range of the values is, or is added.
+  /// `values`: voxelsPerBrick finite ones. `within`: what integers divide evenly, whatever the
+  /// values, which they are moved into; where it is empty, the range of the values is. So the whole
+  /// brick and what of it can be seen are rounded to the same.
   void store(std::int32_t slot, const float* values, const ValueRange& within = {});
   BrickView view(std::int32_t slot) const;
 

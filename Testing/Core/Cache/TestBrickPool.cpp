@@ -58,6 +58,25 @@ TEST(BrickPool, IsOffByHalfAQuantumAtMost)
   EXPECT_GT(LargestError(inr::CachePrecision::Bits8, values), 0.5f / 255 / 4);
 }
 
+// So that what is known of a brick changes no voxel of it.
+TEST(BrickPool, DividesTheRangeThatItIsGivenWhateverTheValues)
+{
+  for (const auto precision : {inr::CachePrecision::Bits16, inr::CachePrecision::Bits8}) {
+    const float quanta = precision == inr::CachePrecision::Bits16 ? 65535 : 255;
+    std::vector<float> values = RandomBrick(0.4f, 0.6f);
+    values[7] = 0.1f;
+    values[8] = 0.9f;
+    inr::BrickPool pool(precision, Voxels, 1);
+    pool.resize(1);
+    pool.store(0, values.data(), {0.25f, 0.75f});
+    EXPECT_EQ(pool.view(0).low, 0.25f);
+    EXPECT_EQ(pool.view(0).step, 0.5f / quanta);
+    EXPECT_EQ(Stored(pool, 0, 7), 0.25f);
+    EXPECT_NEAR(Stored(pool, 0, 8), 0.75f, 1e-6f);
+    EXPECT_NEAR(Stored(pool, 0, 9), values[9], 0.5f / quanta / 2 + 2e-7f);
+  }
+}
+
 TEST(BrickPool, KeepsAConstantBrickExactly)
 {
   const std::vector<float> values(Voxels, 0.3f);
