@@ -53,6 +53,15 @@ Image PaintedWith(const glm::vec3& color, const Image& rgba)
   return Painted(rgba, [&](int, int, float* pixel) { std::copy_n(&color.x, 3, pixel); });
 }
 
+glm::vec3 ColorOfBits(std::uint64_t bits)
+{
+  glm::vec3 color;
+  for (int k = 0; k < 3; ++k) {
+    color[k] = static_cast<float>(bits >> 8 * k & 255) / 255.0f;
+  }
+  return color;
+}
+
 PickedCells::PickedCells(const Image& rgba, const Image& depth, const glm::dmat4& clipToWorld,
                          const PresentedGrid& grid, const glm::dmat4& worldToIndex)
     : Rgba(rgba), Depth(depth)
@@ -91,10 +100,9 @@ std::int64_t PickedCells::cellAt(int x, int y) const
 Image PickedCells::numbers(int shift) const
 {
   return Painted(this->Rgba, [&](int x, int y, float* pixel) {
-    const auto bits = static_cast<std::uint64_t>(this->cellAt(x, y)) >> shift;
-    for (int k = 0; k < 3; ++k) {
-      pixel[k] = static_cast<float>(bits >> 8 * k & 255) / 255.0f;
-    }
+    const auto number = static_cast<std::uint64_t>(this->cellAt(x, y));
+    const glm::vec3 color = ColorOfBits(number >> shift);
+    std::copy_n(&color.x, 3, pixel);
   });
 }
 

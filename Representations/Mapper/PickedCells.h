@@ -15,6 +15,9 @@ namespace inr {
 /// transparent, and empty elsewhere.
 Image PaintedWith(const glm::vec3& color, const Image& rgba);
 
+/// The lowest 24 bits in red, green and blue, as selection buffers have them.
+glm::vec3 ColorOfBits(std::uint64_t bits);
+
 /// Which cells of the grid that stock filters see a picture shows: where a ray's opacity reaches
 /// one half or, where it never does, half way through the volume.
 class PickedCells

@@ -7,11 +7,27 @@
 
 #include <vtkDataObject.h>
 #include <vtkHardwareSelector.h>
+#include <vtkMultiProcessController.h>
 #include <vtkRenderer.h>
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
+
 namespace inr {
+
+namespace {
+
+/// Of this process among those that have pieces, whose cells have the same numbers: from 1 on, as
+/// vtkHardwareSelector has them; 0 where there is only one.
+int NumberOfProcess()
+{
+  auto* controller = vtkMultiProcessController::GetGlobalController();
+  return controller && controller->GetNumberOfProcesses() > 1 ? controller->GetLocalProcessId() + 1
+                                                              : 0;
+}
+
+} // namespace
 
 bool MayBeSelected(vtkRenderer* renderer)
 {
@@ -36,6 +52,12 @@ void MarkForSelection(vtkRenderer* renderer, const Image& rgba, const PickedCell
     break;
   case vtkHardwareSelector::CELL_ID_HIGH24:
     blender.mark(renderer, viewport, cells.numbers(24));
+    break;
+  case vtkHardwareSelector::PROCESS_PASS:
+    if (const int number = NumberOfProcess()) {
+      const auto bits = static_cast<std::uint64_t>(number);
+      blender.mark(renderer, viewport, PaintedWith(ColorOfBits(bits), rgba));
+    }
     break;
   default:
     break;

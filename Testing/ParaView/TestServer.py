@@ -26,6 +26,17 @@ check(value("CacheUsed") > 0, "no cache in use")
 check(value("FrameTime") > 0, "no time taken")
 check(value("BackendInUse").startswith("CPU "), "drawn by", value("BackendInUse"))
 
+# Cells have the same numbers in all pieces: each is selected in its own process alone.
+simple.SetActiveSource(display.Input)
+simple.SelectSurfaceCells(Rectangle=[110, 80, 170, 130], View=view)
+selection = display.Input.GetSelectionInput(0)
+chosen = simple.ExtractSelection(Input=display.Input, Selection=selection)
+chosen.UpdatePipeline()
+selected, extracted = len(selection.Input[0].IDs) // 2, chosen.GetDataInformation().GetNumberOfCells()
+check(selected == extracted > 300, selected, "cells are selected, but", extracted, "extracted")
+simple.Delete(chosen)
+simple.ClearSelection(display.Input)
+
 # Away and back: where several processes have pieces, some volume has to say where these are.
 before = picture(view, "server")
 simple.ColorBy(display, None)  # which no volume can be drawn in
