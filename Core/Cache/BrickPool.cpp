@@ -18,7 +18,7 @@ void Quantise(const float* values, std::int64_t count, float low, float step, un
   const float inverse = InverseOf(step);
   auto* stored = reinterpret_cast<Stored*>(to);
   for (std::int64_t k = 0; k < count; ++k) {
-    stored[k] = Quantised<Stored>(values[k] > low ? values[k] : low, low, inverse);
+    stored[k] = Quantised<Stored>(values[k], low, inverse);
   }
 }
 

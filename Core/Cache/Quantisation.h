@@ -19,14 +19,16 @@ INR_HOST_DEVICE inline float StepOf(float low, float high, float steps)
 
 INR_HOST_DEVICE inline float InverseOf(float step) { return step > 0 ? 1.0f / step : 0.0f; }
 
-/// `Stored`: unsigned.
+/// `Stored`: unsigned. What lies below or above all that integers stand for becomes the first or
+/// the last one.
 template <class Stored>
 INR_HOST_DEVICE inline Stored Quantised(float value, float low, float inverse)
 {
   constexpr auto most = static_cast<float>(static_cast<Stored>(~Stored{0}));
   const float scaled = (value - low) * inverse + 0.5f;
   // By way of int, which vectors convert to.
-  return static_cast<Stored>(static_cast<int>(scaled < most ? scaled : most));
+  const float limited = scaled < most ? scaled : most;
+  return static_cast<Stored>(static_cast<int>(limited > 0.0f ? limited : 0.0f));
 }
 
 } // namespace inr

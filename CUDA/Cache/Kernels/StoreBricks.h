@@ -21,6 +21,7 @@ struct StoreBricks
     float low;
     float high;
     std::uint32_t marked;
+    ValueRange within; ///< of the cells
   };
   static constexpr std::int64_t SharedBytes = Threads * sizeof(Range);
 
@@ -30,7 +31,7 @@ struct StoreBricks
   const float* values; ///< of bricks behind each other
   CacheCounts* counts;
   std::uint32_t* marked; ///< voxels of each brick that are no numbers: Core has to compute them
-  CellTable cells;       ///< normalised; integers divide what the cells of a brick span, too
+  CellTable cells;       ///< normalised; integers divide what those of a brick span
 
   template <class Block> INR_HOST_DEVICE void operator()(Block& block) const
   {
@@ -43,7 +44,9 @@ struct StoreBricks
       const float* const brick = this->values + k * voxels;
       const Range* const range = this->findRange(block, k, brick, voxels);
       block.threads([&](int thread) {
-        const BrickScale scale = this->scaleOf(range->low, range->high);
+        const ValueRange& within = range->within;
+        const BrickScale scale = within.empty() ? this->scaleOf(range->low, range->high)
+                                                : this->scaleOf(within.low, within.high);
         if (thread == 0) {
           this->enter(k, scale, range->marked);
         }
@@ -73,7 +76,10 @@ private:
 
   INR_HOST_DEVICE static Range Joined(const Range& a, const Range& b)
   {
-    return {b.low < a.low ? b.low : a.low, b.high > a.high ? b.high : a.high, a.marked + b.marked};
+    ValueRange within = a.within;
+    within.extend(b.within);
+    return {b.low < a.low ? b.low : a.low, b.high > a.high ? b.high : a.high, a.marked + b.marked,
+            within};
   }
 
   /// Of voxels and cells; of NaNs, if they are all that there is. Phases.
@@ -83,12 +89,13 @@ private:
   {
     Range* const ranges = reinterpret_cast<Range*>(block.shared());
     block.threads([&](int thread) {
-      Range range{values[0], values[0], 0};
+      Range range{values[0], values[0], 0, {}};
       for (std::int64_t voxel = thread; voxel < count; voxel += Threads) {
         const float value = values[voxel];
-        range = Joined(range, {value, value, value != value ? 1u : 0u});
+        range = Joined(range, {value, value, value != value ? 1u : 0u, {}});
       }
-      ranges[thread] = this->withCells(range, k, thread);
+      range.within = this->cellsOf(k, thread);
+      ranges[thread] = range;
     });
     for (int half = Threads / 2; half > 0; half /= 2) {
       block.threads([&](int thread) {
@@ -100,19 +107,17 @@ private:
     return ranges;
   }
 
-  /// A range, and those of a thread's part of the cells that a brick lies in.
-  INR_HOST_DEVICE Range withCells(Range range, std::int64_t k, int thread) const
+  /// The ranges of a thread's part of the cells that a brick lies in.
+  INR_HOST_DEVICE ValueRange cellsOf(std::int64_t k, int thread) const
   {
+    ValueRange range;
     if (this->cells.empty()) {
       return range;
     }
     const BrickId id = IdOf(WantedBricks::KeyOf(this->bricks[k]));
     const CellBox box = CellsOfBrick(this->cells, this->cache.hierarchy, id);
     for (std::int64_t at = thread; at < box.count(); at += Threads) {
-      const ValueRange& cell = this->cells.at(box.at(at));
-      if (!cell.empty()) {
-        range = Joined(range, {cell.low, cell.high, 0});
-      }
+      range.extend(this->cells.at(box.at(at)));
     }
     return range;
   }
