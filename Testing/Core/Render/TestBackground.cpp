@@ -272,7 +272,7 @@ void ExitWhileBricksLoad()
   model->volume.dims = glm::i64vec3(2000);
   inr::RendererOptions options;
   options.cache.bytes = 512 << 20;
-  options.cache.brickSize = 64; // a second's work in all
+  options.cache.brickSize = 40; // a quarter of a second's work in all
   options.cache.preloading = false;
   static auto* renderer = new inr::Renderer(model, options); // nothing of it runs at the end
   renderer->setTransferFunction(Colours(0.0f));
