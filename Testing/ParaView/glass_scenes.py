@@ -15,8 +15,8 @@ def path_of(where, name):
     return f"server-glass-{where}-{name}"
 
 
-def pictures(where):
-    """The view, the volume's display and the pictures by name, which are saved, too."""
+def pictures(where, chosen=None):
+    """The view, the volume's display and the pictures by name, which are saved, too: the chosen ones."""
     result = {}
     view, display = show_model((160, 130))
     glass = show_balls(view)
@@ -26,7 +26,8 @@ def pictures(where):
         ball.DiffuseColor = [0.9, 0.5, 0.2]
 
     def take(name):
-        result[name] = picture(view, path_of(where, name))
+        if chosen is None or name in chosen:
+            result[name] = picture(view, path_of(where, name))
 
     def make_glass(opacity):
         for ball in glass[::2] + glass[3:4]:
