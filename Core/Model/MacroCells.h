@@ -63,8 +63,8 @@ struct MacroCells
            this->apron == other.apron && this->provenance == other.provenance &&
            this->ranges == other.ranges;
   }
-  /// Whether nothing of the field lies outside its cell's range, as far as this program knows: of
-  /// others' files that is only hoped.
+  /// Whether no voxel that was measured lies outside its cell's range: of others' files that is
+  /// only hoped. What lies between these voxels, as those of a ScaledModel do, may leave it.
   bool rangesHold() const { return this->empty() || this->provenance != MacroCellProvenance::File; }
   std::int64_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
   {

@@ -141,7 +141,8 @@ struct Renderer::Implementation
   std::vector<float> Surfaces;            ///< of these pictures
   std::optional<CachedRenderer> Cached;   ///< where there is to be a cache
   std::optional<AcceleratedFrames> Drawn; ///< where there is an accelerator
-  PerView<PathPicture> Paths;             ///< while paths are traced: 64 bytes a pixel each
+  PerView<PathPicture> Paths;             ///< while paths are traced: 64 bytes a pixel
+                                          ///< each, and 20 for each translucent layer
   std::optional<LevelChooser> Levels;     ///< once a frame had a tolerance
   std::int64_t MajorantBuilds = 0;
 };
