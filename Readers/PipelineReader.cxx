@@ -50,13 +50,16 @@ Extent Grown(const Extent& extent, int margin, const int* whole)
   return grown;
 }
 
-/// One voxel for each filter upstream. Those of VTK's imaging modules ask for what they look at.
+/// One voxel for each filter upstream. Those of VTK's imaging modules ask for what they look at,
+/// and what ParaView has behind every source passes image data on.
 int MarginFor(vtkAlgorithm& consumer)
 {
   int filters = 0;
   for (vtkAlgorithm* algorithm : UpstreamOf(&consumer)) {
     const bool isFilter = algorithm->GetTotalNumberOfInputConnections() > 0;
-    filters += isFilter && !algorithm->IsA("vtkThreadedImageAlgorithm") ? 1 : 0;
+    const bool needsNone =
+        algorithm->IsA("vtkThreadedImageAlgorithm") || algorithm->IsA("vtkPVPostFilter");
+    filters += isFilter && !needsNone ? 1 : 0;
   }
   return std::min(filters, MostMargin);
 }
@@ -185,7 +188,7 @@ vtkImageData* UpdateInput(vtkAlgorithm& consumer, const std::function<void(vtkIn
   }
   ask(consumer.GetInputInformation());
   const int port = consumer.GetInputConnection(0, 0)->GetIndex();
-  // Some readers keep the code of a failure before.
+  // Some readers keep the code of a failure before, and report with a new one.
   const unsigned long before = producer ? producer->GetAlgorithm()->GetErrorCode() : 0;
   const bool updated = producer && producer->Update(port) != 0;
   errors.check();

@@ -61,7 +61,12 @@ public:
 
   const glm::i64vec3& dims() const override { return this->Whole.dims; }
   inr::ScalarType type() const override { return this->Type; }
-  std::int64_t bytesPerVoxel() const override { return this->Bytes; }
+  /// Of all arrays; with a margin, a third more for what is left when that is cut off.
+  std::int64_t bytesPerVoxel() const override
+  {
+    return this->Margin > 0 ? (4 * this->Bytes + 2) / 3 : this->Bytes;
+  }
+  int margin() const override { return this->Margin; }
 
   /// Throws inr::Error(CannotRead) when the pipeline fails, or gives another array than at first.
   inr::VolumePiece read(const inr::VoxelBox& box) override;

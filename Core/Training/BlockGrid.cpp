@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/BlockGrid.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,12 +10,13 @@ namespace inr {
 
 namespace {
 
-/// Voxels per axis that interpolation in a box of such edges reads at most.
-std::int64_t VoxelsRead(const glm::i64vec3& dims, const glm::dvec3& edges)
+/// Voxels that interpolation in a box of such edges, and a margin, reads at most.
+std::int64_t VoxelsRead(const glm::i64vec3& dims, const glm::dvec3& edges, int margin)
 {
   std::int64_t voxels = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    voxels *= std::min(dims[axis], static_cast<std::int64_t>(std::ceil(edges[axis])) + 2);
+    voxels *=
+        std::min(dims[axis], static_cast<std::int64_t>(std::ceil(edges[axis])) + 2 + 2 * margin);
   }
   return voxels;
 }
@@ -35,10 +38,11 @@ int NextAxis(const glm::dvec3& edges)
 
 } // namespace
 
-BlockGrid::BlockGrid(const glm::i64vec3& dims, std::int64_t mostVoxels) : Dims(dims)
+BlockGrid::BlockGrid(const glm::i64vec3& dims, std::int64_t mostVoxels, int margin)
+    : Dims(dims), Margin(margin)
 {
   glm::dvec3 edges(dims);
-  while (VoxelsRead(dims, edges) > mostVoxels) {
+  while (VoxelsRead(dims, edges, margin) > mostVoxels) {
     const int axis = NextAxis(edges);
     if (axis < 0) {
       break;
@@ -98,7 +102,11 @@ double BlockGrid::readShare() const
 {
   double voxels = 0;
   for (std::int64_t block = 0; block < this->count(); ++block) {
-    voxels += static_cast<double>(this->voxels(block).voxels());
+    const VoxelBox box = this->voxels(block);
+    const glm::i64vec3 low = glm::max(box.first - std::int64_t{this->Margin}, glm::i64vec3(0));
+    const glm::i64vec3 high = glm::min(box.end() + std::int64_t{this->Margin}, this->Dims);
+    const glm::dvec3 read(high - low);
+    voxels += read.x * read.y * read.z;
   }
   const glm::dvec3 size(this->Dims);
   return voxels / (size.x * size.y * size.z);

@@ -18,8 +18,9 @@ class BlockGrid
 public:
   static constexpr std::int64_t ThinnestBlock = 8;
 
-  /// Blocks of at most `mostVoxels` voxels(), or as near to that as blocks of a voxel are.
-  BlockGrid(const glm::i64vec3& dims, std::int64_t mostVoxels);
+  /// Blocks of at most `mostVoxels` voxels() with a `margin` around them, see VolumeReader, or as
+  /// near to that as blocks of a voxel are.
+  BlockGrid(const glm::i64vec3& dims, std::int64_t mostVoxels, int margin = 0);
 
   const glm::i64vec3& dims() const { return this->Dims; } ///< of the volume
   std::int64_t count() const { return this->Boxes.count(); }
@@ -41,7 +42,7 @@ public:
   /// The voxels that positions in a block are interpolated from: its own and those next to them.
   VoxelBox voxels(std::int64_t block) const;
 
-  /// voxels() of all blocks over the voxels of the volume: 1 and somewhat.
+  /// voxels() of all blocks, with the margin, over the voxels of the volume: 1 and somewhat.
   double readShare() const;
 
 private:
@@ -49,6 +50,7 @@ private:
   std::pair<glm::dvec3, glm::dvec3> edges(std::int64_t block) const;
 
   glm::i64vec3 Dims;
+  int Margin;
   std::vector<int> Axes; ///< of the halvings
   HalvedCube Boxes;
 };

@@ -29,13 +29,13 @@ constexpr double SameValue = 1e-6;
 std::int64_t Voxels(const glm::i64vec3& dims) { return dims.x * dims.y * dims.z; }
 
 /// Blocks of at most so many voxels, and enough of them for each process to have about as many.
-BlockGrid BlocksFor(const glm::i64vec3& dims, std::int64_t mostVoxels, int processes)
+BlockGrid BlocksFor(const VolumeReader& reader, std::int64_t mostVoxels, int processes)
 {
   constexpr std::int64_t enough = 8;
-  BlockGrid blocks(dims, mostVoxels);
+  BlockGrid blocks(reader.dims(), mostVoxels, reader.margin());
   while (processes > 1 && blocks.count() < enough * processes && mostVoxels > 1) {
     mostVoxels /= 2;
-    blocks = BlockGrid(dims, mostVoxels);
+    blocks = BlockGrid(reader.dims(), mostVoxels, reader.margin());
   }
   return blocks;
 }
@@ -75,7 +75,7 @@ StreamedVolume::StreamedVolume(VolumeReader& reader, const StreamBudget& budget,
                                const Arena& arena)
     : Reader(reader), Group(group), Threads(arena), MacroCellSize(macroCellSize),
       Seed(options.seed), MeasuredVoxels(options.measuredVoxels), BlockVoxels(budget.blockVoxels),
-      Blocks(BlocksFor(reader.dims(), budget.blockVoxels, group.size())),
+      Blocks(BlocksFor(reader, budget.blockVoxels, group.size())),
       Share(this->Blocks.count(), group.rank(), group.size()),
       Pool(this->Blocks,
            std::min(budget.poolSamples * this->Blocks.count() / this->Share.mostBlocks,
@@ -136,8 +136,9 @@ SamplePool& StreamedVolume::begin(double rereads)
 double StreamedVolume::mostRereads() const
 {
   const double once = this->Blocks.readShare();
+  const double all = this->Reader.margin() > 0 ? this->measuredBoxes().readShare() : 1.0;
   const double measured = this->measuresAll()
-                              ? 1.0
+                              ? all
                               : static_cast<double>(this->MeasuredVoxels + VoxelsOfBar) /
                                     static_cast<double>(Voxels(this->Reader.dims()));
   return std::clamp((MostReadings - measured - once) / once, 0.0, 1.0);
@@ -299,12 +300,17 @@ void StreamedVolume::measureShare(const BlockGrid& boxes, const std::vector<std:
   }
 }
 
+BlockGrid StreamedVolume::measuredBoxes() const
+{
+  const std::int64_t most = this->measuresAll() ? VoxelsOfMeasuredBlock : VoxelsOfBar;
+  return {this->Reader.dims(), std::min(this->BlockVoxels, most), this->Reader.margin()};
+}
+
 DecodedReport StreamedVolume::measure(const Evaluator& evaluator, const Model& model,
                                       const Progress& progress)
 {
   const bool all = this->measuresAll();
-  const BlockGrid boxes(this->Reader.dims(),
-                        std::min(this->BlockVoxels, all ? VoxelsOfMeasuredBlock : VoxelsOfBar));
+  const BlockGrid boxes = this->measuredBoxes();
   const double share =
       static_cast<double>(this->MeasuredVoxels) / static_cast<double>(Voxels(this->Reader.dims()));
   const std::int64_t count =

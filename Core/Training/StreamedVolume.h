@@ -70,6 +70,7 @@ public:
 
 private:
   bool measuresAll() const;
+  BlockGrid measuredBoxes() const;
   VolumePiece read(const VoxelBox& box);
   void requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const;
   void readNothing();

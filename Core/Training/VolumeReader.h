@@ -22,6 +22,9 @@ public:
     return static_cast<std::int64_t>(ScalarSize(this->type()));
   }
 
+  /// Voxels around a box that read() asks its source for, too, where the volume has these.
+  virtual int margin() const { return 0; }
+
   /// The voxels of a box within the volume, good until the next call. Called by one thread, the
   /// one that asked for the training. Throws what the application has to say when it fails.
   virtual VolumePiece read(const VoxelBox& box) = 0;

@@ -66,6 +66,27 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Blocks,
                                          Case{{5, 3, 2}, 1000}, Case{{129, 65, 33}, 9000}),
                          testing::PrintToStringParamName());
 
+TEST(BlockGrid, LeavesRoomForAMargin)
+{
+  const glm::i64vec3 dims(500, 400, 300);
+  const inr::BlockGrid plain(dims, 1 << 20);
+  const inr::BlockGrid grid(dims, 1 << 20, 3);
+  double read = 0;
+  for (std::int64_t block = 0; block < grid.count(); ++block) {
+    const inr::VoxelBox box = grid.voxels(block);
+    std::int64_t voxels = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      voxels *= std::min(box.end()[axis] + 3, dims[axis]) -
+                std::max<std::int64_t>(box.first[axis] - 3, 0);
+    }
+    EXPECT_LE(voxels, 1 << 20);
+    read += static_cast<double>(voxels);
+  }
+  EXPECT_GT(grid.count(), plain.count());
+  EXPECT_NEAR(grid.readShare(), read / (500.0 * 400 * 300), 1e-9);
+  EXPECT_GT(grid.readShare(), plain.readShare());
+}
+
 // What lies together in a file is read together, and little is read twice.
 TEST(BlockGrid, KeepsRowsWhole)
 {

@@ -89,7 +89,6 @@ TEST_F(Streaming, GoesThroughFilters)
   EXPECT_GT(this->Writer->GetPSNR(), 30);
 }
 
-// The upper half, of most pieces nothing or all.
 namespace {
 
 constexpr double Unknown = 1000;
@@ -148,6 +147,8 @@ TEST_F(Streaming, AsksForTheNeighboursThatFiltersLookAt)
   this->Writer->Write();
   EXPECT_TRUE(messages.errors().empty()) << messages.text();
   EXPECT_LT(inr::ReadModelHeader(this->path()).volume.high, 200);
+  EXPECT_GT(this->Source->Requests, 20);
+  EXPECT_LE(8 * this->Source->LargestRequest, 8 * MiB);
 }
 
 TEST_F(Streaming, RefusesASourceThatGivesAnotherArray)
@@ -159,6 +160,7 @@ TEST_F(Streaming, RefusesASourceThatGivesAnotherArray)
   EXPECT_FALSE(std::filesystem::exists(this->path()));
 }
 
+// The upper half, of most pieces nothing or all.
 TEST_F(Streaming, LeavesOutWhatIsHidden)
 {
   this->Source->HiddenFrom = 80;
