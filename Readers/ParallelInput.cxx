@@ -74,6 +74,18 @@ void ShareInfo(inr::VolumeInfo& info, const ControllerGroup& group)
 
 } // namespace
 
+void RequireOneArray(const std::string& name, const ControllerGroup& group)
+{
+  const std::string first = group.fromFirst(name);
+  group.together([&] {
+    if (name != first) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument,
+                       "the array to be saved is '" + name + "' here and '" + first +
+                           "' in the first process; choose one that all processes have");
+    }
+  });
+}
+
 bool IsPieceInMemory(vtkInformation* input, const WholeImage& whole, const ControllerGroup& group)
 {
   auto* image = vtkImageData::SafeDownCast(input->Get(vtkDataObject::DATA_OBJECT()));
@@ -120,14 +132,10 @@ ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
     piece->TransformIndexToPhysicalPoint(whole.extent[0], whole.extent[2], whole.extent[4],
                                          &info.origin.x);
   });
-  const std::string name = info.arrayName;
+  const std::string first = group.fromFirst(info.arrayName);
+  RequireOneArray(found.input.values ? info.arrayName : first, group);
   ShareInfo(info, group);
   group.together([&] {
-    if (found.input.values && name != info.arrayName) {
-      throw inr::Error(inr::ErrorCode::InvalidArgument,
-                       "the array to be saved is '" + name + "' here and '" + info.arrayName +
-                           "' in the first process; choose one that all processes have");
-    }
     if (found.input.values && found.input.data.type != info.type) {
       throw inr::Error(inr::ErrorCode::InvalidArgument,
                        "array '" + info.arrayName + "' holds " +

@@ -6,6 +6,7 @@
 #include "TrainingInput.h"
 
 #include <functional>
+#include <string>
 
 class vtkDataObject;
 class vtkInformation;
@@ -17,6 +18,10 @@ bool IsPieceInMemory(vtkInformation* input, const WholeImage& whole, const Contr
 /// group; or, if it must not be asked for parts, for all of it.
 void RequestPiece(vtkInformation* input, const WholeImage& whole, bool inParts,
                   const ControllerGroup& group);
+
+/// Throws inr::Error(InvalidArgument) in all processes where one has found an array of another name
+/// than the first one has.
+void RequireOneArray(const std::string& name, const ControllerGroup& group);
 
 /// What a process trains on: in a group, its piece.
 struct ParallelInput

@@ -36,7 +36,8 @@ ReadingPlan::ReadingPlan(vtkAlgorithm* consumer, vtkInformation* input, std::int
                      ? this->Whole.isInMemory
                      : IsPieceInMemory(input, this->Whole, group) || ComesFromApplication(consumer);
   this->Problem = FindFileProblem(consumer, input, {}, true, group);
-  const std::string wholeReader = FindWholeFileReader(consumer);
+  // Processes that see other files, as those of others are written, must not part.
+  const std::string wholeReader = group.firstOf(FindWholeFileReader(consumer));
   const bool isLarge = this->isTooLarge(this->Whole.bytes, group);
   this->InParts = wholeReader.empty();
   this->WholeReader = isLarge && !this->InParts ? wholeReader + ", the source" : "";
@@ -138,5 +139,6 @@ ParallelInput ReadingPlan::find(vtkDataObject* data, std::unique_ptr<UpstreamErr
   }
   ParallelInput input;
   group.together([&] { input.input = find(found); });
+  RequireOneArray(input.input.info.arrayName, group);
   return input;
 }

@@ -12,11 +12,13 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
-EXTENT = (-12, 13, -11, 12, -9, 10)
+SMALL = (-12, 13, -11, 12, -9, 10)
+LARGE = (0, 99, 0, 99, 0, 99)  # 4 MiB: more than is held of it where MemoryLimit is 1
 FAILED = "process 1: the source failed"
 # What the first process says where the second one fails, or has an array of its own.
-TOLD = {"nothing": None, "information": FAILED, "extent": "leave gaps", "data": FAILED,
-        "name": "process 1: the array to be saved is 'another' here and 'RTData' in the first process"}
+NAME = "process 1: the array to be saved is 'another' here and 'RTData' in the first process"
+TOLD = {"nothing": None, "information": FAILED, "extent": "leave gaps", "data": FAILED, "name": NAME,
+        "name in pieces": NAME}
 
 
 def path_of(request):
@@ -29,21 +31,22 @@ class Source(VTKPythonAlgorithmBase):
     def __init__(self, request):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkImageData")
         self.request = request if rank == 1 else ""
+        self.extent = LARGE if request == "name in pieces" else SMALL
 
     def RequestInformation(self, request, inputs, outputs):
         if self.request != "extent":
             info = outputs.GetInformationObject(0)
-            info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), EXTENT, 6)
+            info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), self.extent, 6)
             info.Set(self.CAN_PRODUCE_SUB_EXTENT(), 1)
         return int(self.request != "information")
 
     def RequestData(self, request, inputs, outputs):
         info = outputs.GetInformationObject(0)
         wavelet = vtkRTAnalyticSource()
-        wavelet.SetWholeExtent(*EXTENT)
+        wavelet.SetWholeExtent(*self.extent)
         wavelet.UpdateExtent(info.Get(vtkStreamingDemandDrivenPipeline.UPDATE_EXTENT()))
         vtkImageData.GetData(outputs).ShallowCopy(wavelet.GetOutput())
-        if self.request == "name":
+        if self.request.startswith("name"):
             vtkImageData.GetData(outputs).GetPointData().GetScalars().SetName("another")
         return int(self.request != "data")
 
@@ -64,6 +67,7 @@ if sys.argv[1] == "write":
         writer.SetInputConnection(source.GetOutputPort())
         writer.SetFileName(path)
         writer.SetMaximumSteps(5)
+        writer.SetMemoryLimit(1 if request == "name in pieces" else 0)
         with Messages() as messages:
             wrote = writer.Write()
         check(wrote == int(told is None), rank, "returned", wrote, "for", request)
