@@ -67,7 +67,7 @@ void ForEachBlock(const Stored* voxels, const glm::ivec3& dims, const BlockLatti
 /// Of stored values of a type, to codes: value = low + step * code or more, by less than a step.
 /// Integers stand for half a quantum less or more, too: where a sample is moved back into the range
 /// of its macro-cell, it is by no more than that. What lies outside of `within` counts as its
-/// limit, into which its samples are moved.
+/// limit.
 template <typename Stored> struct Coding
 {
   float low;

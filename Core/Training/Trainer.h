@@ -36,8 +36,9 @@ struct TrainingOptions
   /// same, that is, if it has the same description; null = random ones.
   ModelPointer start;
   /// Quantised costs 0.1 dB at most, as estimated on more random voxels, but more where targetRatio
-  /// takes it. Half instead where steps cannot be that fine or too few of these voxels are finite,
-  /// and Float where a half cannot hold a parameter.
+  /// takes it. Half instead where steps cannot be that fine, too few of these voxels are finite, or
+  /// more than 2^27 parameters are so equal that no reader would unpack them, and Float where a
+  /// half cannot hold a parameter.
   ParameterType storedAs = ParameterType::Quantised;
   /// Bytes that training from a VolumeReader may take, all in all.
   std::int64_t memoryLimit = std::int64_t{1} << 30;

@@ -296,15 +296,11 @@ std::shared_ptr<Model> TrainingRun::store(const PsnrEstimate& estimate)
   if (this->Steps) {
     this->Result.parameters = this->Steps->parameters();
   }
-  // Numbers may turn out so equal that a reader refuses to unpack as many.
-  const bool mayPack = MayExpand(
-      0, PlainRangeBytes(static_cast<std::int64_t>(this->Result.macroCells.ranges.size())));
-  if (this->Options.storedAs == ParameterType::Quantised && !mayPack) {
-    this->Result.storedAs = ParameterType::Half;
-  } else if (this->Options.storedAs == ParameterType::Quantised) {
+  if (this->Options.storedAs == ParameterType::Quantised) {
     const double ratio = this->Options.description ? 0.0 : this->Options.targetRatio;
     Quantise(this->Result, estimate, EvaluateKernelFor(this->Set),
              LimitsForRatio(this->Result, ratio), this->storingCheck());
+    // So many may turn out so equal that no reader would unpack them.
     if (this->Result.storedAs == ParameterType::Quantised && !IsReadableQuantised(this->Result)) {
       this->Result.storedAs = ParameterType::Half;
       this->Result.steps.clear();

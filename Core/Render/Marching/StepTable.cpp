@@ -12,6 +12,7 @@ namespace inr {
 namespace {
 
 constexpr int MaximumRows = 1 << 14;
+constexpr float SteepFrom = 0.5f;  // opacity of a unit; rows follow what is below
 constexpr double Tolerance = 2e-4; // of a sample's opacity: errors of a ray's samples add up
 
 double OpacityOf(double perUnit, double length)
@@ -71,7 +72,7 @@ double PeakOpacity(const double (&perUnit)[3], double length)
 void FollowPeaks(const std::vector<glm::vec4>& rows, double length, glm::vec4* corrected)
 {
   for (std::size_t k = 1; length < 1.0 && k + 1 < rows.size(); ++k) {
-    if (rows[k].w > rows[k - 1].w && rows[k].w > rows[k + 1].w) {
+    if (rows[k].w > SteepFrom && rows[k].w > rows[k - 1].w && rows[k].w > rows[k + 1].w) {
       corrected[k].w =
           static_cast<float>(PeakOpacity({rows[k - 1].w, rows[k].w, rows[k + 1].w}, length));
     }

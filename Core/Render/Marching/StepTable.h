@@ -27,8 +27,9 @@ int SampleLengths(int levels);
 
 /// A colour table with its opacities corrected for samples of 1, 3, 2, 6, ... steps:
 /// 1 - (1 - opacity)^length. Between the entries of the colour table as many are put as linear
-/// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows. Next to a peak of
-/// opacity near 1, which short samples leave more steeply than rows can follow, the mean is right.
+/// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows. A peak of opacity
+/// near 1, which short samples leave more steeply than rows can follow, is lowered so that the mean
+/// is right there. Not so the ends of the table and of plateaus: these are opaque.
 class StepTable
 {
 public:
