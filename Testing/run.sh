@@ -7,7 +7,8 @@
 #
 # Tests of windows and servers wait for other programs, which a busy machine can hold up for longer than they
 # do, and any program can be the victim of its machine: what fails runs once more, by itself, unless much
-# does. The end names what passed only then, too, and shows what every one of them had printed.
+# does. The end names what passed only then, too, and shows the end of
+# what each of them had printed.
 #
 #   Testing/run.sh [CTEST-OPTION...]     e.g. Testing/run.sh -L core
 set -uo pipefail
@@ -57,7 +58,8 @@ run_tests() {
     mapfile -t names < <(sed -nE '/^The following tests FAILED/,$s/^\s*[0-9]+ - (\S+) .*/\1/p' \
       "$folder/ctest.log")
     : > "$folder/again.log"
-    [ ${#names[@]} -eq 0 ] || [ ${#names[@]} -gt 20 ] || run_again "$folder" "${names[@]}"
+    [ ${#names[@]} -eq "${BASH_REMATCH[1]}" ] || fail "$folder: not all that failed have a name"
+    [ ${#names[@]} -eq 0 ] || [ ${#names[@]} -gt 5 ] || run_again "$folder" "${names[@]}"
     for name in "${names[@]}"; do
       printed+=$(output_of "$name" "$folder/ctest.log")$'\n'
       if grep -F " $name " "$folder/again.log" | grep -q ' Passed '; then

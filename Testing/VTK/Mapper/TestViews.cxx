@@ -300,7 +300,7 @@ TEST(Views, GoOnInPiecesBehindOneThatIsFinished)
   IdleWindow idle;
   AddViewports(idle.one, idle.watch, 2);
   idle.one.renderer->GetActiveCamera()->Yaw(180); // sees nothing
-  idle.one.mapper->SetSamplesPerPixel(400);
+  idle.one.mapper->SetSamplesPerPixel(4000);      // a second's work, or more
   idle.one.scene.window->Render();
   idle.one.mapper->SetStillTimeLimit(60);
   int renders = 0;
