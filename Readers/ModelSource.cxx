@@ -70,9 +70,8 @@ const inr::ModelPointer& ModelSource::Model()
 {
   if (!this->Loaded) {
     inr::ModelPointer loaded = inr::ReadModel(this->Path, this->Overrides);
-    // What was told of it is the header's, of an earlier reading.
-    if (!IsSameVolume(loaded->volume, this->Header().volume) ||
-        !(StampOf(this->Path) == this->File)) {
+    // What was told of the grid and its values is the header's, of an earlier reading.
+    if (!IsSameVolume(loaded->volume, this->Header().volume)) {
       throw inr::Error(inr::ErrorCode::CannotRead, "'" + this->Path +
                                                        "' has become another file while it was "
                                                        "being opened; open it again");

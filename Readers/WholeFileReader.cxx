@@ -9,14 +9,15 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <vector>
 
 namespace {
 
 /// Whether a NRRD file's values stand in a file as they are in memory, by its header:
 /// https://teem.sourceforge.net/nrrd/format.html#encoding
-bool IsRawNrrd(const char* path)
+bool IsRawNrrd(const std::string& path)
 {
-  std::ifstream file(path ? path : "", std::ios::binary);
+  std::ifstream file(path, std::ios::binary);
   char buffer[4096]; // what has no lines has no header
   while (file.getline(buffer, sizeof buffer)) {
     std::string line(buffer);
@@ -35,11 +36,16 @@ bool IsRawNrrd(const char* path)
   return false;
 }
 
-bool GivesWholeFiles(vtkAlgorithm* algorithm)
+/// `consumer`: that it reads for.
+bool GivesWholeFiles(vtkAlgorithm* algorithm, vtkAlgorithm* consumer)
 {
   auto* reader = vtkImageReader2::SafeDownCast(algorithm);
   if (reader && reader->IsA("vtkNrrdReader")) {
-    return !IsRawNrrd(reader->GetFileName());
+    std::vector<std::string> files = SeriesOf(reader, consumer);
+    if (files.empty() && reader->GetFileName()) {
+      files.emplace_back(reader->GetFileName());
+    }
+    return !std::all_of(files.begin(), files.end(), IsRawNrrd);
   }
   return reader && (reader->IsA("vtkMetaImageReader") || reader->IsA("vtkDICOMImageReader") ||
                     reader->IsA("vtkTGAReader"));
@@ -50,7 +56,7 @@ bool GivesWholeFiles(vtkAlgorithm* algorithm)
 std::string FindWholeFileReader(vtkAlgorithm* algorithm)
 {
   for (vtkAlgorithm* reader : UpstreamOf(algorithm)) {
-    if (GivesWholeFiles(reader)) {
+    if (GivesWholeFiles(reader, algorithm)) {
       return reader->GetClassName();
     }
   }

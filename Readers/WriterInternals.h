@@ -31,5 +31,6 @@ public:
   bool ShowsHidden = false; ///< of the file in work; see TrainingInput
   /// Of this Write; null = not looked for. Who trains has it, too: Backend may be set meanwhile.
   std::shared_ptr<TrainingBackend> Beside;
-  inr::ModelPointer Previous; ///< what was written last, if it is of a time step
+  /// What was written last, if it is of a time step; while one is trained, what that began with.
+  inr::ModelPointer Previous;
 };

@@ -18,8 +18,9 @@
  *
  * Progress events tell the truth. AbortExecute, SIGINT and SIGTERM stop the training; then, as
  * after any error, no model file is left behind, but a checkpoint (FileName + ".checkpoint"), from
- * which the next Write of the same data with the same settings goes on to the same model (of
- * VTK 9.2, AbortExecute has to be taken back before). So it does after the process was killed, from
+ * which the next Write of the same data with the same settings goes on to the same model (with
+ * VTK 9.2, call SetAbortExecute(0) before). A signal that comes while a source reads counts when
+ * that has come back; a second one ends the process. So it does after the process was killed, from
  * the checkpoint that was written before. When the model is written, the checkpoint is removed.
  */
 #ifndef vtkINRWriter_h
