@@ -24,7 +24,7 @@ std::uint64_t RawBytes(vtkImageReader2* reader)
   if (!raw || !reader->GetFileName() || reader->GetFileDimensionality() != 3) {
     return 0;
   }
-  double bytes = double(reader->GetNumberOfScalarComponents()) *
+  double bytes = static_cast<double>(reader->GetNumberOfScalarComponents()) *
                  vtkDataArray::GetDataTypeSize(reader->GetDataScalarType());
   const int* extent = reader->GetDataExtent();
   for (int axis = 0; axis < 3; ++axis) {

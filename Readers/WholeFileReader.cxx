@@ -13,8 +13,8 @@
 
 namespace {
 
-/// Whether a NRRD file's values stand in a file as they are in memory, by its header:
-/// https://teem.sourceforge.net/nrrd/format.html#encoding
+/// Whether a NRRD file's values stand in a file as they are in memory, by its header
+/// (field `encoding` of the format).
 bool IsRawNrrd(const std::string& path)
 {
   std::ifstream file(path, std::ios::binary);

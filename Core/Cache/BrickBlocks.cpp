@@ -20,8 +20,8 @@ constexpr float Margin = 0x1p-12f;
 template <typename Stored> struct RowExtremes
 {
   static constexpr int MostVoxels = Hierarchy::LargestBrick;
-  Stored low[MostVoxels];
-  Stored high[MostVoxels];
+  Stored low[MostVoxels] = {};
+  Stored high[MostVoxels] = {};
 
   void begin(const Stored* row, int count)
   {
