@@ -76,6 +76,9 @@ ModelPointer ScaledModel(const ModelPointer& model, double factor)
   if (factor < 1 && !scaled->macroCells.empty()) {
     scaled->macroCells = WidenedFor(volume, std::move(scaled->macroCells));
   }
+  if (factor > 1) { // what lies between the voxels that were measured, nobody has looked at
+    scaled->macroCells.provenance = MacroCellProvenance::File;
+  }
   scaled->nativeDims = model->nativeDims.value_or(model->volume.dims);
   scaled->volume = std::move(volume);
   return scaled;

@@ -12,8 +12,9 @@ namespace inr {
 /// factor and for more voxels than a volume can have.
 VolumeInfo ScaledVolume(const VolumeInfo& volume, double factor);
 
-/// The same network asked for the values of such a grid; `model` itself where the factor is 1. The
-/// ranges of its macro-cells hold for samples between the new voxels too. Throws like ScaledVolume.
+/// The same network asked for the values of such a grid; `model` itself where the factor is 1. Of a
+/// coarser grid the ranges of the macro-cells hold for samples between the new voxels, too; of a
+/// finer one that is only hoped (MacroCells::rangesHold). Throws like ScaledVolume.
 ModelPointer ScaledModel(const ModelPointer& model, double factor);
 
 } // namespace inr

@@ -43,6 +43,19 @@ TEST(ScaledModel, KeepsSlabs)
   }
 }
 
+// Nobody has looked at what lies between native voxels, which those of a finer grid show.
+TEST(ScaledModel, KnowsWhetherItsRangesHold)
+{
+  auto model = RandomModel(SmallDescription());
+  model->volume = Volume({40, 40, 40});
+  model->macroCells = inr::MakeMacroCells(model->volume.dims, 8);
+  model->macroCells.provenance = inr::MacroCellProvenance::Decoded;
+  EXPECT_TRUE(inr::ScaledModel(model, 1)->macroCells.rangesHold());
+  EXPECT_TRUE(inr::ScaledModel(model, 0.5)->macroCells.rangesHold());
+  EXPECT_FALSE(inr::ScaledModel(model, 1.25)->macroCells.rangesHold());
+  EXPECT_TRUE(model->macroCells.rangesHold());
+}
+
 /// Of as many voxels, 16 * 2^(levels - 1) points of the finest lattice.
 inr::ModelPointer ModelOf(const glm::i64vec3& dims, int levels)
 {
