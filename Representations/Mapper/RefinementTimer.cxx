@@ -7,6 +7,7 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 
+#include <memory>
 #include <utility>
 
 namespace inr {
@@ -17,7 +18,8 @@ constexpr double Patience = 0.2; ///< seconds until a busy application is asked 
 constexpr float First = 1000;
 } // namespace
 
-RefinementTimer::RefinementTimer(std::function<bool()> mayRefine) : MayRefine(std::move(mayRefine))
+RefinementTimer::RefinementTimer(std::function<bool()> mayRefine, std::function<void()> begin)
+    : MayRefine(std::move(mayRefine)), Begin(std::move(begin))
 {
   this->Command->SetClientData(this);
   this->Command->SetCallback(&RefinementTimer::OnEvent);
@@ -110,10 +112,16 @@ void RefinementTimer::fire()
   vtkRenderWindowInteractor* interactor = this->Interactor;
   interactor->DestroyTimer(this->Fired);
   this->Fired = std::exchange(this->Timer, 0);
-  if (this->isBusy()) {
+  const std::weak_ptr<const bool> life = this->Life;
+  const bool busy = this->isBusy();
+  if (life.expired()) { // the application has answered by deleting the mapper
+    return;
+  }
+  if (busy) {
     this->start(interactor, Patience);
     return;
   }
+  this->Begin();
   // Nothing of this from here on: rendering may delete the mapper.
   interactor->Render();
 }

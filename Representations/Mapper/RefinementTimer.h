@@ -6,6 +6,7 @@
 #include <vtkWeakPointer.h>
 
 #include <functional>
+#include <memory>
 
 class vtkObject;
 class vtkRenderWindow;
@@ -19,8 +20,9 @@ namespace inr {
 class RefinementTimer
 {
 public:
-  /// `mayRefine` is asked right before a picture; false: again a little later.
-  explicit RefinementTimer(std::function<bool()> mayRefine);
+  /// `mayRefine` is asked before a picture and may destroy this; false: again a little later. After
+  /// true, `begin` is called right before the picture.
+  RefinementTimer(std::function<bool()> mayRefine, std::function<void()> begin);
   ~RefinementTimer() { this->cancel(); }
   RefinementTimer(const RefinementTimer&) = delete;
   RefinementTimer& operator=(const RefinementTimer&) = delete;
@@ -44,12 +46,14 @@ private:
   void stop();
 
   std::function<bool()> MayRefine;
+  std::function<void()> Begin;
   vtkWeakPointer<vtkRenderWindowInteractor> Interactor;
   vtkNew<vtkCallbackCommand> Command;
   bool Pending = false;     ///< a picture is asked for, or being made because it was
   bool Interacting = false; ///< a mouse button is down, whether the mouse moves or not
   int Timer = 0;
-  int Fired = 0; ///< the timer before
+  int Fired = 0;                                                   ///< the timer before
+  std::shared_ptr<const bool> Life = std::make_shared<bool>(true); ///< ends with this
 };
 
 } // namespace inr

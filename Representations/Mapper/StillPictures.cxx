@@ -32,13 +32,7 @@ double TimeLimit(vtkRenderer* renderer, const PaintSettings& settings)
 }
 
 StillPictures::StillPictures(PictureStore& pictures, std::function<bool()> mayRefine)
-    : Pictures(pictures), Timer([this, asked = std::move(mayRefine)] {
-        const bool refines = asked();
-        if (refines) {
-          this->Pictures.answerRequests();
-        }
-        return refines;
-      })
+    : Pictures(pictures), Timer(std::move(mayRefine), [this] { this->Pictures.answerRequests(); })
 {}
 
 void StillPictures::followUp(ViewPicture& picture, vtkRenderWindow* window,

@@ -13,6 +13,7 @@
 #include <vtkMultiProcessController.h>
 #include <vtkObjectFactory.h>
 #include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
 #include <vtkTimeStamp.h>
 #include <vtkVolume.h>
 #include <vtkWeakPointer.h>
@@ -45,6 +46,7 @@ struct vtkINRVolumeMapper::Internals
 {
   explicit Internals(vtkINRVolumeMapper* mapper)
       : Painter([mapper] {
+          const vtkSmartPointer<vtkINRVolumeMapper> kept = mapper; // whatever observers delete
           bool mayRefine = true;
           mapper->InvokeEvent(RefineEvent, &mayRefine);
           return mayRefine;

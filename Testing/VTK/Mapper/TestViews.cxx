@@ -345,4 +345,22 @@ TEST(Views, ThatAreRefusedAskForNothing)
   EXPECT_EQ(asked, 0);
 }
 
+TEST(Views, MayBeTakenAwayWhenAskedWhetherTheyMayClearUp)
+{
+  IdleWindow idle;
+  vtkNew<vtkCallbackCommand> remove;
+  remove->SetClientData(&idle.one);
+  remove->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+    auto* one = static_cast<OneVolume*>(data);
+    one->renderer->RemoveVolume(one->volume);
+    one->volume = nullptr;
+    one->mapper = nullptr;
+  });
+  idle.one.mapper->AddObserver(vtkINRVolumeMapper::RefineEvent, remove);
+  idle.one.scene.window->Render();
+  EXPECT_FALSE(idle.one.mapper->GetConverged());
+  EXPECT_TRUE(RunUntilIdle(idle.one.scene.window, idle.interactor, [] {}));
+  EXPECT_EQ(idle.one.mapper, nullptr);
+}
+
 } // namespace
