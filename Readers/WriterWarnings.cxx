@@ -13,7 +13,7 @@ void vtkINRWriter::WarnOfWhole(const std::string& source)
                   << this->MemoryLimitInBytes() / MiB << " MiB.");
 }
 
-/// Where that is not what TargetRatio asks for.
+/// Where that is not what TargetRatio asks for, or the data themselves take less.
 void vtkINRWriter::WarnOfLargeFile(const inr::Model& model)
 {
   constexpr double wellBelow = 0.9;
@@ -27,6 +27,13 @@ void vtkINRWriter::WarnOfLargeFile(const inr::Model& model)
                                  << (this->MacroCellSize > 0
                                          ? "; a larger MacroCellSize gives fewer ranges."
                                          : "."));
+  } else if (this->Ratio < 1) {
+    vtkWarningMacro(
+        "The file '" << this->Internal->Target << "' is " << 1 / this->Ratio
+                     << " times as large as the data: a model pays where these are much larger, or "
+                        "with "
+                     << (isAsked ? "a TargetRatio that makes it smaller."
+                                 : "a smaller ModelConfig."));
   }
 }
 

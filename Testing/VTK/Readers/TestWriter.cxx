@@ -254,9 +254,24 @@ TEST_F(Writer, WarnsOfAFileThatIsLargerThanAskedFor)
   EXPECT_EQ(warning(1e4, 0), "");
 }
 
+TEST_F(Writer, WarnsOfAFileThatIsLargerThanTheData)
+{
+  const auto image = MakeImage({6, 5, 4}, VTK_UNSIGNED_CHAR, 0, 255);
+  const auto warning = [&](const char* config) {
+    this->Algorithm->SetModelConfig(config);
+    const MessageCapture messages;
+    this->write(image);
+    EXPECT_TRUE(messages.errors().empty()) << messages.text();
+    return messages.warnings().size() == 1 ? messages.warnings()[0] : "";
+  };
+  EXPECT_NE(warning(nullptr).find("times as large as the data"), std::string::npos);
+  EXPECT_NE(warning(nullptr).find("with a TargetRatio"), std::string::npos);
+  EXPECT_NE(warning(SmallModel).find("a smaller ModelConfig"), std::string::npos);
+}
+
 TEST_F(Writer, WarnsOfValuesThatAreNoNumbers)
 {
-  const auto image = MakeImage({9, 8, 7}, VTK_FLOAT, 0, 1);
+  const auto image = MakeImage({16, 15, 14}, VTK_FLOAT, 0, 1);
   vtkDataArray* array = image->GetPointData()->GetScalars();
   array->SetTuple1(10, std::numeric_limits<double>::quiet_NaN());
   array->SetTuple1(400, std::numeric_limits<double>::infinity());
@@ -289,7 +304,7 @@ void HidePoint(vtkImageData* image, vtkIdType point)
 
 TEST_F(Writer, LeavesOutWhatIsHidden)
 {
-  const auto image = MakeImage({9, 8, 7}, VTK_FLOAT, 1, 2);
+  const auto image = MakeImage({16, 15, 14}, VTK_FLOAT, 1, 2);
   vtkDataArray* array = image->GetPointData()->GetScalars();
   array->SetTuple1(10, -500);
   HidePoint(image, 10);
@@ -306,7 +321,7 @@ TEST_F(Writer, LeavesOutWhatIsHidden)
 
 TEST_F(Writer, WarnsOfHiddenIntegers)
 {
-  const auto image = MakeImage({9, 8, 7}, VTK_UNSIGNED_CHAR, 1, 200);
+  const auto image = MakeImage({25, 24, 23}, VTK_UNSIGNED_CHAR, 1, 200);
   HidePoint(image, 10);
   const MessageCapture messages;
   this->write(image);
