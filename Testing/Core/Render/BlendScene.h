@@ -128,3 +128,21 @@ private:
   Voxels Values{dims, Lumps};
   inr::TransferFunction Table = MakeTable();
 };
+
+/// That a picture comes by and by where time is short, and that it is then the one of all the time.
+inline void ExpectRefinement(const BlendScene& scene, inr::Frame frame)
+{
+  BlendScene::Cache cache;
+  cache.deterministic = true;
+  cache.maximumRequests = 4;
+  inr::Renderer renderer = scene.renderer(cache);
+  frame.timeLimit = 1;
+  inr::Image image;
+  int frames = 1;
+  while (!renderer.render(frame, image).complete) {
+    ASSERT_LT(++frames, 500);
+  }
+  EXPECT_GT(frames, 3);
+  frame.timeLimit = 0;
+  EXPECT_EQ(image.pixels, Render(renderer, frame).pixels);
+}

@@ -330,20 +330,7 @@ TEST_P(AtACorner, ComesFromTheSmallestCache)
 TEST(Isosurface, RefinesWithinATimeLimit)
 {
   const BlendScene scene;
-  inr::Frame frame = LitFrame(scene);
-  BlendScene::Cache cache;
-  cache.deterministic = true;
-  cache.maximumRequests = 4;
-  inr::Renderer renderer = scene.renderer(cache);
-  frame.timeLimit = 1;
-  inr::Image image;
-  int frames = 1;
-  while (!renderer.render(frame, image).complete) {
-    ASSERT_LT(++frames, 500);
-  }
-  EXPECT_GT(frames, 3);
-  frame.timeLimit = 0;
-  EXPECT_EQ(image.pixels, Render(renderer, frame).pixels);
+  ExpectRefinement(scene, LitFrame(scene));
 }
 
 TEST(Isosurface, OfACoarseLevelIsNearThatOfTheFinest)

@@ -272,20 +272,7 @@ TEST(Projection, RefinesWithinATimeLimit)
   const BlendScene scene;
   for (const BlendMode mode : Modes) {
     SCOPED_TRACE(static_cast<int>(mode));
-    inr::Frame frame = FrameOf(scene, mode);
-    BlendScene::Cache cache;
-    cache.deterministic = true;
-    cache.maximumRequests = 4;
-    inr::Renderer renderer = scene.renderer(cache);
-    frame.timeLimit = 1;
-    inr::Image image;
-    int frames = 1;
-    while (!renderer.render(frame, image).complete) {
-      ASSERT_LT(++frames, 500);
-    }
-    EXPECT_GT(frames, 3);
-    frame.timeLimit = 0;
-    EXPECT_EQ(image.pixels, Render(renderer, frame).pixels);
+    ExpectRefinement(scene, FrameOf(scene, mode));
   }
 }
 
