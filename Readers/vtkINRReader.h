@@ -75,9 +75,11 @@ public:
   ///@}
 
   ///@{
-  /// Voxels per axis over those in the file, 0.25 to 4 (default 1), between the same point bounds;
-  /// an axis of a single voxel keeps it. The network is asked for the values of these voxels: they
-  /// are what vtkINRVolumeMapper and vtkINRDecode take for native from here on.
+  /// Voxels per axis over those in the file, 0.25 to 4 (default 1); an axis of a single voxel keeps
+  /// it. The network is asked for the values of these voxels: they are what vtkINRVolumeMapper and
+  /// vtkINRDecode take for native from here on. What they show stays where it is: of n voxels in
+  /// place of N the spacing is N/n times the native one, and the first point (1 - N/n)/2 native
+  /// spacings before the native one.
   vtkSetMacro(ScaleFactor, double);
   vtkGetMacro(ScaleFactor, double);
   ///@}

