@@ -43,7 +43,7 @@ protected:
     this->Cache.precision = inr::CachePrecision::Bits16;
     this->Cache.rowStride = Edge;
     this->Cache.layerStride = Edge * Edge;
-    this->Scene.steps = {&this->Entries.data()->x, Rows, Rows - 4, 2};
+    this->Scene.steps = {&this->Entries.data()->x, Rows, Rows - 4, 2, 0.01f};
   }
 
   SampledBrick brick(int number) const
@@ -69,7 +69,8 @@ protected:
       const float found = inr::cuda::ValueOn(this->Cache, brick.path, along);
       float value = found;
       inr::ClampToRange(brick.range, value);
-      const glm::vec4 color = inr::cuda::FindColor(this->Scene.steps, row.length, value).color();
+      const glm::vec4 color = inr::cuda::FindColor(this->Scene.steps, row.length, value)
+                                  .color(inr::cuda::UnitsOf(this->Scene.steps, row.length));
       sum.light.add(color, color.w);
       if (!sum.halfOpaque && sum.light.isHalfOpaque()) {
         sum.halfOpaque = true;

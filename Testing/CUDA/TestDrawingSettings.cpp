@@ -74,6 +74,28 @@ TEST_P(DrawingSettings, RoundsWhatItKeepsAsTheCpuDoes)
   EXPECT_LE(inr::ImagePsnr(drawn, drawnWith(inr::CachePrecision::Float32)), 60);
 }
 
+TEST_P(DrawingSettings, WhatIsOpaqueAtOneValueIsSteepAsByTheCpu)
+{
+  inr::TransferFunction colours = ColoursOf(TrainedModel()->volume);
+  for (std::size_t k = 1; k + 1 < colours.table.size(); k += 2) {
+    colours.table[k].w = 1;
+    colours.table[k + 1].w = 0;
+  }
+  inr::Frame frame = FullResolution(inr::RenderMode::RayMarching);
+  frame.unitDistance *= 100;
+  inr::RendererOptions options = this->options();
+  const auto drawn = [&] {
+    inr::Renderer renderer = RendererOf(options);
+    renderer.setTransferFunction(colours);
+    inr::Image image;
+    EXPECT_EQ(renderer.render(frame, image).accelerated, options.accelerator != nullptr);
+    return image;
+  };
+  const inr::Image picture = drawn();
+  options.accelerator = nullptr;
+  EXPECT_GE(inr::ImagePsnr(picture, drawn()), 60);
+}
+
 /// Colours over the logarithm of values.
 inr::TransferFunction Logarithmic()
 {

@@ -51,7 +51,8 @@ template <class Bricks> class RowCompositor
 public:
   INR_HOST_DEVICE RowCompositor(const CacheView& cache, const RenderScene& scene,
                                 const AlikeRow& row, const Bricks& bricks)
-      : Cache(cache), Colors(scene.colors), Steps(scene.steps), Row(row), From(bricks)
+      : Cache(cache), Colors(scene.colors), Steps(scene.steps), Row(row), From(bricks),
+        Units(UnitsOf(scene.steps, row.length))
   {}
 
   INR_HOST_DEVICE void add(CompositedRow& sum) const
@@ -63,7 +64,7 @@ public:
       this->look(first, colors, clamps);
       for (int k = 0; k < GroupSize; ++k) {
         if (first + k < this->Row.count && !sum.light.isOpaque()) {
-          this->addOne(first + k, colors[k].color(), sum);
+          this->addOne(first + k, colors[k].color(this->Units), sum);
           sum.clamped += clamps[k] ? 1 : 0;
         }
       }
@@ -122,6 +123,7 @@ private:
   StepLookup Steps;
   AlikeRow Row;
   const Bricks& From;
+  float Units; ///< of each sample's length
 };
 
 /// A row in a single brick.

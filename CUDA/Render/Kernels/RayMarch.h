@@ -388,9 +388,9 @@ protected:
     } else {
       const float place =
           this->Scene.colors.logarithmic ? this->Scene.colors.coordinate(value) : value;
+      const int number = LengthOf(this->Alike.joined, this->Alike.power);
       const glm::vec4 color =
-          FindColor(this->Scene.steps, LengthOf(this->Alike.joined, this->Alike.power), place)
-              .color();
+          FindColor(this->Scene.steps, number, place).color(UnitsOf(this->Scene.steps, number));
       this->addLight(color, color.w, k);
     }
     this->Counts.clamped += std::abs(found - value) > RoundingOfStorage ? 1 : 0;

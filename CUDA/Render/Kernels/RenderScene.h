@@ -5,6 +5,7 @@
 #include "Core/Render/Bricks/BrickKernel.h"
 #include "Core/Render/Marching/RayMarching.h"
 #include "Core/Render/Marching/ShadingView.h"
+#include "Core/Render/Marching/StepTable.h"
 
 namespace inr {
 namespace cuda {
@@ -39,19 +40,28 @@ struct StepColor
   glm::vec4 high;
   float weight;
 
-  /// Straight RGB, and the opacity of a whole sample.
-  INR_HOST_DEVICE glm::vec4 color() const
+  /// Straight RGB, and the opacity of a whole sample of `length` opacity unit distances.
+  INR_HOST_DEVICE glm::vec4 color(float length) const
   {
     glm::vec4 color;
     for (int channel = 0; channel < 4; ++channel) {
       color[channel] =
           fmaf(this->high[channel] - this->low[channel], this->weight, this->low[channel]);
     }
+    if (color.w > 1.0f) {
+      color.w = SteepOpacity(this->low.w, this->high.w, this->weight, length);
+    }
     return color;
   }
 };
 
-/// Of samples of the length that has this number (StepTable.h), at a place in the table: a
+/// Opacity unit distances of samples of the length that has this number (StepTable.h).
+INR_HOST_DEVICE inline float UnitsOf(const StepLookup& steps, int length)
+{
+  return steps.step * static_cast<float>(StepsOf(length));
+}
+
+/// Of samples of the length that has this number, at a place in the table: a
 /// normalised value or, of logarithmic colours, the coordinate of one.
 INR_HOST_DEVICE inline StepColor FindColor(const StepLookup& steps, int length, float place)
 {

@@ -316,7 +316,10 @@ int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opa
     const std::int64_t row = static_cast<std::int64_t>(batch.length[k]) * lookup.rows + at.entry[k];
     const Rgba first = LoadRgba(lookup.entries + 4 * row);
     const Rgba second = LoadRgba(lookup.entries + 4 * row + 4);
-    const Rgba entry = first + (second - first) * at.weight[k];
+    Rgba entry = first + (second - first) * at.weight[k];
+    if (entry[3] > 1.0f) {
+      entry[3] = SteepOpacityOf(lookup, batch.length[k], first[3], second[3], at.weight[k]);
+    }
     return ShownSample{entry, entry[3], entry[3]};
   };
   return AddUp(count, opaque, sampleAt, batch.opacity, color);

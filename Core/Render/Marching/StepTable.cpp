@@ -12,8 +12,9 @@ namespace inr {
 namespace {
 
 constexpr int MaximumRows = 1 << 14;
-constexpr float SteepFrom = 0.5f;  // opacity of a unit; rows follow what is below
-constexpr double Tolerance = 2e-4; // of a sample's opacity: errors of a ray's samples add up
+constexpr float SteepFrom = 0.5f;       // opacity of a unit; rows follow what is below
+constexpr double Tolerance = 2e-4;      // of a sample's opacity: errors of a ray's samples add up
+constexpr double SteepTolerance = 1e-2; // the same where little of a ray is
 
 double OpacityOf(double perUnit, double length)
 {
@@ -48,34 +49,29 @@ int Refinement(const ColorLookup& colors, double shortest, double longest)
   return pieces;
 }
 
-/// The mean of the corrected opacity where the transparency of a unit goes from `end` to `begin`.
-double MeanOpacity(double begin, double end, double length)
+/// Whether that of a row misses the corrected opacity, of which there is `corrected` at its ends.
+/// What else bends much is where opacity is high.
+bool IsSteep(float begin, float end, double length, const glm::vec4 (&corrected)[2])
 {
-  const double power = length + 1.0;
-  return 1.0 - (std::pow(begin, power) - std::pow(end, power)) / (power * (begin - end));
-}
-
-/// What a row whose opacity is above those of its neighbours has to be so that linear
-/// interpolation has the mean of the corrected opacity. The power of a short length leaves an
-/// opacity of 1 with an infinite slope, which no number of rows follows.
-double PeakOpacity(const double (&perUnit)[3], double length)
-{
-  double sum = 0;
-  for (const int side : {0, 2}) {
-    const double mean = MeanOpacity(1.0 - perUnit[side], 1.0 - perUnit[1], length);
-    sum += 2.0 * mean - OpacityOf(perUnit[side], length);
+  if (length >= 1.0 || begin == end || std::max(begin, end) <= SteepFrom) {
+    return false;
   }
-  return std::clamp(0.5 * sum, 0.0, OpacityOf(perUnit[1], length));
+  const double chord = 0.5 * (corrected[0].w + corrected[1].w);
+  const double curve = OpacityOf(0.5 * (static_cast<double>(begin) + end), length);
+  return std::abs(curve - chord) > SteepTolerance * curve;
 }
 
-/// Of rows of all entries but the first and the last.
-void FollowPeaks(const std::vector<glm::vec4>& rows, double length, glm::vec4* corrected)
+/// Marks the higher row wherever two are too far apart: of all entries but those outside.
+void MarkSteep(const std::vector<glm::vec4>& rows, double length, glm::vec4* corrected)
 {
-  for (std::size_t k = 1; length < 1.0 && k + 1 < rows.size(); ++k) {
-    if (rows[k].w > SteepFrom && rows[k].w > rows[k - 1].w && rows[k].w > rows[k + 1].w) {
-      corrected[k].w =
-          static_cast<float>(PeakOpacity({rows[k - 1].w, rows[k].w, rows[k + 1].w}, length));
+  std::vector<std::size_t> steep;
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
+    if (IsSteep(rows[k].w, rows[k + 1].w, length, {corrected[k], corrected[k + 1]})) {
+      steep.push_back(rows[k].w > rows[k + 1].w ? k : k + 1);
     }
+  }
+  for (const std::size_t row : steep) {
+    corrected[row].w = SteepEntry * rows[row].w;
   }
 }
 
@@ -85,6 +81,12 @@ glm::vec4 Corrected(const glm::vec4& entry, double length)
 }
 
 } // namespace
+
+float SteepOpacityOf(const StepLookup& lookup, int length, float first, float second, float weight)
+{
+  const float units = lookup.step * static_cast<float>(StepsOf(length));
+  return SteepOpacity(first, second, weight, units);
+}
 
 int SampleLengths(int levels)
 {
@@ -118,10 +120,11 @@ StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
     for (const glm::vec4& entry : between) {
       this->Entries.push_back(Corrected(entry, length));
     }
-    FollowPeaks(between, length, this->Entries.data() + first);
+    MarkSteep(between, length, this->Entries.data() + first);
     this->Entries.insert(this->Entries.end(), 2, Corrected(colors.above, length));
   }
   this->Lookup.entries = &this->Entries.data()->x;
+  this->Lookup.step = static_cast<float>(stepLength);
 }
 
 } // namespace inr

@@ -5,6 +5,7 @@
 #include "Core/Render/Marching/ColorLookups.h"
 #include "Core/Render/Scene/ColorTable.h"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -21,15 +22,26 @@ INR_HOST_DEVICE constexpr std::int64_t StepsOf(int length)
   return std::int64_t{length % 2 == 0 ? 1 : 3} << (length / 2);
 }
 
+/// See StepLookup; `length` in opacity unit distances.
+INR_HOST_DEVICE inline float SteepOpacity(float first, float second, float weight, float length)
+{
+  // What a unit distance lets through is linear in between.
+  const auto through = [length](float entry) {
+    return entry > 1.0f ? 1.0f - entry / SteepEntry : std::exp(std::log1p(-entry) / length);
+  };
+  const float begin = through(first);
+  const float between = begin + (through(second) - begin) * weight;
+  return between > 0.0f ? -std::expm1(length * std::log(between)) : 1.0f;
+}
+
 /// How many lengths samples may have: up to the coarsest level's, four times as long where it is
 /// faint, and up to what cells ask for.
 int SampleLengths(int levels);
 
 /// A colour table with its opacities corrected for samples of 1, 3, 2, 6, ... steps:
 /// 1 - (1 - opacity)^length. Between the entries of the colour table as many are put as linear
-/// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows. A peak of opacity
-/// near 1, which short samples leave more steeply than rows can follow, is lowered so that the mean
-/// is right there. Not so the ends of the table and of plateaus: these are opaque.
+/// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows. Opacity near 1,
+/// which short samples leave more steeply than rows can follow, is marked as steep: see StepLookup.
 class StepTable
 {
 public:

@@ -360,6 +360,43 @@ TEST_P(BrickKernels, CompositeAnyNumberOfSamples)
   }
 }
 
+// Next to a peak of opacity 1, which is opaque however short a sample is, and let through a
+// million times as much a row away.
+TEST_P(BrickKernels, CompositeWhatIsSteep)
+{
+  const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
+  inr::TransferFunction peak;
+  peak.table = {{1, 0, 0, 0}, {1, 0, 0, 1}, {1, 0, 0, 0}};
+  const inr::ColorTable colors(peak, inr::VolumeInfo{});
+  constexpr double step = 1e-4;
+  const inr::StepTable table(colors.lookup(), step, 4);
+  const auto batch = std::make_unique<inr::SampleBatch>();
+  double transmittance = 1;
+  for (int k = 0; k < inr::SampleBatch::Capacity; ++k) {
+    batch->length[k] = k % 4;
+    batch->value[k] = 0.5f + Random(-3, 3) / table.lookup().scale;
+    batch->low[k] = 0;
+    batch->high[k] = 1;
+    const double through = 2 * std::abs(0.5 - static_cast<double>(batch->value[k]));
+    transmittance *= std::pow(through, step * static_cast<double>(inr::StepsOf(k % 4)));
+  }
+  const auto used = [&](inr::RayColor& color) {
+    std::int64_t clamped = 0;
+    return kernel.composite(table.lookup(), *batch, inr::SampleBatch::Capacity, 0.001f, color,
+                            clamped);
+  };
+  inr::RayColor color{{0, 0, 0}, 1, false};
+  EXPECT_EQ(used(color), inr::SampleBatch::Capacity);
+  EXPECT_LT(transmittance, 0.95);
+  EXPECT_NEAR(color.transmittance, transmittance, 0.01 * (1 - transmittance));
+  EXPECT_NEAR(color.rgb[0], 1 - color.transmittance, 1e-5);
+
+  batch->value[5] = 0.5f;
+  color = {{0, 0, 0}, 1, false};
+  EXPECT_EQ(used(color), 6);
+  EXPECT_EQ(color.transmittance, 0);
+}
+
 /// Peaks, steps at the ends, what is faint, and if wanted what is opaque.
 inr::TransferFunction Rugged(bool opaque)
 {
