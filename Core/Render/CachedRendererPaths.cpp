@@ -25,9 +25,8 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
   // Inferring takes many times as long as the round before that said how long a round is.
   const bool hurries = onMiss == OnPathMiss::Infer && !round.first && limit.isTimed();
   RequestRanking requests;
-  TracedTiles traced =
-      TraceThroughCache(round, bricks, *this->Field, onMiss, hurries ? &limit : nullptr,
-                        this->Threads, keepGoing, requests);
+  TracedTiles traced = TraceThroughCache(round, bricks, *this->Field, onMiss, limit, hurries,
+                                         this->Threads, keepGoing, requests);
   this->Shortage.check(requests.count(), this->room());
   if (this->Shortage.lacks() && this->Options.onlyWhatFits) {
     traced.final = true;

@@ -6,6 +6,8 @@
 #include "Core/Render/Tiles/WorkLimit.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace inr {
 
@@ -218,14 +220,26 @@ private:
   const std::function<bool()>& KeepGoing;
 };
 
+/// How many tiles to trace before the next look at the clock, `left` seconds before the end, by
+/// what `done` of them took.
+std::size_t TilesWithin(double left, std::size_t done, double seconds)
+{
+  constexpr std::size_t atLeast = 8;
+  constexpr double part = 0.5; // others may take longer
+  if (std::isinf(left)) {
+    return std::numeric_limits<std::size_t>::max();
+  }
+  const double rate = static_cast<double>(done) / std::max(seconds, 1e-6);
+  return std::max(atLeast, static_cast<std::size_t>(part * left * rate));
+}
+
 } // namespace
 
 TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& bricks,
-                              const Evaluator& field, OnPathMiss onMiss, const WorkLimit* limit,
-                              const Arena& arena, const std::function<bool()>& keepGoing,
-                              RequestRanking& requests)
+                              const Evaluator& field, OnPathMiss onMiss, const WorkLimit& limit,
+                              bool hurries, const Arena& arena,
+                              const std::function<bool()>& keepGoing, RequestRanking& requests)
 {
-  constexpr std::size_t tilesBetweenLooks = 8; // at the clock
   const Timer clock;
   const Tiling tiling(round.output.rgba.width, round.output.rgba.height);
   TracedTiles traced;
@@ -241,13 +255,15 @@ TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& br
     traced.tiles[k].work.networkSamples = sampler.inferred();
     lists[k] = sampler.requests();
   };
-  const std::size_t atOnce = limit != nullptr ? tilesBetweenLooks : round.tiles.size();
   std::size_t done = 0;
-  while (done < round.tiles.size() && (done == 0 || !limit->endsWithin(0))) {
-    const std::size_t count = std::min(atOnce, round.tiles.size() - done);
+  double left = limit.secondsForTracing(hurries);
+  while (done < round.tiles.size() && (done == 0 || left > 0)) {
+    const std::size_t count =
+        std::min(TilesWithin(left, done, clock.seconds()), round.tiles.size() - done);
     ForEachTile(arena, static_cast<std::int64_t>(count), keepGoing,
                 [&](std::int64_t k) { trace(done + static_cast<std::size_t>(k)); });
     done += count;
+    left = limit.secondsForTracing(hurries);
   }
   traced.tiles.resize(done);
   for (const RequestList& list : lists) {

@@ -95,13 +95,13 @@ private:
   std::vector<float> AbsentValues;
 };
 
-/// Traces a round's tiles with what is in the cache; with a limit, the first few and then more
-/// until it ends. What was missing is added to `requests` in the order of the tiles.
-/// Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
+/// Traces a round's tiles with what is in the cache: the first few, and then as many as there is
+/// time for by WorkLimit::secondsForTracing. What was missing is added to `requests` in the order
+/// of the tiles. Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
 TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& bricks,
-                              const Evaluator& field, OnPathMiss onMiss, const WorkLimit* limit,
-                              const Arena& arena, const std::function<bool()>& keepGoing,
-                              RequestRanking& requests);
+                              const Evaluator& field, OnPathMiss onMiss, const WorkLimit& limit,
+                              bool hurries, const Arena& arena,
+                              const std::function<bool()>& keepGoing, RequestRanking& requests);
 
 /// Traces a round's tiles with the field itself.
 TracedTiles TraceWithNetwork(const PathRound& round, const Evaluator& field,

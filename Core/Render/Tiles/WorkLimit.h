@@ -4,6 +4,7 @@
 #include "Core/Render/Tiles/Timer.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace inr {
 
@@ -15,8 +16,9 @@ namespace inr {
 /// - how many bricks are loaded within a frame, and how far one gets that wants more of them than
 ///   the cache holds,
 /// - whether the field is measured further for an error tolerance,
-/// - how many rounds of paths are traced and, where the network is asked what they meet, through
-///   how many tiles or, by an accelerator whose cache is too small, how far they get.
+/// - how many rounds of paths are traced and, where one takes several times as long as there is, or
+///   the network is asked what they meet, through how many tiles; or, by an accelerator whose cache
+///   is too small, how far they get.
 /// Counted, it is one pass, CacheOptions::maximumRequests bricks at most (so many for each pass
 /// that brings rays no further), and one round through all tiles that are not finished.
 ///
@@ -34,6 +36,18 @@ public:
   bool endsWithin(double seconds) const
   {
     return this->isLimited() && (this->Counted || this->Clock.left() < seconds);
+  }
+  /// Until a round of paths has to end in its midst: where it `hurries`, with the frame, else a
+  /// good while later, as a picture with all of its pixels is worth some time.
+  double secondsForTracing(bool hurries) const
+  {
+    constexpr double patience = 4; // times the limit
+    constexpr double least = 0.25; // seconds
+    if (!this->isTimed()) {
+      return std::numeric_limits<double>::infinity();
+    }
+    return hurries ? this->Clock.left()
+                   : std::max(patience * this->Seconds, least) - this->Clock.seconds();
   }
   /// Where it is timed: what is left, but at least a part of the limit and of what the frame has
   /// taken so far. However long rendering itself takes, part/(1 + part) of all the time is for what
