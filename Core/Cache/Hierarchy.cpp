@@ -5,6 +5,7 @@
 #include "Core/Error.h"
 
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <cmath>
 #include <string>
@@ -60,7 +61,8 @@ Hierarchy::Hierarchy(const glm::i64vec3& dims, int brickSize, const glm::i64vec3
     level.brickScale = level.scale / glm::dvec3(this->BrickDims - 1);
     level.brickBias = level.bias / glm::dvec3(this->BrickDims - 1);
     this->Levels.push_back(level);
-  } while (this->Levels.back().bricks != glm::i64vec3(1));
+  } while (this->Levels.back().bricks != glm::i64vec3(1) ||
+           glm::any(glm::greaterThan(this->Levels.back().size, glm::i64vec3(LargestCoarsest))));
 }
 
 } // namespace inr

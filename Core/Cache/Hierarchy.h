@@ -16,12 +16,15 @@ namespace inr {
 ///
 /// Level 0 has the volume's voxels, level l + 1 half as many along every axis, rounded up; voxel v
 /// of a level with n stands at u = (v + 0.5)/n. Neighbouring bricks share a layer of voxels, so
-/// that any point lies between voxels of a single brick. The last level is one brick.
+/// that any point lies between voxels of a single brick. The last level is one brick of
+/// LargestCoarsest voxels per side at most: large bricks leave out no level that a picture from
+/// afar takes.
 class Hierarchy
 {
 public:
   static constexpr int SmallestBrick = 4; ///< voxels per side
   static constexpr int LargestBrick = 1024;
+  static constexpr int LargestCoarsest = 40; ///< voxels per side: as bricks have by default
 
   /// `brickSize`: voxels per side, as said. Throws Error(InvalidArgument) for sizes out of range
   /// and Error(TooLarge) for more than 2^19 bricks along an axis. `resolution`: of the field that

@@ -321,9 +321,9 @@ public:
 
   ///@{
   /**
-   * Voxels per side of a cached brick. Default 40. A change empties the cache. Before there is a
-   * picture, one brick of the coarsest level is decoded as a whole: one of 256 voxels takes
-   * seconds, and 64 MiB besides the cache. Of the others, what cannot be seen is left out.
+   * Voxels per side of a cached brick. Default 40. A change empties the cache. One brick of 256
+   * voxels takes seconds, and 64 MiB besides the cache. Below 40 there are coarser levels besides,
+   * which pictures from far away take.
    */
   vtkSetClampMacro(BrickSize, int, 4, 1024);
   vtkGetMacro(BrickSize, int);

@@ -44,6 +44,19 @@ TEST(Hierarchy, HalvesRoundingUpUntilOneBrickIsEnough)
   EXPECT_EQ(levels.levels(), 13); // 131072 / 2^12 = 32 voxels
 }
 
+// Or pictures from afar would depend on the size of bricks.
+TEST(Hierarchy, HasTheSameLevelsForAllLargeBricks)
+{
+  for (const i64vec3& dims : Sizes) {
+    const inr::Hierarchy usual(dims, 40);
+    for (const int size : {41, 64, 300, 1024}) {
+      const inr::Hierarchy large(dims, size);
+      EXPECT_EQ(large.levels(), usual.levels()) << size;
+      EXPECT_EQ(large.size(large.levels() - 1), usual.size(usual.levels() - 1)) << size;
+    }
+  }
+}
+
 TEST(Hierarchy, KeysAndPlacesAreOneToOne)
 {
   const inr::BrickId ids[] = {{0, {0, 0, 0}}, {12, {3360, 1, 2}}, {31, {524287, 524287, 524287}}};
