@@ -3,12 +3,15 @@
 
 #include "INRFirstLook.h"
 #include "INRPanel.h"
+#include "StillRenders.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkNew.h"
 #include "vtkSMProxy.h"
+#include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
+#include "vtkSMViewProxy.h"
 
 #include <cstring>
 
@@ -65,8 +68,16 @@ private:
 void OnRegister(vtkObject*, unsigned long, void*, void* callData)
 {
   const auto* info = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(callData);
-  if (info->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !info->Proxy ||
-      std::strcmp(info->GroupName, "representations") != 0 ||
+  if (info->Type != vtkSMProxyManager::RegisteredProxyInformation::PROXY || !info->Proxy) {
+    return;
+  }
+  if (auto* view = vtkSMViewProxy::SafeDownCast(info->Proxy)) {
+    if (std::strcmp(info->GroupName, "views") == 0) {
+      inr::WatchStillRenders(view);
+    }
+    return;
+  }
+  if (std::strcmp(info->GroupName, "representations") != 0 ||
       !info->Proxy->GetProperty("Representation") || !info->Proxy->GetProperty("INRUnitDistance")) {
     return;
   }
@@ -75,13 +86,31 @@ void OnRegister(vtkObject*, unsigned long, void*, void* callData)
   watch->begin(info->Proxy);
 }
 
+/// Of the views that there are when the plugin comes.
+void WatchViews()
+{
+  vtkSMSessionProxyManager* session =
+      vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager();
+  if (!session) {
+    return;
+  }
+  vtkNew<vtkSMProxyIterator> proxies;
+  proxies->SetSessionProxyManager(session);
+  for (proxies->Begin("views"); !proxies->IsAtEnd(); proxies->Next()) {
+    if (auto* view = vtkSMViewProxy::SafeDownCast(proxies->GetProxy())) {
+      inr::WatchStillRenders(view);
+    }
+  }
+}
+
 } // namespace
 
-void INRWatchRepresentations()
+void INRWatchProxies()
 {
   if (!vtkSMProxyManager::IsInitialized()) {
     return;
   }
+  WatchViews();
   vtkNew<vtkCallbackCommand> watch;
   watch->SetCallback(OnRegister);
   vtkSMProxyManager::GetProxyManager()->AddObserver(vtkCommand::RegisterEvent, watch);

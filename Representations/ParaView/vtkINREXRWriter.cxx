@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINREXRWriter.h"
 
+#include "Core/Image/Exr.h"
+#include "StillRenders.h"
 #include "vtkErrorCode.h"
 #include "vtkINRLODVolume.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkImageData.h"
 #include "vtkObjectFactory.h"
+#include "vtkRenderWindow.h" // for VTK_STEREO_LEFT
 #include "vtkRenderer.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMProxyIterator.h"
-#include "vtkSMProxyManager.h"
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMSaveScreenshotProxy.h"
-#include "vtkSMSessionProxyManager.h"
 #include "vtkVector.h"
 #include "vtkVolume.h"
 #include "vtkVolumeCollection.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -25,59 +27,20 @@ vtkStandardNewMacro(vtkINREXRWriter);
 
 namespace {
 
-/// What a view shows of INRs.
-struct ShownVolumes
+/// The INRs that a view shows.
+std::vector<vtkINRLODVolume*> ShownBy(vtkSMRenderViewProxy* view)
 {
-  vtkSMViewProxy* view = nullptr;
-  std::vector<vtkINRLODVolume*> volumes;
-
-  vtkMTimeType latest() const
-  {
-    vtkMTimeType time = 0;
-    for (const vtkINRLODVolume* volume : this->volumes) {
-      time = std::max(time, volume->GetShownMTime());
-    }
-    return time;
-  }
-};
-
-ShownVolumes ShownBy(vtkSMRenderViewProxy* view)
-{
-  ShownVolumes shown;
-  shown.view = view;
+  std::vector<vtkINRLODVolume*> shown;
   vtkVolumeCollection* volumes = view->GetRenderer()->GetVolumes();
   vtkCollectionSimpleIterator place;
   volumes->InitTraversal(place);
   while (vtkVolume* next = volumes->GetNextVolume(place)) {
     auto* volume = vtkINRLODVolume::SafeDownCast(next);
     if (volume && volume->GetVisibility() && volume->GetShownMTime() > 0) {
-      shown.volumes.push_back(volume);
+      shown.push_back(volume);
     }
   }
   return shown;
-}
-
-/// Of the view that was drawn last: a screenshot is drawn right before it is written.
-ShownVolumes ShownInScreenshot()
-{
-  ShownVolumes found;
-  vtkSMSessionProxyManager* session =
-      vtkSMProxyManager::IsInitialized()
-          ? vtkSMProxyManager::GetProxyManager()->GetActiveSessionProxyManager()
-          : nullptr;
-  if (!session) {
-    return found;
-  }
-  vtkNew<vtkSMProxyIterator> proxies;
-  proxies->SetSessionProxyManager(session);
-  for (proxies->Begin("views"); !proxies->IsAtEnd(); proxies->Next()) {
-    auto* view = vtkSMRenderViewProxy::SafeDownCast(proxies->GetProxy());
-    const ShownVolumes shown = view ? ShownBy(view) : ShownVolumes();
-    if (shown.latest() > found.latest()) {
-      found = shown;
-    }
-  }
-  return found;
 }
 
 /// While it exists, what a view shows is drawn by this process: a server hands over what is to be
@@ -108,16 +71,9 @@ private:
   double Before;
 };
 
-/// Why the float picture of `mapper` is not the one in `screenshot`; empty when it is.
-std::string WhyAnother(vtkINRVolumeMapper* mapper, vtkImageData* screenshot)
+/// Why a picture of so many pixels is none that a screenshot of `wanted` shows; empty where it is.
+std::string WhyOtherSize(const int* drawn, const int* wanted)
 {
-  if (mapper->GetHasPiece()) {
-    return "This process has drawn a piece of the volume, and others the rest; save an OpenEXR "
-           "file in a single process, or in a client of theirs.";
-  }
-  int drawn[2];
-  mapper->GetFrameSize(drawn);
-  const int* wanted = screenshot->GetDimensions();
   if (drawn[0] == wanted[0] && drawn[1] == wanted[1]) {
     return {};
   }
@@ -128,6 +84,64 @@ std::string WhyAnother(vtkINRVolumeMapper* mapper, vtkImageData* screenshot)
          size(drawn) +
          "; save a single view, in no more pixels than it has (make the window larger, or set "
          "ViewSize in a script).";
+}
+
+/// Why the float picture of `mapper` is not the one in `screenshot`; empty when it is.
+std::string WhyAnother(vtkINRVolumeMapper* mapper, vtkImageData* screenshot)
+{
+  if (mapper->GetHasPiece()) {
+    return "This process has drawn a piece of the volume, and others the rest; save an OpenEXR "
+           "file in a single process, or in a client of theirs.";
+  }
+  int drawn[2];
+  mapper->GetFrameSize(drawn);
+  return WhyOtherSize(drawn, screenshot->GetDimensions());
+}
+
+/// Whether the latest picture is that of the second of two eyes, which ParaView draws one after the
+/// other and writes side by side, as colours, or into two files: none was written in between.
+bool IsOfBothEyes(const inr::StillRender& latest)
+{
+  static int asked = 0;
+  static bool ofBoth = false;
+  if (latest.number != asked) {
+    const inr::StillRender& before = inr::StillRenderBefore();
+    ofBoth = latest.stereoType == VTK_STEREO_RIGHT && before.stereoType == VTK_STEREO_LEFT &&
+             before.view == latest.view && before.number != asked;
+    asked = latest.number;
+  }
+  return ofBoth;
+}
+
+/// Why a screenshot in stereo has no float picture; empty when it has one, or is not in stereo.
+std::string WhyNoStereo(const inr::StillRender& latest, bool drawnHere)
+{
+  const bool ofBoth = IsOfBothEyes(latest);
+  const bool ofOne = latest.stereoType == VTK_STEREO_LEFT || latest.stereoType == VTK_STEREO_RIGHT;
+  if (latest.stereoType == 0 || (ofOne && !ofBoth && drawnHere)) {
+    return {};
+  }
+  return drawnHere
+             ? "An OpenEXR file has the picture of one eye; save \"Left Eye Only\" and \"Right "
+               "Eye Only\" one after the other."
+             : "A server's picture in stereo has 8 bits only; save an OpenEXR file without "
+               "stereo.";
+}
+
+/// What there is of a volume that is out of sight.
+void WriteNothing(const char* file, const int* size, bool withSamples)
+{
+  const inr::Image rgba(size[0], size[1], 4);
+  inr::Image depth(size[0], size[1], 1);
+  std::fill(depth.pixels.begin(), depth.pixels.end(), 1.0f);
+  inr::Image samples;
+  if (withSamples) {
+    samples = inr::Image(size[0], size[1], 2);
+    for (std::size_t k = 1; k < samples.pixels.size(); k += 2) {
+      samples.pixels[k] = -1; // no level
+    }
+  }
+  inr::WriteExr(file, rgba, depth, samples);
 }
 
 } // namespace
@@ -142,19 +156,31 @@ void vtkINREXRWriter::Write()
 {
   this->SetErrorCode(vtkErrorCode::NoError);
   vtkImageData* screenshot = this->GetInput();
-  const ShownVolumes shown = ShownInScreenshot();
   if (!screenshot || !this->FileName) {
     this->Fail("An OpenEXR file takes a screenshot and a file name.");
-  } else if (shown.volumes.size() != 1) {
-    this->Fail("The view shows " + std::to_string(shown.volumes.size()) +
+    return;
+  }
+  // A screenshot is drawn right before it is written.
+  const inr::StillRender latest = inr::LatestStillRender();
+  auto* view = vtkSMRenderViewProxy::SafeDownCast(latest.view);
+  const std::vector<vtkINRLODVolume*> shown =
+      view ? ShownBy(view) : std::vector<vtkINRLODVolume*>();
+  if (shown.size() != 1) {
+    this->Fail("The view shows " + std::to_string(shown.size()) +
                " INR volumes; an OpenEXR file takes the picture of one.");
-  } else if (shown.volumes[0]->GetDrawnHere()) {
-    this->WriteFrom(shown.volumes[0], screenshot);
+    return;
+  }
+  const bool drawnHere = shown[0]->GetDrawnHere();
+  const std::string whyNoStereo = WhyNoStereo(latest, drawnHere);
+  if (!whyNoStereo.empty()) {
+    this->Fail(whyNoStereo);
+  } else if (drawnHere) {
+    this->WriteFrom(shown[0], screenshot);
   } else {
-    const DrawnHere here(shown.view);
+    const DrawnHere here(view);
     const int* size = screenshot->GetDimensions();
-    vtkSMSaveScreenshotProxy::CaptureImage(shown.view, vtkVector2i(size[0], size[1]));
-    this->WriteFrom(shown.volumes[0], screenshot);
+    vtkSMSaveScreenshotProxy::CaptureImage(view, vtkVector2i(size[0], size[1]));
+    this->WriteFrom(shown[0], screenshot);
   }
 }
 
@@ -162,12 +188,29 @@ void vtkINREXRWriter::WriteFrom(vtkINRLODVolume* volume, vtkImageData* screensho
 {
   auto* mapper =
       volume->GetDrawnHere() ? vtkINRVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
-  if (!mapper || mapper->GetImageReduction() == 0) {
+  if (mapper && !volume->GetDrawn()) {
+    this->WriteOutOfSight(*mapper, screenshot);
+  } else if (!mapper || mapper->GetImageReduction() == 0) {
     this->Fail("This process cannot draw the view, and a server's picture has 8 bits only; hide "
                "what has to be drawn by the server, such as other volumes.");
   } else if (const std::string problem = WhyAnother(mapper, screenshot); !problem.empty()) {
     this->Fail(problem);
   } else if (!mapper->WriteEXR(this->FileName)) {
     this->SetErrorCode(vtkErrorCode::CannotOpenFileError); // the mapper has said why
+  }
+}
+
+void vtkINREXRWriter::WriteOutOfSight(vtkINRVolumeMapper& mapper, vtkImageData* screenshot)
+{
+  const int* wanted = screenshot->GetDimensions();
+  const std::string problem = WhyOtherSize(inr::LatestStillRender().size, wanted);
+  if (!problem.empty()) { // the volume may be in another part
+    this->Fail(problem);
+    return;
+  }
+  try {
+    WriteNothing(this->FileName, wanted, mapper.GetSampleChannels());
+  } catch (const std::exception& failure) {
+    this->Fail(failure.what());
   }
 }

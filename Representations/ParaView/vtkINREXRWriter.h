@@ -6,9 +6,10 @@
  * ParaView hands an image writer the picture in 8 bits. This one takes of it the size, and writes
  * the floats that the volume's mapper has made of the same picture (vtkINRVolumeMapper::WriteEXR).
  * Where a server has drawn the view, this process draws it once more: the server sends it the model
- * and the surfaces in the view, whatever their size. Writing fails with a message when there is not
- * exactly one INR volume in the view that was drawn last, the picture was put together from tiles
- * or several views, or something in the view can only be drawn by the server.
+ * and the surfaces in the view, whatever their size. Of a volume that is out of sight the picture
+ * is empty. Writing fails with a message when there is not exactly one INR volume in the view that
+ * was drawn last, the picture was put together from tiles, several views or both eyes, or something
+ * in the view can only be drawn by the server, as a picture in stereo that was drawn there.
  */
 #ifndef vtkINREXRWriter_h
 #define vtkINREXRWriter_h
@@ -19,6 +20,7 @@
 #include <string> // for Fail
 
 class vtkINRLODVolume;
+class vtkINRVolumeMapper;
 
 class VTKINRREPRESENTATIONS_EXPORT vtkINREXRWriter : public vtkImageWriter
 {
@@ -37,6 +39,7 @@ private:
   void operator=(const vtkINREXRWriter&) = delete;
 
   void WriteFrom(vtkINRLODVolume* volume, vtkImageData* screenshot);
+  void WriteOutOfSight(vtkINRVolumeMapper& mapper, vtkImageData* screenshot);
   void Fail(const std::string& problem);
 };
 

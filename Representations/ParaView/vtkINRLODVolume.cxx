@@ -43,6 +43,7 @@ void vtkINRLODVolume::Show(bool here)
 
 int vtkINRLODVolume::Draw(vtkViewport* viewport)
 {
+  this->Drawn.Modified();
   auto* renderer = vtkRenderer::SafeDownCast(viewport);
   auto* mapper = vtkINRVolumeMapper::SafeDownCast(this->GetMapper());
   if (renderer && mapper && mapper->GetDrawsTogether()) {

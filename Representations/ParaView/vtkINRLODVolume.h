@@ -33,6 +33,8 @@ public:
    */
   void Show(bool here);
   vtkMTimeType GetShownMTime() const { return this->Shown.GetMTime(); }
+  /// Whether the renderer has had this drawn since then; else it is out of sight.
+  bool GetDrawn() const { return this->Drawn.GetMTime() > this->Shown.GetMTime(); }
   bool GetDrawnHere() const { return this->DrawnHere; }
   ///@}
 
@@ -49,6 +51,7 @@ private:
   bool DrawInOverlay = false;
   bool DrawnHere = false;
   vtkTimeStamp Shown;
+  vtkTimeStamp Drawn;
 };
 
 #endif

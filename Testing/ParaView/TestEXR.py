@@ -12,10 +12,10 @@ load_plugin()
 import inrvolume  # noqa: E402  ParaView's Python then knows the mapper
 
 
-def save(path, **options):
-    """What is reported while the view is saved."""
+def save(path, shown=None, **options):
+    """What is reported while the view, or another one, is saved."""
     with Messages() as messages:
-        simple.SaveScreenshot(path, view, **options)
+        simple.SaveScreenshot(path, shown or view, **options)
     return messages
 
 
@@ -70,11 +70,32 @@ display.LevelOfDetailScale = 1
 check(save(path, ImageResolution=[80, 60]).errors() == 0, "a small picture reported something")
 check(read_exr(path)["A"].shape == (60, 80), "size", read_exr(path)["A"].shape)
 
+# Of a volume that is out of sight there is nothing, whatever was drawn before.
+camera = view.GetActiveCamera()
+camera.Yaw(180)
+check(save(path).errors() == 0, "a volume behind the camera reported something")
+empty = read_exr(path)
+check(all((empty[name] == 0).all() for name in "RGBA") and (empty["Z"] == 1).all(), "is not empty")
+check(empty["A"].shape == (120, 160), "size", empty["A"].shape)
+camera.Yaw(180)
+
+# Each eye by itself is what it is in a window.
+eyes = {}
+for eye in "Left", "Right":
+    check(save(path, StereoMode=f"{eye} Eye Only").errors() == 0, eye, "eye reported something")
+    eyes[eye] = read_exr(path)["A"]
+check(np.abs(eyes["Left"] - eyes["Right"]).max() > 0.01, "both eyes see the same")
+save(path)  # VTK's own camera is off in the first picture after one in stereo
+
 # No file, or the one before, and one message.
+other = simple.CreateRenderView(ViewSize=[160, 120])
+simple.Show(simple.Sphere(), other)
 before = open(path, "rb").read()
 second = simple.INRReader(FileName=MODEL)
 for what, wanted, prepare in (
     ("tiles", "parts", lambda: {"ImageResolution": [320, 240]}),
+    ("another view", "0 INR volumes", lambda: {"shown": other}),
+    ("interlaced eyes", "one eye", lambda: {"StereoMode": "Interlaced"}),
     ("two volumes", "2 INR volumes", lambda: simple.Show(second, view) and {}),
     ("none", "0 INR volumes", lambda: simple.Hide(reader, view) or simple.Hide(second, view) or {}),
 ):
@@ -82,6 +103,9 @@ for what, wanted, prepare in (
     check(messages.errors() == 1 and wanted in messages.text, what, "reported", messages.text)
     check(open(path, "rb").read() == before, what, "changed the file")
 simple.Show(reader, view)
+messages = save(output_file("eyes.exr"), StereoMode="Both Eyes")
+check(messages.errors() > 0 and "one eye" in messages.text, "both eyes reported", messages.text)
+check(not os.path.exists(output_file("eyes_left.exr")), "both eyes made a file")
 os.makedirs(output_file("folder.exr"), exist_ok=True)
 for bad in output_file("no-such-folder/picture.exr"), output_file("folder.exr"):
     messages = save(bad)
