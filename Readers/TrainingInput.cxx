@@ -5,11 +5,13 @@
 #include "Scalars.h"
 #include "vtkINRWriter.h"
 
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
+#include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <cmath>
@@ -149,16 +151,19 @@ vtkAbstractArray* DefaultArray(vtkDataSetAttributes& data)
   return arrays.size() == 1 ? arrays.front() : nullptr;
 }
 
-std::string NoSuchArray(vtkDataSetAttributes& data, const char* chosen)
+std::string NoSuchArray(vtkImageData& image, const char* chosen)
 {
+  vtkDataSetAttributes& data = *image.GetPointData();
   std::string text = chosen && *chosen
                          ? "the image has no point array '" + std::string(chosen) + "'"
                          : std::string("no point array is chosen");
   const std::vector<vtkAbstractArray*> arrays = VolumesAmong(data);
   if (arrays.empty()) {
     const bool hasMasks = data.GetNumberOfArrays() > 0;
-    return text + ", and the image has none" +
-           (hasMasks ? " but vtkGhostType or vtkValidPointMask" : "");
+    text += std::string(", and the image has none") +
+            (hasMasks ? " but vtkGhostType or vtkValidPointMask" : "");
+    const bool hasCells = !VolumesAmong(*image.GetCellData()).empty();
+    return text + (hasCells ? "; of its cell data CellDataToPointData makes some" : "");
   }
   text += "; Scalars takes one of";
   for (std::size_t k = 0; k < arrays.size(); ++k) {

@@ -35,4 +35,4 @@ vtkAbstractArray* DefaultArray(vtkDataSetAttributes& data);
 
 /// For the user: that `chosen` (may be null) is none of the point arrays, and which there are
 /// beside masks.
-std::string NoSuchArray(vtkDataSetAttributes& data, const char* chosen);
+std::string NoSuchArray(vtkImageData& image, const char* chosen);

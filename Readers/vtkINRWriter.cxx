@@ -281,7 +281,7 @@ TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
     array = DefaultArray(*image->GetPointData());
   }
   if (!array) {
-    throw inr::Error(inr::ErrorCode::InvalidArgument, NoSuchArray(*image->GetPointData(), chosen));
+    throw inr::Error(inr::ErrorCode::InvalidArgument, NoSuchArray(*image, chosen));
   }
   const std::string name = array->GetName() ? array->GetName() : "";
   if (association != vtkDataObject::FIELD_ASSOCIATION_POINTS) {

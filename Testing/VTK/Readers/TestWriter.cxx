@@ -368,6 +368,9 @@ TEST_F(Writer, RefusesDataThatItCannotSave)
   image->GetCellData()->AddArray(cells);
   this->Algorithm->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
   this->expectRefusal(image, "CellDataToPointData");
+  this->Algorithm->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
+  points->Initialize();
+  this->expectRefusal(image, "the image has none; of its cell data CellDataToPointData");
 }
 
 TEST_F(Writer, RefusesSettingsThatMakeNoSense)
