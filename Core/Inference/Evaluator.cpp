@@ -114,14 +114,23 @@ void EvaluatePart(const Evaluator& evaluator, const Lattice& lattice, const glm:
   }
 }
 
+ModelPointer RequireModel(ModelPointer model)
+{
+  if (!model) {
+    throw Error(ErrorCode::InvalidArgument, "an evaluator needs a model");
+  }
+  return model;
+}
+
 class KernelEvaluator : public Evaluator
 {
 public:
   /// `choose` gives InferenceKernels for a ModelView.
   template <class Choose>
   KernelEvaluator(ModelPointer model, const Choose& choose)
-      : Source(std::move(model)), Views(this->Source->description, CheckedLayout(*this->Source),
-                                        this->Source->parameters.data()),
+      : Source(RequireModel(std::move(model))),
+        Views(this->Source->description, CheckedLayout(*this->Source),
+              this->Source->parameters.data()),
         Kernels(choose(this->Views.view())), Network(this->Views.view(), this->Kernels.layout)
   {
     const AlignedVector<float>& parameters = this->Source->parameters;

@@ -65,8 +65,9 @@ public:
 /// The fastest kernel that this processor runs; `kernel` asks for one by name ("avx512", "avx2",
 /// "baseline", or "amx" for tile registers; for tests) and Error(Unsupported) says that
 /// it is not to be had here. Kernels for bfloat16 sum up in different orders, each within the
-/// bound; the fastest one is the same throughout a process. Throws Error(InvalidModel) when the
-/// parameter count does not fit the description or a parameter is NaN or infinite.
+/// bound; the fastest one is the same throughout a process. Throws Error(InvalidArgument) without a
+/// model and Error(InvalidModel) when the parameter count does not fit the description or a
+/// parameter is NaN or infinite.
 std::shared_ptr<const Evaluator>
 MakeEvaluator(ModelPointer model, const std::string& kernel = "",
               InferencePrecision precision = InferencePrecision::Float32);

@@ -215,6 +215,14 @@ TEST(HugePages, LeaveWhatIsThere)
   }
 }
 
+TEST(Evaluator, NeedsAModel)
+{
+  EXPECT_THROW(inr::MakeEvaluator(nullptr), inr::Error);
+  EXPECT_THROW(
+      inr::MakeEvaluator(nullptr, inr::ChooseKernels("", inr::InferencePrecision::Float32)),
+      inr::Error);
+}
+
 TEST(Evaluator, RefusesAWrongParameterCount)
 {
   auto model = RandomModel(SmallDescription());
