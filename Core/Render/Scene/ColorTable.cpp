@@ -23,8 +23,9 @@ void Check(const TransferFunction& function)
       throw Error(ErrorCode::InvalidArgument, message);
     }
   };
-  require(function.table.size() >= 2 && function.table.size() <= (1u << 24),
-          "a transfer function needs 2 to 2^24 table entries");
+  // More would take hundreds of megabytes for samples of all lengths (StepTable).
+  require(function.table.size() >= 2 && function.table.size() <= (1u << 16),
+          "a transfer function needs 2 to 65536 table entries");
   require(std::isfinite(function.low) && std::isfinite(function.high) &&
               function.low < function.high,
           "a transfer function needs a range with low < high");

@@ -17,7 +17,7 @@ struct TransferFunction
   double low = 0;
   double high = 1;
   bool logarithmic = false;
-  std::vector<glm::vec4> table; ///< at least 2 entries, alpha in [0, 1]
+  std::vector<glm::vec4> table; ///< 2 to 65536 entries, alpha in [0, 1]
   glm::vec4 below{0};
   glm::vec4 above{0};
 

@@ -189,6 +189,7 @@ TEST(ColorTable, RefusesNonsense)
     EXPECT_THROW(inr::ColorTable(function, Range(0, 1)), inr::Error);
   };
   refused([](auto& function) { function.table.pop_back(); });
+  refused([](auto& function) { function.table.assign(65537, glm::vec4(0)); });
   refused([](auto& function) { function.table[0].x = NAN; });
   refused([](auto& function) { function.table[0].w = 1.5f; });
   refused([](auto& function) { function.high = function.low; });
