@@ -112,7 +112,9 @@ public:
 
   ///@{
   /// Quality measured when the file was written, against the original data: PSNR in dB (infinite
-  /// for an exact file), SSIM, largest error in data units. NaN where the file does not say.
+  /// for an exact file), SSIM, largest error in data units; of the field's values, as they are
+  /// drawn. Arrays of integers have these rounded to whole numbers: another half of error at most,
+  /// and often less in all. NaN where the file does not say.
   vtkGetMacro(PSNR, double);
   vtkGetMacro(SSIM, double);
   vtkGetMacro(MaximumError, double);

@@ -247,8 +247,9 @@ public:
   ///@}
 
   ///@{
-  /// What the last Write achieved: quality against the data (PSNR in dB, infinite when exact),
-  /// bytes of the data over bytes of the file, steps and seconds of training. 0 before.
+  /// What the last Write achieved: quality against the data (PSNR in dB, infinite when exact; see
+  /// vtkINRReader), bytes of the data over bytes of the file, steps and seconds of training. 0
+  /// before.
   vtkGetMacro(PSNR, double);
   vtkGetMacro(SSIM, double);
   vtkGetMacro(MaximumError, double);

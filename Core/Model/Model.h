@@ -16,7 +16,9 @@
 
 namespace inr {
 
-/// Measured against the data when the file was written, over all finite voxels, or over some.
+/// Measured against the data when the file was written, over all finite voxels, or over some: of
+/// the field's values, as they are drawn. A reader that gives them as the data's type rounds them
+/// besides, integers to whole numbers.
 struct Quality
 {
   double psnr = 0;     ///< dB, peak = high - low; infinity when every voxel is exact
