@@ -307,22 +307,36 @@ void Classify(const StepLookup& lookup, const SampleBatch& batch, int count, Cla
   }
 }
 
-int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opaque,
-              RayColor& color, std::int64_t& clamped)
+/// The samples of a batch as Classify has found them. `Exact`: also where entries are steep.
+template <bool Exact>
+int AddUpClassified(const StepLookup& lookup, const Classified& at, SampleBatch& batch, int count,
+                    float opaque, RayColor& color)
 {
-  Classified at;
-  Classify(lookup, batch, count, at, clamped);
   const auto sampleAt = [&](int k) {
     const std::int64_t row = static_cast<std::int64_t>(batch.length[k]) * lookup.rows + at.entry[k];
     const Rgba first = LoadRgba(lookup.entries + 4 * row);
     const Rgba second = LoadRgba(lookup.entries + 4 * row + 4);
     Rgba entry = first + (second - first) * at.weight[k];
-    if (entry[3] > 1.0f) {
+    if (Exact && entry[3] > 1.0f) {
       entry[3] = SteepOpacityOf(lookup, batch.length[k], first[3], second[3], at.weight[k]);
     }
     return ShownSample{entry, entry[3], entry[3]};
   };
   return AddUp(count, opaque, sampleAt, batch.opacity, color);
+}
+
+int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opaque,
+              RayColor& color, std::int64_t& clamped)
+{
+  Classified at;
+  Classify(lookup, batch, count, at, clamped);
+  const RayColor before = color;
+  const int used = AddUpClassified<false>(lookup, at, batch, count, opaque, color);
+  if (color.transmittance >= 0) {
+    return used;
+  }
+  color = before; // a steep entry, behind which there is less than nothing: once more, with care
+  return AddUpClassified<true>(lookup, at, batch, count, opaque, color);
 }
 
 } // namespace

@@ -22,8 +22,9 @@ INR_HOST_DEVICE constexpr std::int64_t StepsOf(int length)
   return std::int64_t{length % 2 == 0 ? 1 : 3} << (length / 2);
 }
 
-/// See StepLookup; `length` in opacity unit distances.
-INR_HOST_DEVICE inline float SteepOpacity(float first, float second, float weight, float length)
+/// See StepLookup; `length` in opacity unit distances. Rare: what it takes is not for each sample.
+INR_HOST_DEVICE INR_CALLED inline float SteepOpacity(float first, float second, float weight,
+                                                     float length)
 {
   // What a unit distance lets through is linear in between.
   const auto through = [length](float entry) {
