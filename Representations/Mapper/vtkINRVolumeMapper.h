@@ -363,7 +363,9 @@ public:
    * Seconds after which a still frame is shown with what is there and refined in the following
    * ones, which the mapper asks the window's interactor for: short ones, with pauses for events in
    * between, and none while somebody interacts or RefineEvent is answered with no. A frame that
-   * takes the place of one that is still refined is such a short one, too. 0: a still frame is
+   * takes the place of one that is still refined is such a short one, too. Of paths through what is
+   * far too dense for its size (ScalarOpacityUnitDistance) parts of a first picture may be missing:
+   * see inr::Frame::timeLimit. 0: a still frame is
    * complete, however long it takes. Below 0, the default: 0.5 where the window has an interactor,
    * else 0. Screenshots and offscreen windows are always complete.
    */

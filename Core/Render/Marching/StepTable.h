@@ -43,6 +43,7 @@ int SampleLengths(int levels);
 /// 1 - (1 - opacity)^length. Between the entries of the colour table as many are put as linear
 /// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows. Opacity near 1,
 /// which short samples leave more steeply than rows can follow, is marked as steep: see StepLookup.
+/// Entries are floats: what lets through less than 2^-25 is opaque.
 class StepTable
 {
 public:

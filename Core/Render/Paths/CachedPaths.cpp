@@ -6,8 +6,7 @@
 #include "Core/Render/Tiles/WorkLimit.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <atomic>
 
 namespace inr {
 
@@ -220,19 +219,6 @@ private:
   const std::function<bool()>& KeepGoing;
 };
 
-/// How many tiles to trace before the next look at the clock, `left` seconds before the end, by
-/// what `done` of them took.
-std::size_t TilesWithin(double left, std::size_t done, double seconds)
-{
-  constexpr std::size_t atLeast = 8;
-  constexpr double part = 0.5; // others may take longer
-  if (std::isinf(left)) {
-    return std::numeric_limits<std::size_t>::max();
-  }
-  const double rate = static_cast<double>(done) / std::max(seconds, 1e-6);
-  return std::max(atLeast, static_cast<std::size_t>(part * left * rate));
-}
-
 } // namespace
 
 TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& bricks,
@@ -245,7 +231,15 @@ TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& br
   TracedTiles traced;
   traced.tiles.resize(round.tiles.size());
   std::vector<RequestList> lists(round.tiles.size());
-  const auto trace = [&](std::size_t k) {
+  traced.reached.resize(round.tiles.size());
+  std::atomic<int> begun{0};
+  const auto trace = [&](std::int64_t i) {
+    constexpr int least = 8; // that a call brings, however late it is
+    if (begun++ >= least && limit.secondsForTracing(hurries) <= 0) {
+      return;
+    }
+    const auto k = static_cast<std::size_t>(i);
+    traced.reached[k] = 1;
     CachedSampler sampler(bricks, field, onMiss);
     StoppableSampler stoppable(sampler, keepGoing);
     const Tile tile = tiling.tile(round.tiles[k]);
@@ -255,17 +249,7 @@ TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& br
     traced.tiles[k].work.networkSamples = sampler.inferred();
     lists[k] = sampler.requests();
   };
-  std::size_t done = 0;
-  double left = limit.secondsForTracing(hurries);
-  while (done < round.tiles.size() && (done == 0 || left > 0)) {
-    const std::size_t count =
-        std::min(TilesWithin(left, done, clock.seconds()), round.tiles.size() - done);
-    ForEachTile(arena, static_cast<std::int64_t>(count), keepGoing,
-                [&](std::int64_t k) { trace(done + static_cast<std::size_t>(k)); });
-    done += count;
-    left = limit.secondsForTracing(hurries);
-  }
-  traced.tiles.resize(done);
+  ForEachTile(arena, static_cast<std::int64_t>(round.tiles.size()), keepGoing, trace);
   for (const RequestList& list : lists) {
     requests.add(list);
   }

@@ -45,22 +45,25 @@ void PathPicture::start(const Frame& frame)
 void PathPicture::finishTiles(const TracedTiles& traced)
 {
   const Tiling tiling(this->Picture.width, this->Picture.height);
-  if (static_cast<std::int64_t>(traced.tiles.size()) == tiling.count()) {
-    this->Latest.marchSeconds = traced.seconds;
-  }
+  const bool whole = static_cast<std::int64_t>(this->Pending.size()) == tiling.count();
   FrameStatistics unfinished;
   std::size_t pending = 0;
+  std::size_t reached = 0;
   for (std::size_t k = 0; k < traced.tiles.size(); ++k) {
-    const bool finished = traced.final || traced.tiles[k].missed == 0;
+    const bool isHere = traced.reached.empty() || traced.reached[k] != 0;
+    const bool finished = isHere && (traced.final || traced.tiles[k].missed == 0);
     (finished ? this->Finished : unfinished).add(traced.tiles[k]);
     this->Work.add(traced.tiles[k].work);
+    reached += isHere ? 1 : 0;
     if (!finished) {
       this->Pending[pending++] = this->Pending[k];
     }
   }
-  // What was not reached stays, behind what was not finished.
-  const auto unreached = this->Pending.begin() + static_cast<std::ptrdiff_t>(traced.tiles.size());
-  this->Pending.erase(this->Pending.begin() + static_cast<std::ptrdiff_t>(pending), unreached);
+  this->Pending.resize(pending);
+  if (whole) { // what is missing may take as long as the others
+    this->Latest.marchSeconds = traced.seconds * static_cast<double>(traced.tiles.size()) /
+                                static_cast<double>(std::max<std::size_t>(reached, 1));
+  }
   unfinished.add(this->Finished);
   unfinished.marchSeconds = this->Latest.marchSeconds;
   this->Latest = unfinished;

@@ -33,9 +33,10 @@ struct PathRound
 
 struct TracedTiles
 {
-  /// In the order of the round's tiles: all of them or, where time ran out, the first ones. Tiles
-  /// that missed something, unless that is final, and those that are not here are asked for again.
+  /// In the order of the round's tiles. Those that missed something, unless that is final, and
+  /// those that were not reached are asked for again.
   std::vector<FrameStatistics> tiles;
+  std::vector<char> reached; ///< whether there was time for each; empty: for all of them
   bool final = false;
   double seconds = 0; ///< of tracing, without what was loaded
 };
@@ -53,9 +54,10 @@ public:
   PathPicture& operator=(const PathPicture&) = delete;
 
   /// Goes on with the picture at hand if `frame` asks for the same one (and for no fewer samples
-  /// than there are), else starts anew. Traces until Frame::samplesPerPixel or, at least one round,
-  /// as far as `limit`. Shows the mean of the complete samples or, before the first of them is
-  /// complete, what there is of it. `trace` may throw; nothing is lost then but its round. Throws
+  /// than there are), else starts anew. Traces until Frame::samplesPerPixel or, at least one round
+  /// as far as `trace` comes in it, as far as `limit`. Shows the mean of the complete samples or,
+  /// before the first of them is complete, what there is of it, where the rest lets everything
+  /// through. `trace` may throw; nothing is lost then but its round. Throws
   /// Error(InvalidArgument) as PathTracer does, and for fewer than one sample per pixel.
   FrameStatistics advance(const Frame& frame, const PathMedium& medium, const TraceTiles& trace,
                           const WorkLimit& limit, const PassOutput& output);

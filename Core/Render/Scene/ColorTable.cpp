@@ -23,7 +23,7 @@ void Check(const TransferFunction& function)
       throw Error(ErrorCode::InvalidArgument, message);
     }
   };
-  // More would take hundreds of megabytes for samples of all lengths (StepTable).
+  // These take some 30 MiB for samples of all lengths (StepTable), outside of a cache's budget.
   require(function.table.size() >= 2 && function.table.size() <= (1u << 16),
           "a transfer function needs 2 to 65536 table entries");
   require(std::isfinite(function.low) && std::isfinite(function.high) &&

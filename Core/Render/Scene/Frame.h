@@ -112,8 +112,11 @@ struct Frame
   std::optional<double> errorTolerance;
 
   /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones
-  /// are not there yet; what is missing is loaded in the time that is left. 0: as long as it takes
-  /// to be complete. Ignored without a cache.
+  /// are not there yet; what is missing is loaded in the time that is left. Paths through a medium
+  /// that is far too dense for its size may take longer: through the CPU's cache, a picture that
+  /// has none through some pixels yet lets everything through there, after four times the limit,
+  /// and a quarter of a second at least. 0: as long as it takes to be complete. Ignored without a
+  /// cache.
   double timeLimit = 0;
 
   /// Offsets of the samples along their rays, but for preIntegration, and paths are random in
@@ -161,7 +164,8 @@ struct FrameStatistics
   bool accelerated = false;
   double seconds = 0; ///< wall time
   /// Wall time of the rays or paths, without what was loaded into the cache in between. Where only
-  /// some tiles of a picture were marched again, the time that all of them had taken at first.
+  /// some tiles of a picture were marched again, the time that all of them had taken at first or,
+  /// where these were not reached, may take.
   double marchSeconds = 0;
   WorkDone work; ///< of the call
 
