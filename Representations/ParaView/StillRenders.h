@@ -13,7 +13,7 @@ struct StillRender
   vtkWeakPointer<vtkSMViewProxy> view; ///< null when there was none, or it is deleted
   int size[2] = {0, 0};                ///< pixels of the window
   int stereoType = 0;                  ///< VTK_STEREO_..., 0: none
-  int number = 0;                      ///< counted from 1
+  bool sameStereo = false;             ///< stereo was on all the time since the one before
 };
 
 /// From now on what `view` draws counts below.

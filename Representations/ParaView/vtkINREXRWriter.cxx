@@ -99,18 +99,13 @@ std::string WhyAnother(vtkINRVolumeMapper* mapper, vtkImageData* screenshot)
 }
 
 /// Whether the latest picture is that of the second of two eyes, which ParaView draws one after the
-/// other and writes side by side, as colours, or into two files: none was written in between.
+/// other and writes side by side, as colours, or into two files; between screenshots of one eye
+/// each it switches stereo off.
 bool IsOfBothEyes(const inr::StillRender& latest)
 {
-  static int asked = 0;
-  static bool ofBoth = false;
-  if (latest.number != asked) {
-    const inr::StillRender& before = inr::StillRenderBefore();
-    ofBoth = latest.stereoType == VTK_STEREO_RIGHT && before.stereoType == VTK_STEREO_LEFT &&
-             before.view == latest.view && before.number != asked;
-    asked = latest.number;
-  }
-  return ofBoth;
+  const inr::StillRender& before = inr::StillRenderBefore();
+  return latest.sameStereo && latest.stereoType == VTK_STEREO_RIGHT &&
+         before.stereoType == VTK_STEREO_LEFT && before.view == latest.view;
 }
 
 /// Why a screenshot in stereo has no float picture; empty when it has one, or is not in stereo.
@@ -188,7 +183,7 @@ void vtkINREXRWriter::WriteFrom(vtkINRLODVolume* volume, vtkImageData* screensho
 {
   auto* mapper =
       volume->GetDrawnHere() ? vtkINRVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
-  if (mapper && !volume->GetDrawn()) {
+  if (mapper && !volume->GetDrawn() && !mapper->GetHasPiece()) {
     this->WriteOutOfSight(*mapper, screenshot);
   } else if (!mapper || mapper->GetImageReduction() == 0) {
     this->Fail("This process cannot draw the view, and a server's picture has 8 bits only; hide "

@@ -79,11 +79,12 @@ check(all((empty[name] == 0).all() for name in "RGBA") and (empty["Z"] == 1).all
 check(empty["A"].shape == (120, 160), "size", empty["A"].shape)
 camera.Yaw(180)
 
-# Each eye by itself is what it is in a window.
+# Each eye by itself, also right after the other one of another kind of file.
 eyes = {}
 for eye in "Left", "Right":
     check(save(path, StereoMode=f"{eye} Eye Only").errors() == 0, eye, "eye reported something")
     eyes[eye] = read_exr(path)["A"]
+    simple.SaveScreenshot(output_file("left.png"), view, StereoMode="Left Eye Only")
 check(np.abs(eyes["Left"] - eyes["Right"]).max() > 0.01, "both eyes see the same")
 save(path)  # VTK's own camera is off in the first picture after one in stereo
 
