@@ -17,23 +17,25 @@ void vtkINRWriter::WarnOfWhole(const std::string& source)
 void vtkINRWriter::WarnOfLargeFile(const inr::Model& model)
 {
   constexpr double wellBelow = 0.9;
-  const bool isAsked = !(this->ModelConfig && *this->ModelConfig); // which overrides it
-  if (isAsked && this->Ratio < wellBelow * this->TargetRatio) {
+  const bool hasConfig = this->ModelConfig && *this->ModelConfig; // which overrides the ratio
+  const double asked = hasConfig ? 0 : this->TargetRatio;
+  if (this->Ratio < wellBelow * asked) {
     vtkWarningMacro("The file '" << this->Internal->Target << "' is " << this->Ratio
-                                 << " times smaller than the data, not " << this->TargetRatio
+                                 << " times smaller than the data, not " << asked
                                  << " times (TargetRatio): a model of " << model.parameters.size()
                                  << " parameters and the ranges of "
                                  << model.macroCells.ranges.size() << " macro-cells take more"
                                  << (this->MacroCellSize > 0
                                          ? "; a larger MacroCellSize gives fewer ranges."
                                          : "."));
-  } else if (this->Ratio < 1) {
+  } else if (this->Ratio < 1 && !(asked > 0)) {
     vtkWarningMacro(
         "The file '" << this->Internal->Target << "' is " << 1 / this->Ratio
                      << " times as large as the data: a model pays where these are much larger, or "
                         "with "
-                     << (isAsked ? "a TargetRatio that makes it smaller."
-                                 : "a smaller ModelConfig."));
+                     << (hasConfig ? "a smaller ModelConfig"
+                                   : "a TargetRatio that makes it smaller")
+                     << (this->ReadableByInstantVNR ? ", or without ReadableByInstantVNR." : "."));
   }
 }
 

@@ -267,6 +267,8 @@ TEST_F(Writer, WarnsOfAFileThatIsLargerThanTheData)
   EXPECT_NE(warning(nullptr).find("times as large as the data"), std::string::npos);
   EXPECT_NE(warning(nullptr).find("with a TargetRatio"), std::string::npos);
   EXPECT_NE(warning(SmallModel).find("a smaller ModelConfig"), std::string::npos);
+  this->Algorithm->SetTargetRatio(1e-3); // as asked for
+  EXPECT_EQ(warning(nullptr), "");
 }
 
 TEST_F(Writer, WarnsOfValuesThatAreNoNumbers)
