@@ -3,9 +3,9 @@
 
 #include "INRFirstLook.h"
 #include "INRPanel.h"
-#include "StillRenders.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
+#include "vtkINREXRWriter.h"
 #include "vtkNew.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyIterator.h"
@@ -73,7 +73,7 @@ void OnRegister(vtkObject*, unsigned long, void*, void* callData)
   }
   if (auto* view = vtkSMViewProxy::SafeDownCast(info->Proxy)) {
     if (std::strcmp(info->GroupName, "views") == 0) {
-      inr::WatchStillRenders(view);
+      vtkINREXRWriter::WatchView(view);
     }
     return;
   }
@@ -98,7 +98,7 @@ void WatchViews()
   proxies->SetSessionProxyManager(session);
   for (proxies->Begin("views"); !proxies->IsAtEnd(); proxies->Next()) {
     if (auto* view = vtkSMViewProxy::SafeDownCast(proxies->GetProxy())) {
-      inr::WatchStillRenders(view);
+      vtkINREXRWriter::WatchView(view);
     }
   }
 }

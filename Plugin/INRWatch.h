@@ -3,5 +3,5 @@
 
 /// Called by ParaView when the plugin is loaded. From then on, representations that can be an "INR
 /// Volume" get a first look (INRFirstLook.h) and a panel of their own (INRPanel.h), and the
-/// pictures that views draw are known (StillRenders.h). Does nothing in a server.
+/// pictures that views draw are known (vtkINREXRWriter.h). Does nothing in a server.
 void INRWatchProxies();

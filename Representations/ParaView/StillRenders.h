@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "vtkINRRepresentationsModule.h" // for the export macro
 #include "vtkSMViewProxy.h"
 #include "vtkWeakPointer.h"
 
@@ -17,7 +16,7 @@ struct StillRender
 };
 
 /// From now on what `view` draws counts below.
-VTKINRREPRESENTATIONS_EXPORT void WatchStillRenders(vtkSMViewProxy* view);
+void WatchStillRenders(vtkSMViewProxy* view);
 
 /// The latest one of all views, and the one before.
 const StillRender& LatestStillRender();

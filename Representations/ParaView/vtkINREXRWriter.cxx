@@ -141,6 +141,8 @@ void WriteNothing(const char* file, const int* size, bool withSamples)
 
 } // namespace
 
+void vtkINREXRWriter::WatchView(vtkSMViewProxy* view) { inr::WatchStillRenders(view); }
+
 void vtkINREXRWriter::Fail(const std::string& problem)
 {
   this->SetErrorCode(vtkErrorCode::UserError);

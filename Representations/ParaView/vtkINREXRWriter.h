@@ -21,6 +21,7 @@
 
 class vtkINRLODVolume;
 class vtkINRVolumeMapper;
+class vtkSMViewProxy;
 
 class VTKINRREPRESENTATIONS_EXPORT vtkINREXRWriter : public vtkImageWriter
 {
@@ -29,6 +30,10 @@ public:
   vtkTypeMacro(vtkINREXRWriter, vtkImageWriter);
 
   void Write() override;
+
+  /// Has the writer know of the pictures of a view of this client: screenshots of others are
+  /// refused.
+  static void WatchView(vtkSMViewProxy* view);
 
 protected:
   vtkINREXRWriter() = default;
