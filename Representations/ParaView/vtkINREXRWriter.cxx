@@ -158,7 +158,7 @@ void vtkINREXRWriter::Write()
     return;
   }
   // A screenshot is drawn right before it is written.
-  const inr::StillRender latest = inr::LatestStillRender();
+  const inr::StillRender& latest = inr::LatestStillRender();
   auto* view = vtkSMRenderViewProxy::SafeDownCast(latest.view);
   const std::vector<vtkINRLODVolume*> shown =
       view ? ShownBy(view) : std::vector<vtkINRLODVolume*>();
