@@ -360,8 +360,8 @@ TEST_P(BrickKernels, CompositeAnyNumberOfSamples)
   }
 }
 
-// Next to a peak of opacity 1, which is opaque however short a sample is, and let through a
-// million times as much a row away.
+// Next to a peak of opacity 1, which is opaque however short a sample is, while short samples of
+// values beside it let nearly everything through.
 TEST_P(BrickKernels, CompositeWhatIsSteep)
 {
   const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
