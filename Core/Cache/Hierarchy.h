@@ -24,8 +24,7 @@ class Hierarchy
 public:
   static constexpr int SmallestBrick = 4; ///< voxels per side
   static constexpr int LargestBrick = 1024;
-  static constexpr int LargestCoarsest =
-      40; ///< voxels per side: as bricks have by default; small bricks end at their own size
+  static constexpr int LargestCoarsest = 40; ///< voxels per side: as bricks have by default
 
   /// `brickSize`: voxels per side, as said. Throws Error(InvalidArgument) for sizes out of range
   /// and Error(TooLarge) for more than 2^19 bricks along an axis. `resolution`: of the field that
