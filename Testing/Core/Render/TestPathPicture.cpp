@@ -1,71 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Path tracing through the Renderer: with and without a cache, in parts, against what is known.
+// Path tracing through the Renderer: with and without a cache, against what is known.
 #include "Core/Error.h"
-#include "Core/Render/Paths/PathPicture.h"
-#include "Core/Render/Scene/PerView.h"
-#include "Testing/Core/Render/PathScene.h"
+#include "Testing/Core/Render/PathPictures.h"
 
 #include <atomic>
-#include <chrono>
-#include <memory>
-#include <set>
-#include <thread>
+#include <cmath>
+#include <functional>
 
 namespace test::path_picture {
-
-const glm::i64vec3 Dims(33, 33, 33);
-
-/// Linear along every axis, so that interpolation between voxels has no error.
-float Multilinear(const glm::vec3& u)
-{
-  return 0.1f + 0.8f * u.x * u.y + 0.1f * u.z - 0.3f * u.x * u.y * u.z;
-}
-
-inr::TransferFunction Medium()
-{
-  inr::TransferFunction medium;
-  medium.table = {{1, 0.2f, 0, 0}, {0.3f, 1, 0, 0.05f}, {0.1f, 0.5f, 1, 0.3f}};
-  return medium;
-}
-
-inr::CacheOptions SmallBricks()
-{
-  inr::CacheOptions cache;
-  cache.precision = inr::CachePrecision::Float32;
-  cache.brickSize = 8;
-  cache.bytes = 64 << 20;
-  cache.background = false; // every call brings something
-  return cache;
-}
-
-inr::Renderer MakeRenderer(bool cached, int threads = 2,
-                           const inr::CacheOptions& cache = SmallBricks())
-{
-  inr::RendererOptions options;
-  options.threads = threads;
-  options.cached = cached;
-  options.cache = cache;
-  inr::Renderer renderer(std::make_shared<FieldEvaluator>(Multilinear), VolumeOf(Dims), {},
-                         options);
-  renderer.setTransferFunction(Medium());
-  return renderer;
-}
-
-/// Everything at once: oblique, ambient light and a lamp, some rays past the volume.
-inr::Frame LitFrame(int size = 24)
-{
-  inr::Frame frame = ParallelFrame(size, {-4, -4}, {36, 36}, -30, 80);
-  frame.clipToWorld = glm::rotate(glm::dmat4(1.0), 0.3, glm::dvec3(0, 1, 0.2)) * frame.clipToWorld;
-  frame.mode = inr::RenderMode::PathTracing;
-  frame.samplesPerPixel = 4;
-  frame.levelOfDetailScale = 0;
-  frame.paths.ambientLight = {0.2f, 0.3f, 0.4f};
-  frame.paths.anisotropy = 0.3;
-  frame.lights = {inr::Light{}};
-  frame.lights[0].color = {2, 1, 1};
-  return frame;
-}
 
 /// Per pixel and channel: mean of many frames of one path each, and its squared standard error.
 struct Samples
@@ -219,91 +162,6 @@ TEST(PathPicture, IsTheSameAfterOneThatDidNotFitTheCache)
   EXPECT_EQ(Render(small, frame).pixels, Render(large, frame).pixels);
 }
 
-/// Calls with next to no time until the picture is complete; how many.
-int RenderInParts(inr::Renderer& renderer, inr::Frame frame, inr::Image& image)
-{
-  frame.timeLimit = 1e-9;
-  std::int64_t paths = 0;
-  for (int call = 1; call < 1000; ++call) {
-    const inr::FrameStatistics statistics = renderer.render(frame, image);
-    EXPECT_GE(statistics.paths, paths);
-    EXPECT_LE(statistics.paths, paths + 1);
-    EXPECT_EQ(statistics.complete, statistics.paths == frame.samplesPerPixel);
-    paths = statistics.paths;
-    if (statistics.complete) {
-      return call;
-    }
-  }
-  return 1000;
-}
-
-TEST(PathPicture, PartsMakeTheSamePicture)
-{
-  const inr::Frame frame = LitFrame();
-  for (const bool cached : {false, true}) {
-    inr::Renderer whole = MakeRenderer(cached);
-    inr::Renderer parts = MakeRenderer(cached);
-    inr::Image image;
-    const int calls = RenderInParts(parts, frame, image);
-    EXPECT_GE(calls, frame.samplesPerPixel);
-    EXPECT_LT(calls, 300);
-    EXPECT_EQ(image.pixels, Render(whole, frame).pixels);
-  }
-}
-
-TEST(PathPicture, PartsMakeTheSamePictureWhileBricksLoadBehindIt)
-{
-  inr::CacheOptions options = SmallBricks();
-  options.background = true;
-  inr::Renderer parts = MakeRenderer(true, 2, options);
-  inr::Frame frame = LitFrame();
-  inr::Renderer whole = MakeRenderer(true);
-  const inr::Image truth = Render(whole, frame);
-  frame.timeLimit = 0.01;
-  inr::Image image;
-  int calls = 1;
-  while (!parts.render(frame, image).complete && calls < 10000) {
-    ++calls;
-  }
-  EXPECT_LT(calls, 10000);
-  EXPECT_EQ(image.pixels, truth.pixels);
-}
-
-TEST(PathPicture, ShowsWhatThereIsBeforeTheFirstCompleteSample)
-{
-  inr::Renderer renderer = MakeRenderer(true);
-  inr::Frame frame = LitFrame();
-  frame.timeLimit = 1e-9;
-  inr::Image image;
-  const inr::FrameStatistics statistics = renderer.render(frame, image);
-  EXPECT_EQ(statistics.paths, 0);
-  EXPECT_FALSE(statistics.complete);
-  EXPECT_GT(statistics.missed, 0);
-  EXPECT_LE(statistics.missed, statistics.samples);
-  EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 0.0f);
-}
-
-TEST(PathPicture, EndsInPartsEvenWhereTheCacheIsTooSmall)
-{
-  inr::CacheOptions options = SmallBricks();
-  options.bytes = 60000;
-  inr::Renderer renderer = MakeRenderer(true, 2, options);
-  inr::Image image;
-  EXPECT_LT(RenderInParts(renderer, LitFrame(), image), 300);
-}
-
-TEST(PathPicture, InfersNoMoreTilesThanThereIsTimeFor)
-{
-  inr::CacheOptions options = SmallBricks();
-  options.bytes = 60000;
-  inr::Renderer renderer = MakeRenderer(true, 2, options);
-  const inr::Frame frame = LitFrame(64); // 16 tiles, more than between two looks at the time
-  inr::Image image;
-  const int calls = RenderInParts(renderer, frame, image);
-  EXPECT_GE(calls, 2 * frame.samplesPerPixel);
-  EXPECT_LT(calls, 300);
-}
-
 TEST(PathPicture, GoesOnOnlyWithTheSamePicture)
 {
   const std::vector<float> depth(24 * 24, 0.5f);
@@ -327,86 +185,6 @@ TEST(PathPicture, GoesOnOnlyWithTheSamePicture)
     inr::Renderer fresh = MakeRenderer(false);
     EXPECT_EQ(Render(renderer, frame).pixels, Render(fresh, frame).pixels) << k;
   }
-}
-
-/// Calls for one view after the other until all pictures are complete; how many for each of them.
-int RenderByTurns(inr::Renderer& renderer, std::vector<inr::Frame> frames,
-                  std::vector<inr::Image>& images)
-{
-  images.resize(frames.size());
-  for (int calls = 1; calls < 300; ++calls) {
-    bool complete = true;
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      frames[k].timeLimit = 1e-9;
-      frames[k].view = static_cast<int>(k);
-      complete = renderer.render(frames[k], images[k]).complete && complete;
-    }
-    if (complete) {
-      return calls;
-    }
-  }
-  return 300;
-}
-
-/// As many pictures from different sides.
-std::vector<inr::Frame> Sides(std::size_t count)
-{
-  std::vector<inr::Frame> frames(count, LitFrame());
-  for (std::size_t k = 0; k < count; ++k) {
-    frames[k].clipToWorld[3].x += 0.1 * static_cast<double>(k);
-  }
-  return frames;
-}
-
-TEST(PathPicture, GoesOnForEachViewByTurns)
-{
-  const std::vector<inr::Frame> frames = Sides(inr::PerView<inr::PathPicture>::Most);
-  for (const bool cached : {false, true}) {
-    inr::Renderer renderer = MakeRenderer(cached);
-    std::vector<inr::Image> images;
-    EXPECT_LT(RenderByTurns(renderer, frames, images), 100);
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      inr::Renderer alone = MakeRenderer(cached);
-      EXPECT_EQ(images[k].pixels, Render(alone, frames[k]).pixels) << k;
-    }
-  }
-}
-
-/// As what a selection looks at.
-TEST(PathPicture, GoesOnWhenRaysWereMarchedForAnotherView)
-{
-  inr::Renderer renderer = MakeRenderer(true);
-  inr::Frame frame = LitFrame();
-  frame.samplesPerPixel = 1000;
-  frame.timeLimit = 1e-9;
-  inr::Image image;
-  std::int64_t paths = 0;
-  while (paths < 2) {
-    paths = renderer.render(frame, image).paths;
-  }
-  inr::Frame rays = frame;
-  rays.mode = inr::RenderMode::RayMarching;
-  rays.view = -1;
-  inr::Image other;
-  renderer.render(rays, other);
-  EXPECT_GE(renderer.render(frame, image).paths, paths);
-}
-
-TEST(PerView, KeepsThoseOfTheViewsThatWereDrawnLast)
-{
-  inr::PerView<inr::PathPicture> pictures;
-  const int most = inr::PerView<inr::PathPicture>::Most;
-  std::vector<const inr::PathPicture*> first;
-  for (int view = 0; view < most; ++view) {
-    first.push_back(&pictures.of(view));
-  }
-  EXPECT_EQ(std::set<const inr::PathPicture*>(first.begin(), first.end()).size(), first.size());
-  EXPECT_EQ(&pictures.of(0), first[0]);
-  pictures.of(most); // in place of 1
-  for (int view = 2; view < most; ++view) {
-    EXPECT_EQ(&pictures.of(view), first[static_cast<std::size_t>(view)]);
-  }
-  EXPECT_EQ(&pictures.of(0), first[0]);
 }
 
 TEST(PathPicture, StartsAnewWithAnotherTransferFunction)
@@ -437,20 +215,6 @@ TEST(PathPicture, MoreSamplesGoOnWhereFewerEnded)
   EXPECT_EQ(fresh.render(frame, image, nullptr, count).paths, 9);
   EXPECT_EQ(whole, image.pixels);
   EXPECT_LT(some, 0.8 * asked);
-}
-
-TEST(PathPicture, LosesNothingWhenItIsStopped)
-{
-  inr::Renderer renderer = MakeRenderer(true);
-  const inr::Frame frame = LitFrame();
-  inr::Image image;
-  for (const int patience : {1, 3, 6, 11}) {
-    std::atomic<int> asked{0};
-    const auto keepGoing = [&] { return ++asked < patience; };
-    EXPECT_THROW(renderer.render(frame, image, nullptr, keepGoing), inr::Error);
-  }
-  inr::Renderer fresh = MakeRenderer(true);
-  EXPECT_EQ(Render(renderer, frame).pixels, Render(fresh, frame).pixels);
 }
 
 TEST(PathPicture, DepthIsThatOfTheFirstCollisions)
@@ -489,45 +253,6 @@ TEST(PathPicture, RefusesWhatIsOutOfRange)
   frame = LitFrame();
   frame.lights[0].direction = glm::dvec3(0);
   EXPECT_THROW(renderer.render(frame, image), inr::Error);
-}
-
-// A round whose tiles take far longer than there is time for: here, as each look at the field
-// waits.
-TEST(PathPicture, EndsInTheMidstOfARoundThatTakesFarTooLong)
-{
-  inr::Frame frame = LitFrame(96);
-  frame.samplesPerPixel = 1;
-  frame.timeLimit = 1e-3;
-  inr::Renderer renderer = MakeRenderer(true);
-  const inr::Image whole = Render(renderer, [&] {
-    inr::Frame unlimited = frame;
-    unlimited.timeLimit = 0;
-    return unlimited;
-  }());
-  frame.view = 1;
-  const auto slowly = [] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    return true;
-  };
-  const auto holes = [](const inr::Image& image) {
-    std::size_t count = 0;
-    for (std::size_t k = 3; k < image.pixels.size(); k += 4) {
-      count += image.pixels[k] == 0 ? 1 : 0;
-    }
-    return count;
-  };
-  inr::Image image;
-  const inr::FrameStatistics first = renderer.render(frame, image, nullptr, slowly);
-  EXPECT_FALSE(first.complete);
-  EXPECT_EQ(first.paths, 0);
-  EXPECT_GT(first.marchSeconds, 0.25); // for all, by those that were reached
-  EXPECT_GT(holes(image), holes(whole));
-  EXPECT_LT(holes(image), whole.pixels.size() / 4);
-  int frames = 1;
-  while (!renderer.render(frame, image, nullptr, slowly).complete) {
-    ASSERT_LT(++frames, 100);
-  }
-  EXPECT_EQ(image.pixels, whole.pixels);
 }
 
 } // namespace test::path_picture
