@@ -70,7 +70,7 @@ protected:
       float value = found;
       inr::ClampToRange(brick.range, value);
       const glm::vec4 color = inr::cuda::FindColor(this->Scene.steps, row.length, value)
-                                  .color(inr::cuda::UnitsOf(this->Scene.steps, row.length));
+                                  .color(inr::UnitsOf(this->Scene.steps, row.length));
       sum.light.add(color, color.w);
       if (!sum.halfOpaque && sum.light.isHalfOpaque()) {
         sum.halfOpaque = true;

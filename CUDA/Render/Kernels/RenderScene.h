@@ -55,12 +55,6 @@ struct StepColor
   }
 };
 
-/// Opacity unit distances of samples of the length that has this number (StepTable.h).
-INR_HOST_DEVICE inline float UnitsOf(const StepLookup& steps, int length)
-{
-  return steps.step * static_cast<float>(StepsOf(length));
-}
-
 /// Of samples of the length that has this number, at a place in the table: a
 /// normalised value or, of logarithmic colours, the coordinate of one.
 INR_HOST_DEVICE inline StepColor FindColor(const StepLookup& steps, int length, float place)

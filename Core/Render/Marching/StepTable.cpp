@@ -84,8 +84,7 @@ glm::vec4 Corrected(const glm::vec4& entry, double length)
 
 float SteepOpacityOf(const StepLookup& lookup, int length, float first, float second, float weight)
 {
-  const float units = lookup.step * static_cast<float>(StepsOf(length));
-  return SteepOpacity(first, second, weight, units);
+  return SteepOpacity(first, second, weight, UnitsOf(lookup, length));
 }
 
 int SampleLengths(int levels)

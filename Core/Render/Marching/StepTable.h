@@ -22,6 +22,12 @@ INR_HOST_DEVICE constexpr std::int64_t StepsOf(int length)
   return std::int64_t{length % 2 == 0 ? 1 : 3} << (length / 2);
 }
 
+/// Opacity unit distances of samples of the length that has this number.
+INR_HOST_DEVICE inline float UnitsOf(const StepLookup& steps, int length)
+{
+  return steps.step * static_cast<float>(StepsOf(length));
+}
+
 /// See StepLookup; `length` in opacity unit distances. Rare: what it takes is not for each sample.
 INR_HOST_DEVICE INR_CALLED inline float SteepOpacity(float first, float second, float weight,
                                                      float length)
