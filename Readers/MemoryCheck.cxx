@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "MemoryCheck.h"
+#include "Readers/MemoryCheck.h"
 
 #include "Core/Error.h"
 #include "Core/UsableMemory.h"

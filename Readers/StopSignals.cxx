@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "StopSignals.h"
+#include "Readers/StopSignals.h"
 
 #include <atomic>
 #include <csignal>

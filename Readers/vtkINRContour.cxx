@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRContour.h"
 
-#include "BrickContour.h"
-#include "BrickQueue.h"
-#include "ContourBricks.h"
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
-#include "LevelSampler.h"
-#include "NativeGrid.h"
-#include "StopSignals.h"
-#include "SurfaceBuilder.h"
-#include "VTKCompat.h"
+#include "Readers/Contour/BrickContour.h"
+#include "Readers/Contour/BrickQueue.h"
+#include "Readers/Contour/ContourBricks.h"
+#include "Readers/Contour/SurfaceBuilder.h"
+#include "Readers/Grid/LevelSampler.h"
+#include "Readers/Grid/NativeGrid.h"
+#include "Readers/StopSignals.h"
+#include "Readers/VTKCompat.h"
 
 #include <vtkFieldData.h>
 #include <vtkInformation.h>

@@ -3,12 +3,12 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
-#include "LevelSampler.h"
-#include "MemoryCheck.h"
-#include "NativeGrid.h"
-#include "Scalars.h"
-#include "StopSignals.h"
-#include "VTKCompat.h"
+#include "Readers/Grid/LevelSampler.h"
+#include "Readers/Grid/NativeGrid.h"
+#include "Readers/Grid/Scalars.h"
+#include "Readers/MemoryCheck.h"
+#include "Readers/StopSignals.h"
+#include "Readers/VTKCompat.h"
 
 #include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>

@@ -3,14 +3,14 @@
 
 #include "Core/Error.h"
 #include "Core/Render/CachedRenderer.h"
-#include "NativeGrid.h"
-#include "PresentedGrid.h"
-#include "RecentModels.h"
-#include "Scalars.h"
+#include "Readers/Extents.h"
+#include "Readers/Grid/NativeGrid.h"
+#include "Readers/Grid/PresentedGrid.h"
+#include "Readers/Grid/RecentModels.h"
+#include "Readers/Grid/Scalars.h"
 #include "vtkINRDataArray.h"
 
 #include <vtkDoubleArray.h>
-#include <vtkExtentTranslator.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
@@ -23,6 +23,7 @@
 #include <vtkTypeInt64Array.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <iomanip>
@@ -58,24 +59,12 @@ void WholeExtent(const glm::ivec3& dims, int extent[6])
 
 /// The part of the requested extent that this process is to produce, with so many layers of ghost
 /// cells around it.
-void PieceExtent(vtkInformation* outInfo, int ghostLevels, int extent[6])
+std::array<int, 6> RequestedPiece(vtkInformation* outInfo, int ghostLevels)
 {
   int requested[6];
   outInfo->Get(Pipeline::UPDATE_EXTENT(), requested);
-  const int pieces = outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
-  if (pieces <= 1) {
-    std::copy_n(requested, 6, extent);
-    return;
-  }
-  vtkNew<vtkExtentTranslator> translator;
-  translator->PieceToExtentThreadSafe(outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces,
-                                      ghostLevels, requested, extent,
-                                      vtkExtentTranslator::BLOCK_MODE, 0);
-}
-
-bool IsEmpty(const int extent[6])
-{
-  return extent[1] < extent[0] || extent[3] < extent[2] || extent[5] < extent[4];
+  return PieceExtent(requested, outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()),
+                     outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), ghostLevels);
 }
 
 // Whether an upstream file may have been made of more voxels than it tells: training out of core
@@ -329,31 +318,30 @@ void vtkINRReader::ReadData(vtkInformation* outInfo)
 {
   vtkImageData* output = vtkImageData::GetData(outInfo);
   output->Initialize();
-  int extent[6];
-  PieceExtent(outInfo, outInfo->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()), extent);
-  if (IsEmpty(extent)) { // more processes than cells
+  std::array<int, 6> extent =
+      RequestedPiece(outInfo, outInfo->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()));
+  if (IsEmpty(extent.data())) { // more processes than cells
     return;
   }
 
   ModelSource& source = *this->Internal->Source;
   const inr::ModelPointer& model = source.Model();
-  auto array =
-      vtkINRDataArray::Create(model, &this->Internal->Grid.dims.x, extent, source.Keepsake());
+  auto array = vtkINRDataArray::Create(model, &this->Internal->Grid.dims.x, extent.data(),
+                                       source.Keepsake());
   if (this->ArrayName && *this->ArrayName) {
     array->SetName(this->ArrayName);
   }
   double direction[9];
   CopyDirection(model->volume.direction, direction);
-  output->SetExtent(extent);
+  output->SetExtent(extent.data());
   output->SetOrigin(&model->volume.origin.x);
   output->SetSpacing(&this->Internal->Grid.spacing.x);
   output->SetDirectionMatrix(direction);
   output->GetPointData()->SetScalars(array);
   // Whoever counts or adds up afterwards, of pieces that somebody else wanted with ghost cells, has
   // to know these. The pipeline marks them for those only who leave it to cut the pieces.
-  int own[6];
-  PieceExtent(outInfo, 0, own);
-  output->GenerateGhostArray(own); // none where there are no such cells
+  std::array<int, 6> own = RequestedPiece(outInfo, 0);
+  output->GenerateGhostArray(own.data()); // none where there are no such cells
   this->AddFieldData(output);
 }
 

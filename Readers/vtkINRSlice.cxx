@@ -3,12 +3,12 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
-#include "MemoryCheck.h"
-#include "NativeGrid.h"
-#include "PlaneGrid.h"
-#include "Scalars.h"
-#include "StopSignals.h"
-#include "VTKCompat.h"
+#include "Readers/Grid/NativeGrid.h"
+#include "Readers/Grid/PlaneGrid.h"
+#include "Readers/Grid/Scalars.h"
+#include "Readers/MemoryCheck.h"
+#include "Readers/StopSignals.h"
+#include "Readers/VTKCompat.h"
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>

@@ -9,9 +9,9 @@
 #ifndef vtkINRTypedArray_h
 #define vtkINRTypedArray_h
 
-#include "BrickCache.h"
-#include "PresentedGrid.h"
-#include "VTKCompat.h"
+#include "Readers/Grid/PresentedBricks.h"
+#include "Readers/Grid/PresentedGrid.h"
+#include "Readers/VTKCompat.h"
 #include "vtkINRDataArray.h"
 
 #include <vtkGenericDataArray.h>
@@ -58,7 +58,7 @@ public:
   }
   void GetPresentedExtent(int extent[6]) const override
   {
-    const GridPart& part = this->Values->Cache.GetPart();
+    const GridPart& part = this->Values->Bricks.GetPart();
     for (int axis = 0; axis < 3; ++axis) {
       extent[2 * axis] = static_cast<int>(part.first[axis]);
       extent[2 * axis + 1] = static_cast<int>(part.first[axis] + part.size[axis] - 1);
@@ -72,7 +72,7 @@ public:
   ValueType GetValue(vtkIdType index) const
   {
     const T* copy = this->Values->Copy.load(std::memory_order_acquire);
-    return copy ? copy[index] : this->Values->Cache.Get(index);
+    return copy ? copy[index] : this->Values->Bricks.Get(index);
   }
   void GetTypedTuple(vtkIdType index, ValueType* tuple) const { *tuple = this->GetValue(index); }
   ValueType GetTypedComponent(vtkIdType index, int) const { return this->GetValue(index); }
@@ -137,7 +137,7 @@ public:
       return;
     }
     try {
-      this->Values->Cache.DecodeAll(out);
+      this->Values->Bricks.DecodeAll(out);
     } catch (const std::bad_alloc&) {
       vtkErrorMacro("Not enough memory to compute " << this->INR_VTK_ARRAY_CAPACITY << " values.");
     }
@@ -147,7 +147,7 @@ public:
   unsigned long GetActualMemorySize() const override
   {
     const std::size_t bytes =
-        this->Values ? this->Values->Cache.MemorySize() + this->Values->CopyBytes() : 0;
+        this->Values ? this->Values->Bricks.MemorySize() + this->Values->CopyBytes() : 0;
     return static_cast<unsigned long>(bytes / 1024 + 1);
   }
 
@@ -196,25 +196,25 @@ private:
   struct Shared
   {
     Shared(std::shared_ptr<const GridDecoder> decoder, const GridPart& part)
-        : Cache(std::move(decoder), part)
+        : Bricks(std::move(decoder), part)
     {}
     std::size_t CopyBytes() const
     {
       return this->Copy.load(std::memory_order_acquire) ? this->CopyStore.size() * sizeof(T) : 0;
     }
 
-    BrickCache<T> Cache;
+    PresentedBricks<T> Bricks;
     std::shared_ptr<Keepsake> Kept;
     std::mutex CopyMutex;
     std::vector<T> CopyStore;
     std::atomic<const T*> Copy{nullptr};
   };
 
-  const GridDecoder& Decoder() const { return this->Values->Cache.GetDecoder(); }
+  const GridDecoder& Decoder() const { return this->Values->Bricks.GetDecoder(); }
 
   void Adopt()
   {
-    const glm::i64vec3 size = this->Values->Cache.GetPart().size;
+    const glm::i64vec3 size = this->Values->Bricks.GetPart().size;
     this->NumberOfComponents = 1;
     this->INR_VTK_ARRAY_CAPACITY = size.x * size.y * size.z;
     this->MaxId = this->INR_VTK_ARRAY_CAPACITY - 1;
@@ -276,14 +276,14 @@ template <class T> const T* vtkINRTypedArray<T>::MakeCopy()
     }
     try {
       shared.CopyStore.resize(static_cast<std::size_t>(this->INR_VTK_ARRAY_CAPACITY));
-      shared.Cache.DecodeAll(shared.CopyStore.data());
+      shared.Bricks.DecodeAll(shared.CopyStore.data());
     } catch (const std::bad_alloc&) {
       vtkErrorMacro("Not enough memory for a copy of " << this->INR_VTK_ARRAY_CAPACITY
                                                        << " values.");
       return nullptr;
     }
     shared.Copy.store(shared.CopyStore.data(), std::memory_order_release);
-    shared.Cache.Clear(); // nobody asks it any more
+    shared.Bricks.Clear(); // nobody asks it any more
   }
   return shared.Copy;
 }

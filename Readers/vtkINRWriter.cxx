@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRWriter.h"
 
-#include "ControllerGroup.h"
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
-#include "ParallelInput.h"
-#include "RawFiles.h"
-#include "StopSignals.h"
-#include "TrainingInput.h"
-#include "Upstream.h"
-#include "WriterInternals.h"
+#include "Readers/StopSignals.h"
+#include "Readers/Training/ControllerGroup.h"
+#include "Readers/Training/ParallelInput.h"
+#include "Readers/Training/RawFiles.h"
+#include "Readers/Training/TrainingInput.h"
+#include "Readers/Training/Upstream.h"
+#include "Readers/Training/WriterInternals.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>

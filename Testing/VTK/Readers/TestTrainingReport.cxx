@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TrainingReport.h"
+#include "Readers/Training/TrainingReport.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Readers/Training/TrainingReport.h"
+
+#include "Core/Training/BatchSource.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace {
+
+/// Before that a guess is worth nothing.
+constexpr double SmallestFraction = 0.02;
+
+double Seconds(TrainingReport::Clock::duration time)
+{
+  return std::chrono::duration<double>(time).count();
+}
+
+std::string Formatted(const char* format, double number)
+{
+  char text[64];
+  std::snprintf(text, sizeof(text), format, number);
+  return text;
+}
+
+const char* Name(inr::TrainingPhase phase)
+{
+  switch (phase) {
+  case inr::TrainingPhase::Reading:
+    return "Reading the volume";
+  case inr::TrainingPhase::Training:
+    return "Training INR";
+  default:
+    return "Measuring INR quality";
+  }
+}
+
+} // namespace
+
+std::string TimesOfGroup(const inr::TrainingRecord& training)
+{
+  if (training.exchangeSeconds == 0) {
+    return "";
+  }
+  return Formatted(", %.3g s of them to exchange gradients", training.exchangeSeconds) +
+         Formatted(" and %.3g s to wait for those of other processes", training.waitingSeconds);
+}
+
+std::string TrainingReport::text(const inr::TrainingProgress& progress, Clock::time_point now)
+{
+  std::string text = Name(progress.phase);
+  const bool training = progress.phase == inr::TrainingPhase::Training;
+  if (training && progress.accelerated) {
+    text += std::string(" on the GPU, from ") + inr::TrainingPipelineName(progress.pipeline);
+  }
+  if (training && this->FirstSteps == 0) {
+    this->FirstSteps = progress.steps;
+    this->FirstStep = now;
+    // One that goes on from a checkpoint has not done in this time what was done before.
+    this->Start = this->FirstStep;
+    this->FirstFraction = progress.fraction;
+  }
+  const std::uint64_t latest = std::max(progress.steps, this->FirstSteps); // some may be lost
+  const auto steps = static_cast<double>(latest - this->FirstSteps);
+  if (training && steps > 0) {
+    const double rate = steps * inr::BatchSize / Seconds(now - this->FirstStep);
+    text += Formatted(", %.3g M samples/s", rate / 1e6);
+  }
+  const double done = progress.fraction - this->FirstFraction;
+  if (done > SmallestFraction) {
+    const double left = Seconds(now - this->Start) * (1.0 - progress.fraction) / done;
+    text += left < 120 ? Formatted(", %.0f s left", left) : Formatted(", %.0f min left", left / 60);
+  }
+  return text;
+}
