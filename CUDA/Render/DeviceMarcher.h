@@ -3,8 +3,8 @@
 
 #include "CUDA/Render/MarchedPicture.h"
 #include "Core/Render/AcceleratedRenderer.h"
-#include "Core/Render/KeptFrame.h"
 #include "Core/Render/Marching/StepTable.h"
+#include "Core/Render/Scene/KeptFrame.h"
 #include "Core/Render/Scene/PerView.h"
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/CachedRenderer.h"
-#include "Core/Render/KeptFrame.h"
+#include "Core/Render/Scene/KeptFrame.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 
 #include <cstdint>

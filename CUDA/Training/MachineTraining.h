@@ -8,9 +8,9 @@
 #include "CUDA/Training/PackedVolume.h"
 #include "CUDA/Training/TrainingPlan.h"
 #include "Core/Inference/ModelView.h"
-#include "Core/Training/AdamSchedule.h"
-#include "Core/Training/GradientDescent.h"
-#include "Core/Training/StratifiedPositions.h"
+#include "Core/Training/Descent/AdamSchedule.h"
+#include "Core/Training/Descent/GradientDescent.h"
+#include "Core/Training/Samples/StratifiedPositions.h"
 
 #include <algorithm>
 #include <memory>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "CUDA/Training/Kernels/TrainDraw.h"
-#include "Core/Training/SampleSource.h"
+#include "Core/Training/Samples/SampleSource.h"
+#include "Core/Training/Samples/StratifiedPositions.h"
 #include "Core/Training/Scalars.h"
-#include "Core/Training/StratifiedPositions.h"
 
 #include <algorithm>
 #include <cstdint>

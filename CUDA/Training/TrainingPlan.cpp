@@ -4,9 +4,9 @@
 #include "CUDA/Inference/Kernels/Activate.h"
 #include "CUDA/Training/Kernels/TrainLayers.h"
 #include "Core/Error.h"
-#include "Core/Training/AdamSchedule.h"
-#include "Core/Training/Optimiser.h"
-#include "Core/Training/TrainKernel.h"
+#include "Core/Training/Descent/AdamSchedule.h"
+#include "Core/Training/Descent/Optimiser.h"
+#include "Core/Training/Descent/TrainKernel.h"
 
 #include <algorithm>
 #include <string>

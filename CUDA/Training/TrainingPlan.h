@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/TrainingAccelerator.h"
+#include "Core/Training/Descent/TrainingAccelerator.h"
 
 #include <cstdint>
 

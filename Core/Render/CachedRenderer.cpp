@@ -3,6 +3,7 @@
 
 #include "Core/Cache/AcceleratedField.h"
 #include "Core/Error.h"
+#include "Core/Render/Tiles/TileLoop.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 #include "Core/UsableMemory.h"
 
@@ -215,9 +216,7 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
       break;
     }
     this->loadForPass(pass, requests, this->Store->cache().capacity() - 1, keepGoing);
-    if (keepGoing && !keepGoing()) {
-      throw Error(ErrorCode::Cancelled, "rendering stopped on request");
-    }
+    RequireGoing(keepGoing);
   }
   FrameStatistics statistics = pass.statistics();
   statistics.complete = true;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/KeptFrame.h"
 #include "Core/Render/MarchedTiles.h"
 #include "Core/Render/PictureCopy.h"
+#include "Core/Render/Scene/KeptFrame.h"
 
 #include <optional>
 #include <utility>

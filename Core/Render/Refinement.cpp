@@ -3,26 +3,16 @@
 
 namespace inr {
 
-namespace {
-
-Frame WithDepth(Frame frame, const std::vector<float>& depth)
-{
-  frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
-  return frame;
-}
-
-} // namespace
-
 Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
-    : OpaqueDepth(CopyOfDepth(scene.frame)), Picture(WithDepth(scene.frame, this->OpaqueDepth)),
-      Geometry(this->Picture, scene.bricks.cache().hierarchy().dims()),
-      Lighting(ShadingOf(this->Picture)),
-      Scene{this->Picture,   this->Geometry,
-            scene.majorants, scene.colors,
-            scene.steps,     scene.bricks,
-            scene.kernel,    scene.format,
-            scene.settings,  this->Lighting ? &*this->Lighting : nullptr,
-            scene.blocks,    scene.seen},
+    : Picture(scene.frame),
+      Geometry(this->Picture.frame(), scene.bricks.cache().hierarchy().dims()),
+      Lighting(ShadingOf(this->Picture.frame())),
+      Scene{this->Picture.frame(), this->Geometry,
+            scene.majorants,       scene.colors,
+            scene.steps,           scene.bricks,
+            scene.kernel,          scene.format,
+            scene.settings,        this->Lighting ? &*this->Lighting : nullptr,
+            scene.blocks,          scene.seen},
       Pass(this->Scene), Pixels(soFar)
 {}
 

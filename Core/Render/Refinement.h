@@ -3,9 +3,9 @@
 
 #include "Core/Render/Bricks/CachedPasses.h"
 #include "Core/Render/PictureCopy.h"
+#include "Core/Render/Scene/KeptFrame.h"
 
 #include <optional>
-#include <vector>
 
 namespace inr {
 
@@ -23,7 +23,7 @@ public:
   /// Whether `frame` asks for the same picture, and `output` for no more of it.
   bool continues(const Frame& frame, const PassOutput& output) const
   {
-    return IsSamePicture(this->Picture, frame) && this->Pixels.isEnoughFor(output);
+    return this->Picture.isOf(frame) && this->Pixels.isEnoughFor(output);
   }
 
   /// One round of the complete pass; the bricks that it waits for come out of `requests`. Its work.
@@ -36,8 +36,7 @@ public:
   const FrameStatistics& statistics() const { return this->Pass.statistics(); }
 
 private:
-  std::vector<float> OpaqueDepth;
-  Frame Picture; ///< with its depth there
+  KeptFrame Picture;
   RayGeometry Geometry;
   std::optional<Shading> Lighting;
   CachedScene Scene;

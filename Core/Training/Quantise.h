@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Model/Model.h"
-#include "Core/Training/PsnrEstimate.h"
+#include "Core/Training/Quality/PsnrEstimate.h"
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 #include "Core/Training/Trainer.h"
 
 #include "Core/Error.h"
-#include "Core/Training/Quality.h"
+#include "Core/Training/Quality/Quality.h"
 #include "Core/Training/TrainingLoop.h"
 #include "Core/Training/TrainingRun.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "Core/Model/Model.h"
-#include "Core/Training/CheckpointOptions.h"
-#include "Core/Training/TrainingAccelerator.h"
+#include "Core/Training/Checkpoint/CheckpointOptions.h"
+#include "Core/Training/Descent/TrainingAccelerator.h"
 #include "Core/Training/Volume.h"
 #include "Core/Training/VolumeReader.h"
 

@@ -2,7 +2,7 @@
 #include "Core/Training/TrainingLoop.h"
 
 #include "Core/Error.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Descent/GradientDescent.h"
 #include "Core/Training/NoMemory.h"
 #include "Core/Training/Quantise.h"
 

@@ -3,13 +3,13 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/EvaluateKernel.h"
-#include "Core/Training/CheckpointKeeper.h"
-#include "Core/Training/Descent.h"
-#include "Core/Training/PsnrEstimate.h"
+#include "Core/Training/Checkpoint/CheckpointKeeper.h"
+#include "Core/Training/Descent/Descent.h"
+#include "Core/Training/Parallel/TrainingGroup.h"
+#include "Core/Training/Quality/PsnrEstimate.h"
 #include "Core/Training/StepPlan.h"
 #include "Core/Training/Trainer.h"
 #include "Core/Training/TrainingClock.h"
-#include "Core/Training/TrainingGroup.h"
 
 #include <cstdint>
 #include <functional>

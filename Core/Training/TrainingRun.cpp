@@ -8,11 +8,11 @@
 #include "Core/Model/Compression.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
-#include "Core/Training/AcceleratedDescent.h"
+#include "Core/Training/Checkpoint/TrainingIdentity.h"
+#include "Core/Training/Descent/AcceleratedDescent.h"
 #include "Core/Training/NoMemory.h"
+#include "Core/Training/Quality/Ssim.h"
 #include "Core/Training/Quantise.h"
-#include "Core/Training/Ssim.h"
-#include "Core/Training/TrainingIdentity.h"
 #include "Core/Training/TrainingLoop.h"
 
 #include <Imath/half.h>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/BatchSource.h"
-#include "Core/Training/Checkpoint.h"
-#include "Core/Training/CheckpointKeeper.h"
-#include "Core/Training/PsnrEstimate.h"
+#include "Core/Training/Checkpoint/Checkpoint.h"
+#include "Core/Training/Checkpoint/CheckpointKeeper.h"
+#include "Core/Training/Parallel/TrainingGroup.h"
+#include "Core/Training/Quality/PsnrEstimate.h"
+#include "Core/Training/Samples/BatchSource.h"
 #include "Core/Training/Trainer.h"
-#include "Core/Training/TrainingGroup.h"
 
 #include <cstdint>
 #include <functional>

@@ -153,12 +153,6 @@ std::string ControllerGroup::firstOf(const std::string& said) const
   return {};
 }
 
-bool ControllerGroup::any(bool said) const
-{
-  const std::vector<int> all = this->valuesOfAll(static_cast<int>(said));
-  return std::count(all.begin(), all.end(), 0) < static_cast<std::ptrdiff_t>(all.size());
-}
-
 int ControllerGroup::threads() const
 {
   if (!this->Controller) {

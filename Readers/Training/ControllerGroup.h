@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/TrainingGroup.h"
+#include "Core/Training/Parallel/TrainingGroup.h"
 
 #include <vtkType.h>
 
@@ -34,9 +34,6 @@ public:
 
   /// What the first of them says that says something; empty where none does.
   std::string firstOf(const std::string& said) const;
-
-  /// Whether one of them says so.
-  bool any(bool said) const;
 
 private:
   void gatherPiece(const std::string& bytes, vtkIdType begin, const std::vector<vtkIdType>& lengths,

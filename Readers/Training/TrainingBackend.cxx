@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Training/TrainingBackend.h"
 
-#include "Core/Training/BatchSource.h"
+#include "Core/Training/Samples/BatchSource.h"
 
 #include <vtkObject.h>
 #include <vtkSetGet.h>

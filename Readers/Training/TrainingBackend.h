@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Model/Model.h"
-#include "Core/Training/TrainingAccelerator.h"
+#include "Core/Training/Descent/TrainingAccelerator.h"
 
 #include <memory>
 #include <mutex>

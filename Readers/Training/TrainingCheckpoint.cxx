@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Training/TrainingCheckpoint.h"
 
-#include "Core/Training/KeptSurvey.h"
+#include "Core/Training/Streaming/KeptSurvey.h"
 
 #include <vtkLogger.h>
 #include <vtkObject.h>

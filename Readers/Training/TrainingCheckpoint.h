@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Error.h"
-#include "Core/Training/CheckpointOptions.h"
+#include "Core/Training/Checkpoint/CheckpointOptions.h"
 
 #include <mutex>
 #include <string>

@@ -5,7 +5,7 @@
 #include "Core/Error.h"
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelFile.h"
-#include "Core/Training/ParallelTraining.h"
+#include "Core/Training/Parallel/ParallelTraining.h"
 #include "Core/UsableMemory.h"
 #include "Readers/StopSignals.h"
 #include "Readers/Training/ControllerGroup.h"

@@ -10,7 +10,7 @@
 // ("scattered", "bricks" or "training") is answered by "samples, wall seconds, processor seconds".
 #include "Core/Cache/BrickSource.h"
 #include "Core/Model/ModelFile.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Descent/GradientDescent.h"
 #include "Testing/Benchmarks/Models.h"
 #include "Testing/Core/RandomModel.h"
 

@@ -9,7 +9,7 @@
 // is no GPU, and says why.
 #include "CUDA/CudaTrainer.h"
 #include "Core/Error.h"
-#include "Core/Training/BatchSource.h"
+#include "Core/Training/Samples/BatchSource.h"
 #include "Testing/Benchmarks/Models.h"
 #include "Testing/Core/Training/FieldReader.h"
 

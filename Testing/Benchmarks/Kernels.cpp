@@ -9,7 +9,7 @@
 #include "Core/Inference/InferenceKernels.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Random.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Descent/GradientDescent.h"
 #include "Core/Training/Trainer.h"
 #include "Testing/Benchmarks/Ceilings.h"
 #include "Testing/Benchmarks/Models.h"

@@ -7,7 +7,7 @@
 //
 // prints one JSON object: the parameters and the PSNR of ours, at the default size, and of the next
 // larger ones of upstream's two example models. recipes.py writes the result file.
-#include "Core/Training/Quality.h"
+#include "Core/Training/Quality/Quality.h"
 #include "Testing/Benchmarks/Models.h"
 #include "Testing/Benchmarks/RawVolume.h"
 #include "Testing/Benchmarks/UpstreamRecipe.h"

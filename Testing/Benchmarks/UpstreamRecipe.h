@@ -7,7 +7,7 @@
 
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Random.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Descent/GradientDescent.h"
 
 #include <cmath>
 #include <vector>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "Core/Inference/Evaluator.h"
-#include "Core/Training/Quality.h"
+#include "Core/Training/Quality/Quality.h"
 #include "Core/Training/Scalars.h"
 
 #include <glm/common.hpp>

@@ -10,7 +10,7 @@
 // random parameters, "warm" from those of step 0, and "chain", step 3 through a warm step 2, too.
 // warm_start.py writes the result file.
 #include "Core/Parallel.h"
-#include "Core/Training/SampleSource.h"
+#include "Core/Training/Samples/SampleSource.h"
 #include "Core/Training/Trainer.h"
 #include "Testing/Benchmarks/RawVolume.h"
 

@@ -128,7 +128,7 @@ class HashGrid:
 
 
 def nearly_orthogonal(x):
-    """See Core/Training/NewtonSchulz.h."""
+    """See Core/Training/Descent/NewtonSchulz.h."""
     tall = x.shape[0] >= x.shape[1]
     x = (x if tall else x.T) / x.norm()
     for _ in range(5):
@@ -139,7 +139,7 @@ def nearly_orthogonal(x):
 
 
 class OrthogonalisedMomentum:
-    """See Core/Training/Optimiser.h."""
+    """See Core/Training/Descent/Optimiser.h."""
 
     def __init__(self, matrices, learning_rate):
         self.matrices, self.learning_rate, self.updates = matrices, learning_rate, 0

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "CUDA/Training/MachineTraining.h"
-#include "Core/Training/TrainingAccelerator.h"
+#include "Core/Training/Descent/TrainingAccelerator.h"
 #include "Testing/CUDA/HostMachine.h"
 
 #include <functional>

@@ -4,7 +4,7 @@
 #include "CUDA/Training/Kernels/TrainLayers.h"
 #include "CUDA/Training/Kernels/TrainUpdate.h"
 #include "Core/Random.h"
-#include "Core/Training/TrainKernel.h"
+#include "Core/Training/Descent/TrainKernel.h"
 #include "Testing/CUDA/HostMachine.h"
 
 #include <gtest/gtest.h>

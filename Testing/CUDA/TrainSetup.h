@@ -4,7 +4,7 @@
 #pragma once
 
 #include "CUDA/CudaTrainer.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Descent/GradientDescent.h"
 #include "Testing/CUDA/EmulatedTrainer.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"

@@ -2,7 +2,7 @@
 //
 // Bytes -> a training's checkpoint: its state and its arrays, or inr::Error and unchanged arrays.
 #include "Core/Error.h"
-#include "Core/Training/Checkpoint.h"
+#include "Core/Training/Checkpoint/Checkpoint.h"
 #include "Testing/Fuzzing/CheckpointArrays.h"
 #include "Testing/Fuzzing/Target.h"
 

@@ -6,7 +6,7 @@
 #include "Core/Error.h"
 #include "Core/Model/ModelBytes.h"
 #include "Core/Model/Quantised.h"
-#include "Core/Training/Checkpoint.h"
+#include "Core/Training/Checkpoint/Checkpoint.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Fuzzing/CheckpointArrays.h"
 #include "Testing/Fuzzing/FuzzScene.h"

@@ -88,7 +88,7 @@ INR_HOST_DEVICE inline bool HasMarked(const float* values, int count)
 /// `Stages`, of a kind of rays: plain data with
 ///
 ///   Ray                         // as the wave keeps it
-///   Ray begin(x, y)             // of a pixel
+///   void begin(x, y, ray)       // of a pixel
 ///   bool meets(ray)             // the volume
 ///   int place(ray)              // its next points; 0: it has ended
 ///   glm::vec3 position(ray, k)  // of one of them, in the unit cube

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A mini-batch out of a volume in the device's memory, a sample by one thread: positions and
-// targets of Core's StratifiedBatches, by the same functions (Core/Training/Trilinear.h).
+// targets of Core's StratifiedBatches, by the same functions (Core/Training/Samples/Trilinear.h).
 #pragma once
 
 #include "CUDA/Device/Kernels/Block.h"
 #include "Core/Model/Model.h"
-#include "Core/Training/Trilinear.h"
+#include "Core/Training/Samples/Trilinear.h"
 
 #include <cstdint>
 

@@ -13,7 +13,7 @@
 
 #include "CUDA/Device/Kernels/Atomics.h"
 #include "CUDA/Inference/Kernels/Encode.h"
-#include "Core/Training/TrainKernel.h"
+#include "Core/Training/Descent/TrainKernel.h"
 
 #include <cmath>
 #include <cstdint>

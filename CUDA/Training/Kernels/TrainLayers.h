@@ -6,7 +6,7 @@
 #pragma once
 
 #include "CUDA/Training/Kernels/TrainNetwork.h"
-#include "Core/Training/NewtonSchulz.h"
+#include "Core/Training/Descent/NewtonSchulz.h"
 
 #include <cmath>
 #include <cstdint>

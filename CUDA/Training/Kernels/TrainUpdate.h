@@ -5,7 +5,7 @@
 #pragma once
 
 #include "CUDA/Training/Kernels/TrainGrid.h"
-#include "Core/Training/TrainKernel.h"
+#include "Core/Training/Descent/TrainKernel.h"
 
 #include <cmath>
 #include <cstdint>

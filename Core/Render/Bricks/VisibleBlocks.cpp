@@ -26,15 +26,6 @@ bool AnyVisible(const MajorantGridView& grid, const glm::i64vec3& first, const g
 
 } // namespace
 
-const MajorantGridView& VisibleBlocks::gridFor(int level) const
-{
-  int grid = 0;
-  while (grid + 1 < this->Cells.grids() && this->Cells.coarsestLevel(grid) < level) {
-    ++grid;
-  }
-  return this->Cells.grid(grid);
-}
-
 VisibleBlocks::CellSpan VisibleBlocks::cellsAround(const BrickId& brick, int axis, int block,
                                                    const MajorantGridView& grid) const
 {
@@ -59,7 +50,7 @@ VisibleBlocks::CellSpan VisibleBlocks::cellsAround(const BrickId& brick, int axi
 BlockSet VisibleBlocks::of(BrickKey key) const
 {
   const BrickId brick = IdOf(key);
-  const MajorantGridView& grid = this->gridFor(brick.level);
+  const MajorantGridView& grid = this->Cells.grid(this->Cells.gridFor(brick.level));
   CellSpan cells[3][BlockLattice::Most];
   for (int axis = 0; axis < 3; ++axis) {
     for (int block = 0; block < this->Lattice.count[axis]; ++block) {

@@ -34,7 +34,6 @@ private:
     std::int64_t last; ///< below `first`: of none
   };
 
-  const MajorantGridView& gridFor(int level) const;
   CellSpan cellsAround(const BrickId& brick, int axis, int block,
                        const MajorantGridView& grid) const;
 

@@ -9,28 +9,28 @@ namespace {
 
 constexpr int FewestNodes = 1 << 10;
 constexpr int MostNodes = 1 << 14;
-constexpr double Tolerance = 2e-4; // of the extinction
+constexpr double ExtinctionTolerance = 2e-4; // of the extinction
 /// Of what is opaque: enough for a stretch of which 1/4000 is to be so, and little enough that what
 /// is faint is not lost in sums with it.
 constexpr double OpaqueExtinction = 0x1p16;
 
-double ExtinctionOf(double opacity)
+double BoundedExtinction(double opacity)
 {
-  return opacity < 1.0 ? -std::log1p(-opacity) : OpaqueExtinction;
+  return opacity < 1.0 ? ExtinctionOf(opacity) : OpaqueExtinction;
 }
 
 glm::vec4 DensityOf(const glm::vec4& entry)
 {
-  const double extinction = ExtinctionOf(entry.w);
+  const double extinction = BoundedExtinction(entry.w);
   return {glm::vec3(glm::dvec3(entry) * extinction), static_cast<float>(extinction)};
 }
 
 /// Whether a straight line misses the extinction in the middle between two opacities.
 bool IsTooFar(double begin, double end)
 {
-  const double chord = 0.5 * (ExtinctionOf(begin) + ExtinctionOf(end));
-  const double curve = ExtinctionOf(0.5 * (begin + end));
-  return std::abs(curve - chord) > Tolerance * curve;
+  const double chord = 0.5 * (BoundedExtinction(begin) + BoundedExtinction(end));
+  const double curve = BoundedExtinction(0.5 * (begin + end));
+  return std::abs(curve - chord) > ExtinctionTolerance * curve;
 }
 
 int NodesPerEntry(const ColorLookup& colors)

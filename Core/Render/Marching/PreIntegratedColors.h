@@ -4,6 +4,7 @@
 #include "Core/HostDevice.h"
 #include "Core/Render/Marching/ColorLookups.h"
 #include "Core/Render/Scene/ColorTable.h"
+#include "Core/Render/Scene/Opacity.h"
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/vec4.hpp>
@@ -33,7 +34,7 @@ public:
     }
     const glm::dvec3 color = glm::dvec3(density) / density.w;
     const bool isOpaque = density.w >= static_cast<double>(OpaqueFrom);
-    return {glm::vec3(color), isOpaque ? 1.0f : static_cast<float>(-std::expm1(-density.w))};
+    return {glm::vec3(color), isOpaque ? 1.0f : static_cast<float>(OpacityOf(density.w))};
   }
 
   /// For BrickKernel::compositeIntegrated, with rays' steps of so many opacity unit distances.

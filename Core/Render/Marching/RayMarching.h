@@ -8,6 +8,7 @@
 #include "Core/Render/Marching/SampleWalker.h"
 #include "Core/Render/Rays/LayeredWay.h"
 #include "Core/Render/Rays/RayGeometry.h"
+#include "Core/Render/Scene/Opacity.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -119,15 +120,6 @@ INR_HOST_DEVICE inline bool ClampToRange(const ValueRange& range, float& value)
   const bool outside = inside != value;
   value = inside;
   return outside;
-}
-
-/// Opacity over a length of what has `opacity` over the unit length: 1 - (1 - opacity)^length.
-INR_HOST_DEVICE inline float OpacityOver(float length, float opacity)
-{
-  // The power is faster, but what is faint or short it loses to rounding.
-  const bool isFaint = opacity < 0x1p-8f || length < 0x1p-6f;
-  return isFaint ? -std::expm1(length * std::log1p(-opacity))
-                 : 1.0f - std::pow(1.0f - opacity, length);
 }
 
 /// Front-to-back over operator with opacity corrected for the sample's length:

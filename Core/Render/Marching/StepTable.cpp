@@ -2,6 +2,7 @@
 #include "Core/Render/Marching/StepTable.h"
 
 #include "Core/Render/MacroCells/CellBlock.h"
+#include "Core/Render/Scene/Opacity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,21 +13,16 @@ namespace inr {
 namespace {
 
 constexpr int MaximumRows = 1 << 14;
-constexpr float SteepFrom = 0.5f;       // opacity of a unit; rows follow what is below
-constexpr double Tolerance = 2e-4;      // of a sample's opacity: errors of a ray's samples add up
-constexpr double SteepTolerance = 1e-2; // the same where little of a ray is
-
-double OpacityOf(double perUnit, double length)
-{
-  return perUnit < 1.0 ? -std::expm1(length * std::log1p(-perUnit)) : 1.0;
-}
+constexpr float SteepFrom = 0.5f;         // opacity of a unit; rows follow what is below
+constexpr double OpacityTolerance = 2e-4; // of a sample's opacity: errors of a ray's samples add up
+constexpr double SteepTolerance = 1e-2;   // the same where little of a ray is
 
 /// Whether linear interpolation misses the corrected opacity in the middle of an interval.
 bool IsTooLong(double begin, double end, double length)
 {
-  const double chord = 0.5 * (OpacityOf(begin, length) + OpacityOf(end, length));
-  const double curve = OpacityOf(0.5 * (begin + end), length);
-  return std::abs(curve - chord) > Tolerance * curve;
+  const double chord = 0.5 * (OpacityOver(length, begin) + OpacityOver(length, end));
+  const double curve = OpacityOver(length, 0.5 * (begin + end));
+  return std::abs(curve - chord) > OpacityTolerance * curve;
 }
 
 /// Rows between two entries of the colour table.
@@ -57,7 +53,7 @@ bool IsSteep(float begin, float end, double length, const glm::vec4 (&corrected)
     return false;
   }
   const double chord = 0.5 * (corrected[0].w + corrected[1].w);
-  const double curve = OpacityOf(0.5 * (static_cast<double>(begin) + end), length);
+  const double curve = OpacityOver(length, 0.5 * (static_cast<double>(begin) + end));
   return std::abs(curve - chord) > SteepTolerance * curve;
 }
 
@@ -77,7 +73,7 @@ void MarkSteep(const std::vector<glm::vec4>& rows, double length, glm::vec4* cor
 
 glm::vec4 Corrected(const glm::vec4& entry, double length)
 {
-  return {entry.x, entry.y, entry.z, static_cast<float>(OpacityOf(entry.w, length))};
+  return {entry.x, entry.y, entry.z, static_cast<float>(OpacityOver(length, double{entry.w}))};
 }
 
 } // namespace
@@ -95,10 +91,11 @@ int SampleLengths(int levels)
 StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
     : StepLength(stepLength), Lengths(lengths)
 {
-  const auto lengthOf = [&](int length) {
-    return stepLength * static_cast<double>(StepsOf(length));
-  };
-  const int pieces = Refinement(colors, stepLength, lengthOf(lengths - 1));
+  std::vector<double> inUnits; // of the lengths
+  for (int number = 0; number < lengths; ++number) {
+    inUnits.push_back(stepLength * static_cast<double>(StepsOf(number)));
+  }
+  const int pieces = Refinement(colors, inUnits.front(), inUnits.back());
   const int nodes = (colors.count - 1) * pieces + 1;
   this->Lookup.rows = nodes + 4;
   // A logarithm is taken before the lookup; what comes here is the coordinate itself.
@@ -112,8 +109,7 @@ StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
     const auto weight = static_cast<float>(k - cell * pieces) / static_cast<float>(pieces);
     between.push_back(glm::mix(colors.entries[cell], colors.entries[cell + 1], weight));
   }
-  for (int number = 0; number < lengths; ++number) {
-    const double length = lengthOf(number);
+  for (const double length : inUnits) {
     this->Entries.insert(this->Entries.end(), 2, Corrected(colors.below, length));
     const std::size_t first = this->Entries.size();
     for (const glm::vec4& entry : between) {

@@ -20,15 +20,13 @@ float DepthOf(float collided, float depth) { return collided >= 0.5f ? depth / c
 bool PathPicture::continues(const Frame& frame) const
 {
   return this->Begun && this->Colors.samples() <= frame.samplesPerPixel &&
-         IsSamePicture(this->Picture, frame);
+         this->Picture->isOf(frame);
 }
 
 void PathPicture::start(const Frame& frame)
 {
   this->Begun = false; // memory may run out before all is of the new picture
-  this->OpaqueDepth = CopyOfDepth(frame);
-  this->Picture = frame;
-  this->Picture.opaqueDepth = this->OpaqueDepth.empty() ? nullptr : this->OpaqueDepth.data();
+  this->Picture.emplace(frame);
   this->Colors.reset(frame.width, frame.height, 4);
   this->Depths.reset(frame.width, frame.height, 1);
   this->Sample = Image(frame.width, frame.height, 4);
@@ -44,7 +42,7 @@ void PathPicture::start(const Frame& frame)
 
 void PathPicture::finishTiles(const TracedTiles& traced)
 {
-  const Tiling tiling(this->Picture.width, this->Picture.height);
+  const Tiling tiling(this->Sample.width, this->Sample.height);
   const bool whole = static_cast<std::int64_t>(this->Pending.size()) == tiling.count();
   FrameStatistics unfinished;
   std::size_t pending = 0;
@@ -71,8 +69,8 @@ void PathPicture::finishTiles(const TracedTiles& traced)
 
 void PathPicture::traceRound(const PathMedium& medium, const TraceTiles& trace)
 {
-  Frame sample = this->Picture;
-  sample.seed = RandomBits(this->Picture.seed, this->Picture.frameIndex);
+  Frame sample = this->Picture->frame();
+  sample.seed = RandomBits(sample.seed, sample.frameIndex);
   sample.frameIndex = static_cast<std::uint64_t>(this->Colors.samples());
   const RayGeometry geometry(sample, medium.dims);
   const PathTracer tracer(sample, geometry, medium.dims, medium.majorants, medium.colors,

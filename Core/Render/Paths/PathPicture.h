@@ -3,9 +3,11 @@
 
 #include "Core/Render/Bricks/CachedPasses.h"
 #include "Core/Render/Paths/PathTracer.h"
+#include "Core/Render/Scene/KeptFrame.h"
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace inr {
@@ -71,8 +73,7 @@ private:
   void show(const PassOutput& output) const;
 
   bool Begun = false;
-  std::vector<float> OpaqueDepth;
-  Frame Picture; ///< with its depth there
+  std::optional<KeptFrame> Picture;
   Accumulator Colors;
   Accumulator Depths; ///< of first collisions; 0 where there was none
 

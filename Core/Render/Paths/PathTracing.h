@@ -17,6 +17,7 @@
 #include "Core/Render/Paths/PathTracingPhase.h"
 #include "Core/Render/Rays/LevelOfDetail.h"
 #include "Core/Render/Scene/Lights.h"
+#include "Core/Render/Scene/Opacity.h"
 #include "Core/Render/Scene/PathOptions.h"
 
 #include <cmath>
@@ -99,19 +100,6 @@ struct PathState
   bool collided = false;
   bool towardsLight = false;
 };
-
-/// Opacities this near to 1 take their place: extinction must be finite.
-constexpr float MaximumOpacity = 1.0f - 0x1p-20f;
-
-/// Extinction per opacity unit distance.
-INR_HOST_DEVICE inline float Extinction(float opacity)
-{
-  // The logarithm is twice as fast as that of one plus something, whose series is good enough for
-  // opacities that the difference would round.
-  constexpr float faint = 0x1p-10f;
-  return opacity < faint ? opacity * (1.0f + opacity * (0.5f + opacity * (1.0f / 3.0f)))
-                         : -std::log(1.0f - (opacity < MaximumOpacity ? opacity : MaximumOpacity));
-}
 
 /// The next random number of a path, uniform in [0, 1): SplitMix64's sequence, from a start of the
 /// path's own.
@@ -210,7 +198,7 @@ INR_HOST_DEVICE inline bool NextCollision(const PathScene& scene, PathState& pat
       return false;
     }
     const double begin = glm::max(path.t, path.walker.enter());
-    sample.majorant = glm::min(path.walker.extinction(), Extinction(1.0f));
+    sample.majorant = glm::min(path.walker.extinction(), FiniteExtinctionOf(1.0f));
     const double perT = sample.majorant * scene.unitsPerT;
     const double exit = glm::min(path.walker.exit(), end);
     if (depth < perT * (exit - begin)) {
@@ -307,7 +295,7 @@ INR_HOST_DEVICE inline bool Collide(const PathScene& scene, PathState& path, flo
                                     float value)
 {
   const glm::vec4 entry = scene.colors.at(value);
-  const float share = glm::min(Extinction(entry.w) / majorant, 1.0f);
+  const float share = glm::min(FiniteExtinctionOf(entry.w) / majorant, 1.0f);
   if (path.towardsLight) {
     if (share > 0.0f && !Attenuate(path, 1.0f - share)) {
       GoOn(scene, path);

@@ -2,6 +2,7 @@
 #include "Core/Render/Scene/ColorTable.h"
 
 #include "Core/Error.h"
+#include "Core/Render/Scene/Opacity.h"
 
 #include <algorithm>
 #include <limits>
@@ -36,8 +37,6 @@ void Check(const TransferFunction& function)
           "a transfer function's colours must be finite and its opacities in [0, 1]; on a "
           "logarithmic scale, none of its points may be at 0 or below");
 }
-
-float ExtinctionOf(const glm::vec4& entry) { return -std::log1p(-entry.w); }
 
 /// Wider than a double where the platform has that: differences and ratios of denormal or of the
 /// largest numbers overflow.
@@ -137,8 +136,8 @@ void MapValues(const TransferFunction& function, const VolumeInfo& volume, Color
 } // namespace
 
 ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volume)
-    : Entries(function.table), Below(ExtinctionOf(function.below)),
-      Above(ExtinctionOf(function.above))
+    : Entries(function.table), Below(ExtinctionOf(function.below.w)),
+      Above(ExtinctionOf(function.above.w))
 {
   Check(function);
   ColorLookup& lookup = this->Lookup;
@@ -149,7 +148,7 @@ ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volum
   MapValues(function, volume, lookup);
   this->Maxima.emplace_back();
   for (const glm::vec4& entry : this->Entries) {
-    this->Maxima[0].push_back(ExtinctionOf(entry));
+    this->Maxima[0].push_back(ExtinctionOf(entry.w));
   }
   for (std::size_t span = 2; span <= this->Entries.size(); span *= 2) {
     const std::vector<float>& half = this->Maxima.back();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Tolerance/ColorSensitivity.h"
 
+#include "Core/Render/Scene/Opacity.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,8 +38,8 @@ struct Step
 Step StepAt(double entry, double length)
 {
   if (entry < 1.0) {
-    const double depth = -std::log1p(-entry); // of a unit distance
-    return {-std::expm1(-depth * length), length * std::exp(-depth * (length - 1.0))};
+    const double depth = ExtinctionOf(entry); // of a unit distance
+    return {OpacityOf(depth * length), length * std::exp(-depth * (length - 1.0))};
   }
   return {1.0, length < 1.0 ? Infinite : length == 1.0 ? 1.0 : 0.0};
 }
@@ -102,7 +104,7 @@ ColorSensitivity::ColorSensitivity(const ColorLookup& colors, double stepLength)
   std::vector<float> largest[7];
   std::vector<float> depths;
   const auto depthOf = [&](const glm::vec4& entry) {
-    return static_cast<float>(-std::log1p(-double{entry.w}) * stepLength);
+    return static_cast<float>(ExtinctionOf(double{entry.w}) * stepLength);
   };
   for (std::size_t k = 0; k < last; ++k) {
     const glm::dvec2 opacity(entries[k].w, entries[k + 1].w);

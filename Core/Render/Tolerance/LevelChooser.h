@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Render/MacroCells/CellBlock.h"
-#include "Core/Render/MacroCells/CellMeasurement.h"
+#include "Core/Render/Tolerance/CellMeasurement.h"
 #include "Core/Render/Tolerance/LookAhead.h"
 #include "Core/Render/Tolerance/PixelErrors.h"
 

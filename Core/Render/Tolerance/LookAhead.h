@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Cache/LevelErrors.h"
 #include "Core/Render/MacroCells/Majorants.h"
 #include "Core/Render/Rays/RayGeometry.h"
+#include "Core/Render/Tolerance/LevelErrors.h"
 #include "Core/Render/Tolerance/PixelErrors.h"
 
 #include <array>

@@ -16,15 +16,6 @@ static_assert(LevelErrors::Coarsest >= LargestCellPower, "what cells ask for is 
 
 double LargestOf(const glm::dvec3& edges) { return std::max(edges.x, std::max(edges.y, edges.z)); }
 
-const MajorantGrid& GridFor(const Majorants& majorants, int level)
-{
-  int grid = 0;
-  while (majorants.coarsestLevel(grid) < level) {
-    ++grid;
-  }
-  return majorants.grid(grid);
-}
-
 PixelErrors::Error& ErrorWith(PixelErrors::Choices& errors, int level, int power)
 {
   const int number = NumberOf({static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(power)});
@@ -34,7 +25,7 @@ PixelErrors::Error& ErrorWith(PixelErrors::Choices& errors, int level, int power
 } // namespace
 
 PixelErrors::PixelErrors(const LevelErrors& measured, const Majorants& cells, int coarsest)
-    : Measured(measured), Cells(cells.grid(0)), Around(GridFor(cells, coarsest)),
+    : Measured(measured), Cells(cells.grid(0)), Around(cells.grid(cells.view().gridFor(coarsest))),
       Together(std::lround(this->Around.spacing().x / this->Cells.spacing().x)), Coarsest(coarsest),
       LongestEdge(LargestOf(measured.cellEdge())),
       Slopes(static_cast<std::size_t>(this->Cells.count())), Largest(this->Slopes.size())

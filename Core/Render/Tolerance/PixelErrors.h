@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Cache/LevelErrors.h"
 #include "Core/Render/MacroCells/Majorants.h"
 #include "Core/Render/Marching/SampleChoices.h"
 #include "Core/Render/Tolerance/ColorSensitivity.h"
+#include "Core/Render/Tolerance/LevelErrors.h"
 
 #include <array>
 #include <cmath>

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "Core/Error.h"
-#include "Core/Training/GradientDescent.h"
-#include "Core/Training/TrainingAccelerator.h"
+#include "Core/Training/Descent/GradientDescent.h"
+#include "Core/Training/Descent/TrainingAccelerator.h"
 #include "Testing/Core/RandomModel.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 // Small steps of a device, and of the CPU beside it.
 #pragma once
 
-#include "Core/Training/AcceleratedDescent.h"
+#include "Core/Training/Descent/AcceleratedDescent.h"
 #include "Testing/Core/Training/FakeTrainer.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "Core/Error.h"
-#include "Core/Training/ParallelTraining.h"
+#include "Core/Training/Parallel/ParallelTraining.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/FieldReader.h"
 #include "Testing/Core/Training/ThreadGroup.h"

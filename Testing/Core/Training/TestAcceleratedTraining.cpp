@@ -4,8 +4,8 @@
 // the CPU's, to the last bit (or as good, where it is lost while a volume in storage is read
 // again).
 #include "Core/Error.h"
-#include "Core/Training/ParallelTraining.h"
-#include "Core/Training/StreamBudget.h"
+#include "Core/Training/Parallel/ParallelTraining.h"
+#include "Core/Training/Streaming/StreamBudget.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/FewSteps.h"

@@ -2,7 +2,7 @@
 //
 // The updates of every kernel against the formulas of Kingma and Ba in float64.
 #include "Core/Random.h"
-#include "Core/Training/AdamSchedule.h"
+#include "Core/Training/Descent/AdamSchedule.h"
 #include "Testing/Core/Kernels.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/BlockGrid.h"
+#include "Core/Training/Samples/BlockGrid.h"
 
 #include <gtest/gtest.h>
 

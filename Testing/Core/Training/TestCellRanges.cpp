@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/CellRanges.h"
+#include "Core/Training/Quality/CellRanges.h"
 #include "Testing/Core/Training/Fields.h"
 
 #include <gtest/gtest.h>

@@ -3,8 +3,8 @@
 // The checkpoint's file: what was written comes back, and nothing else does.
 #include "Core/Error.h"
 #include "Core/Model/ModelBlobs.h"
-#include "Core/Training/Checkpoint.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Checkpoint/Checkpoint.h"
+#include "Core/Training/Descent/GradientDescent.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/Training/Fields.h"

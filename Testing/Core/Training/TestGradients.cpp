@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The trainer's gradients against finite differences of its own loss.
-#include "Core/Training/AdamSchedule.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Descent/AdamSchedule.h"
+#include "Core/Training/Descent/GradientDescent.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What each process of a group keeps of its first reading, for a training that goes on.
-#include "Core/Training/Checkpoint.h"
-#include "Core/Training/KeptSurvey.h"
+#include "Core/Training/Checkpoint/Checkpoint.h"
+#include "Core/Training/Streaming/KeptSurvey.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/Training/StreamingGroup.h"
 

@@ -2,7 +2,7 @@
 //
 // Updates of layers by every kernel against the formulas in float64.
 #include "Core/Random.h"
-#include "Core/Training/TrainKernel.h"
+#include "Core/Training/Descent/TrainKernel.h"
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/Training/MatrixTruth.h"
 

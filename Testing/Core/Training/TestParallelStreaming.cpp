@@ -3,8 +3,8 @@
 // Training from pieces by a group, here of threads.
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
-#include "Core/Training/Quality.h"
-#include "Core/Training/SamplePool.h"
+#include "Core/Training/Quality/Quality.h"
+#include "Core/Training/Samples/SamplePool.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/StreamingGroup.h"

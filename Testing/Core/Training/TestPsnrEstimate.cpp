@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Estimates of the PSNR against that of all voxels, of data most of which are nothing.
-#include "Core/Training/PsnrEstimate.h"
-#include "Core/Training/VoxelDraw.h"
+#include "Core/Training/Quality/PsnrEstimate.h"
+#include "Core/Training/Samples/VoxelDraw.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
 

@@ -2,7 +2,7 @@
 //
 // The streamed quality report against the same definitions written out directly.
 #include "Core/Error.h"
-#include "Core/Training/Quality.h"
+#include "Core/Training/Quality/Quality.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
 

@@ -2,9 +2,9 @@
 //
 // Trainings that are stopped and go on from their checkpoint.
 #include "Core/Error.h"
-#include "Core/Training/Checkpoint.h"
-#include "Core/Training/GradientDescent.h"
-#include "Core/Training/Optimiser.h"
+#include "Core/Training/Checkpoint/Checkpoint.h"
+#include "Core/Training/Descent/GradientDescent.h"
+#include "Core/Training/Descent/Optimiser.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/FieldReader.h"

@@ -2,8 +2,8 @@
 //
 // Trainings from pieces that go on from a checkpoint: what was read once is not read again.
 #include "Core/Error.h"
-#include "Core/Training/Checkpoint.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Checkpoint/Checkpoint.h"
+#include "Core/Training/Descent/GradientDescent.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/FakeTrainer.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a pool gives is what the volume holds, and every region of it equally often.
-#include "Core/Training/Optimiser.h"
-#include "Core/Training/SamplePool.h"
+#include "Core/Training/Descent/Optimiser.h"
+#include "Core/Training/Samples/SamplePool.h"
 #include "Testing/Core/Training/FieldReader.h"
 
 #include <gtest/gtest.h>

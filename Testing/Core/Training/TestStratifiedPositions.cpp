@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/StratifiedPositions.h"
+#include "Core/Training/Samples/StratifiedPositions.h"
 
 #include <glm/common.hpp>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Small differences of large numbers, in a training from pieces: as good as from memory.
-#include "Core/Training/Checkpoint.h"
-#include "Core/Training/GradientDescent.h"
+#include "Core/Training/Checkpoint/Checkpoint.h"
+#include "Core/Training/Descent/GradientDescent.h"
 #include "Testing/Core/Model/TemporaryFolder.h"
 #include "Testing/Core/Training/StreamingGroup.h"
 

@@ -3,9 +3,9 @@
 // Training from pieces against training from memory.
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
-#include "Core/Training/PsnrEstimate.h"
-#include "Core/Training/Quality.h"
-#include "Core/Training/StreamBudget.h"
+#include "Core/Training/Quality/PsnrEstimate.h"
+#include "Core/Training/Quality/Quality.h"
+#include "Core/Training/Streaming/StreamBudget.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/FieldReader.h"
 

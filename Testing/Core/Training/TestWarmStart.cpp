@@ -2,8 +2,8 @@
 //
 // Training that starts from the parameters of a similar volume's model.
 #include "Core/Inference/Evaluator.h"
-#include "Core/Training/GradientDescent.h"
-#include "Core/Training/SampleSource.h"
+#include "Core/Training/Descent/GradientDescent.h"
+#include "Core/Training/Samples/SampleSource.h"
 #include "Testing/Core/Training/Fields.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Training/Descent/TrainKernel.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace inr {
+
+/// Share of the first moment that every update keeps.
+constexpr float FirstMomentKept = 0.9f;
+
+/// From this many updates of a parameter on all are alike.
+constexpr std::uint16_t LastAdamUpdate = 16384;
+
+/// A parameter's t-th update for t = 0, which never happens, to LastAdamUpdate, for a learning rate
+/// of 1: rates correct for the zeros that the moments begin with (Kingma and Ba, "Adam", ICLR 2015,
+/// section 3).
+std::vector<AdamStep> AdamUpdates();
+
+} // namespace inr
