@@ -4,10 +4,10 @@
 #include "CUDA/CudaAccelerator.h"
 #include "Core/Error.h"
 #include "Core/Image/Exr.h"
-#include "DeferredDrawing.h"
-#include "DrawingOrder.h"
-#include "FramePainter.h"
-#include "PaintSettings.h"
+#include "Representations/Mapper/Pictures/FramePainter.h"
+#include "Representations/Mapper/Pictures/PaintSettings.h"
+#include "Representations/Mapper/Window/DeferredDrawing.h"
+#include "Representations/Mapper/Window/DrawingOrder.h"
 
 #include <vtkHardwareSelector.h>
 #include <vtkMultiProcessController.h>

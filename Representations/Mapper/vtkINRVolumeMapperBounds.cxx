@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the volume is, the whole of it and this process' piece.
-#include "MapperInput.h"
+#include "Representations/Mapper/Scene/MapperInput.h"
 #include "vtkINRVolumeMapper.h"
 
 #include <vtkImageData.h>
@@ -13,7 +13,7 @@
 namespace {
 
 /// Where these points of the presented grid are.
-void BoundsOf(const inr::PresentedGrid& grid, const std::array<int, 6>& extent, double bounds[6])
+void BoundsOf(const inr::DrawnGrid& grid, const std::array<int, 6>& extent, double bounds[6])
 {
   vtkImageData* image = grid.image;
   std::array<int, 6> shifted;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the mapper's properties mean to Core, and what PrintSelf says of them.
-#include "PaintSettings.h"
+#include "Representations/Mapper/Pictures/PaintSettings.h"
 #include "vtkINRVolumeMapper.h"
 
 #include <cstdint>

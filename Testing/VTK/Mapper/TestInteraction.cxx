@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Frames for which there is little time, and such as are stopped.
 #include "Core/Image/Metrics.h"
-#include "ImageReduction.h"
 #include "OneVolume.h"
+#include "Representations/Mapper/Pictures/ImageReduction.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkVolumeProperty.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // VTK's lights as Core gets them: kinds, places, colours, and which are left out.
-#include "SceneLights.h"
+#include "Representations/Mapper/Scene/SceneLights.h"
 
 #include <vtkCamera.h>
 #include <vtkLight.h>

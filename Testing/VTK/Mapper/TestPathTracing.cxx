@@ -2,7 +2,7 @@
 // Path tracing in a window: the same medium as ray marching, lit by VTK's lights.
 #include "Core/Image/Exr.h"
 #include "Core/Image/Metrics.h"
-#include "ImageReduction.h"
+#include "Representations/Mapper/Pictures/ImageReduction.h"
 #include "TestModel.h"
 #include "TestScene.h"
 #include "vtkINRVolumeMapper.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table must say, at any value, what VTK's two functions say.
-#include "TransferFunctionBuilder.h"
+#include "Representations/Mapper/Scene/TransferFunctionBuilder.h"
 
 #include <vtkColorTransferFunction.h>
 #include <vtkNew.h>

@@ -3,9 +3,9 @@
 // may draw them. Truth: pictures of the parts, drawn apart and laid over each other by hand, and
 // VTK's own volume rendering of the voxels, which takes part in VTK's peeling.
 #include "Core/Image/Metrics.h"
+#include "Representations/Mapper/Window/TranslucentPeeler.h"
 #include "TestModel.h"
 #include "TestScene.h"
-#include "TranslucentPeeler.h"
 #include "vtkINRVolumeMapper.h"
 
 #include <vtkActor.h>

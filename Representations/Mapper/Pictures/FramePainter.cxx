@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Representations/Mapper/Pictures/FramePainter.h"
+
+#include "Core/Error.h"
+#include "Core/Render/PictureParts.h"
+#include "Core/Render/Scene/DrawnFrame.h"
+#include "Core/Render/Tolerance/StoragePrecision.h"
+#include "Representations/Mapper/Pictures/FrameBuilder.h"
+#include "Representations/Mapper/Scene/MapperInput.h"
+#include "Representations/Mapper/Scene/SceneCheck.h"
+#include "Representations/Mapper/Selection/PickedCells.h"
+#include "Representations/Mapper/Selection/SelectionPass.h"
+#include "Representations/Mapper/Window/ComposedLight.h"
+#include "Representations/Mapper/Window/LayerExchange.h"
+#include "Representations/Mapper/Window/OpaqueDepth.h"
+#include "vtkINRDataArray.h"
+
+#include <vtkHardwareSelector.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+#include <vtkVolumeMapper.h>
+#include <vtkVolumeProperty.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <thread>
+#include <utility>
+
+namespace inr {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start)
+{
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Asks clock and window between tiles whether to go on. The window's observers may touch the
+/// application, so they are only called on the thread that called the mapper.
+std::function<bool()> Unless(vtkRenderWindow* window, Clock::time_point deadline)
+{
+  return [window, deadline, caller = std::this_thread::get_id()] {
+    const bool inTime = deadline == Clock::time_point::max() || Clock::now() < deadline;
+    return inTime && (std::this_thread::get_id() != caller || !window->CheckAbortStatus());
+  };
+}
+
+/// Whether it can become no better.
+bool IsFinal(const FrameStatistics& statistics)
+{
+  return statistics.complete && statistics.missed == 0;
+}
+
+} // namespace
+
+FramePainter::FramePainter(std::function<bool()> mayRefine)
+    : Stills(this->Pictures, std::move(mayRefine))
+{}
+
+std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                                const PaintSettings& settings)
+{
+  const auto start = Clock::now();
+  this->Group = settings.group;
+  ViewPicture& picture = this->Pictures.of(renderer, volume);
+  picture.begin();
+  Frame frame;
+  std::string problem;
+  this->Group.together([&] { problem = this->prepare(mapper, renderer, volume, settings, frame); });
+  if (!this->Group.all(problem.empty())) {
+    this->Stills.followUp(picture, renderer->GetRenderWindow(), settings); // nothing goes on
+    return problem;
+  }
+  frame = AsItIsDrawn(std::move(frame), settings.renderer.cached);
+  frame.view = picture.number();
+  if ((picture.requested || picture.goesOn) && !IsInteractive(renderer->GetRenderWindow())) {
+    // Nobody waits for what follows the first look; the application's events do.
+    constexpr double piece = 0.1;
+    frame.timeLimit = std::min(frame.timeLimit, piece);
+  }
+  const Job job{frame, renderer, picture};
+  if (!this->draw(job)) {
+    problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
+              "float textures.";
+  }
+  picture.depict(this->depicted(frame, renderer, volume));
+  picture.last().seconds = SecondsSince(start);
+  this->Stills.followUp(picture, renderer->GetRenderWindow(), settings);
+  return problem;
+}
+
+std::string FramePainter::mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                               const PaintSettings& settings)
+{
+  if (!MayBeSelected(renderer)) {
+    return {};
+  }
+  this->Group = settings.group;
+  Frame scene;
+  std::string problem = this->prepare(mapper, renderer, volume, settings, scene);
+  if (!problem.empty()) {
+    return problem;
+  }
+  const PaintedFrame& seen = this->look(scene, renderer, volume).last();
+  if (!seen.rgba.pixels.empty()) {
+    const PickedCells cells(seen.rgba, seen.depth, scene.clipToWorld, FindInput(mapper).grid,
+                            scene.worldToIndex);
+    MarkForSelection(renderer, seen.rgba, cells, this->Blender);
+  }
+  return {};
+}
+
+const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume)
+{
+  const bool cached = this->Caster.options().cached;
+  const Frame drawn = AsItIsDrawn(scene, cached);
+  const ViewPicture* shown = this->Pictures.find(renderer, volume);
+  // A group has no other picture; else what a selector does not draw hides nothing from it.
+  const bool isUsable = !this->Group.isAlone() || !MayHideByWhatIsNotPicked(renderer);
+  if (isUsable && shown && shown->depicts(this->depicted(drawn, renderer, volume))) {
+    return *shown;
+  }
+  Frame rays = scene; // paths are long, and end where rays do
+  rays.mode = RenderMode::RayMarching;
+  rays.view = this->Selected.number(); // no view's: what these make goes on
+  rays.shading.reset();
+  rays = AsItIsDrawn(std::move(rays), cached);
+  if (!this->Selected.depicts(this->depicted(rays, renderer, volume))) {
+    this->Selected.begin();
+    // In a group, not all may be asked; what was drawn has a part of each.
+    if (this->Group.isAlone() && this->drawUnseen({rays, renderer, this->Selected})) {
+      this->Selected.depict(this->depicted(rays, renderer, volume));
+    }
+  }
+  return this->Selected;
+}
+
+bool FramePainter::drawUnseen(const Job& job)
+{
+  const Viewport viewport = GetViewport(job.renderer);
+  const std::int64_t pixels = static_cast<std::int64_t>(viewport.width) * viewport.height;
+  if (pixels <= 0) {
+    return false;
+  }
+  vtkRenderWindow* window = job.renderer->GetRenderWindow();
+  const int reduction = this->Rays.factor(window->GetDesiredUpdateRate(), pixels);
+  const Surroundings around = LookAround(job.renderer, viewport, this->Group, nullptr);
+  return this->render(job, this->reduced(around, viewport, reduction), reduction,
+                      Unless(window, Clock::time_point::max()));
+}
+
+DepictedScene FramePainter::depicted(const Frame& scene, vtkRenderer* renderer,
+                                     vtkVolume* volume) const
+{
+  // A group's processes have to agree, and do not tell each other when something changed.
+  return {scene, this->Caster->majorantBuilds(),
+          this->Group.isAlone() ? TimeOfChange(renderer, volume) : 0};
+}
+
+std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
+                                  const PaintSettings& settings, Frame& frame)
+{
+  const MapperInput input = FindInput(mapper);
+  if (!input.array) {
+    return input.problem;
+  }
+  vtkVolumeProperty* property = volume->GetProperty();
+  std::string problem =
+      WhyRefused(mapper, property, input.grid, settings.mode, !settings.group.isAlone());
+  if (!problem.empty()) {
+    return problem;
+  }
+  frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
+  const TransferFunction& colors = this->TransferFunctions.get(property);
+  RendererOptions options = settings.renderer;
+  if (!options.cached) {
+    options.cache = {}; // nor is there another renderer for another one
+  } else if (frame.errorTolerance) {
+    options.cache.precision = PrecisionWithin(frame, colors, input.array->GetModel()->volume);
+  }
+  this->makeRenderer(*input.array, options);
+  this->Caster->setTransferFunction(colors);
+  this->CountSamples = settings.countSamples;
+  frame.sampleDistance *= IsInteractive(renderer->GetRenderWindow()) ? 2 : 1;
+  frame.timeLimit = TimeLimit(renderer, settings);
+  return {};
+}
+
+void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOptions& options)
+{
+  const bool measured = !this->Caster.options().deterministic;
+  if (!this->Caster.update(array, options)) {
+    return;
+  }
+  this->Pictures.outdate();
+  this->Selected.outdate();
+  const bool measures = !options.deterministic;
+  if (measures != measured) {
+    this->Rays = ImageReduction(measures);
+    this->Paths = measures ? ImageReduction(true, ImageReduction::UnmeasuredPaths) : this->Rays;
+  }
+}
+
+bool FramePainter::draw(const Job& job)
+{
+  vtkRenderer* renderer = job.renderer;
+  const Viewport viewport = GetViewport(renderer);
+  const std::int64_t pixels = static_cast<std::int64_t>(viewport.width) * viewport.height;
+  if (!this->Group.agree(viewport.width) || !this->Group.agree(viewport.height)) {
+    throw Error(ErrorCode::InvalidArgument, "the processes' windows are not of the same size");
+  }
+  if (pixels <= 0) {
+    return true;
+  }
+  TranslucentPeeler* const peeler = job.scene.blending.projects() ? nullptr : &this->Peeler;
+  const Surroundings around = LookAround(renderer, viewport, this->Group, peeler);
+  job.picture.last().depthRead = around.depthRead;
+  const double rate = renderer->GetRenderWindow()->GetDesiredUpdateRate();
+  int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
+  Clock::time_point deadline = this->deadline(rate, reduction);
+  Surroundings here = this->reduced(around, viewport, reduction);
+  while (!this->renderTogether(job, here, reduction, deadline)) {
+    if (this->Group.all(Clock::now() < deadline)) {
+      return true; // aborted
+    }
+    reduction = std::min(4 * reduction, ImageReduction::Largest);
+    here = this->reduced(around, viewport, reduction);
+    deadline = this->deadline(rate, reduction);
+  }
+  if (!this->blend(job, here)) {
+    return false;
+  }
+  PaintedFrame& last = job.picture.last();
+  last.converged = this->Group.all(last.statistics.complete);
+  return true;
+}
+
+/// What is around as a picture with 1/reduction of the viewport's width and height meets it,
+/// wherever in the group it was seen.
+Surroundings FramePainter::reduced(const Surroundings& around, const Viewport& viewport,
+                                   int reduction) const
+{
+  const int width = (viewport.width + reduction - 1) / reduction;
+  const int height = (viewport.height + reduction - 1) / reduction;
+  Surroundings here;
+  this->Group.together([&] { here = around.in(viewport, width, height); });
+  here.layers = ShareLayers(this->Group, here.layers, static_cast<std::size_t>(width) * height);
+  return here;
+}
+
+bool FramePainter::renderTogether(const Job& job, const Surroundings& around, int reduction,
+                                  Clock::time_point deadline)
+{
+  const auto keepGoing = Unless(job.renderer->GetRenderWindow(), deadline);
+  bool done = false;
+  this->Group.together([&] { done = this->render(job, around, reduction, keepGoing); });
+  return this->Group.all(done);
+}
+
+bool FramePainter::blend(const Job& job, const Surroundings& around)
+{
+  vtkRenderer* renderer = job.renderer;
+  const Viewport viewport = GetViewport(renderer);
+  const Image& rgba = job.picture.last().rgba;
+  if (this->Group.isAlone()) {
+    return this->Blender.blend(renderer, viewport, rgba);
+  }
+  Image picture = this->Group.whole(rgba);
+  LimitLight(picture, around, this->Group, renderer, viewport);
+  const bool done = !this->Group.draws() || this->Blender.blend(renderer, viewport, picture);
+  return this->Group.all(done);
+}
+
+/// When a picture is given up for one with fewer pixels, so that the window stays alive whatever a
+/// picture costs.
+FramePainter::Clock::time_point FramePainter::deadline(double rate, int reduction) const
+{
+  const bool waits = rate < ImageReduction::StillRate || this->Caster.options().deterministic ||
+                     reduction >= ImageReduction::Largest;
+  const std::chrono::duration<double> seconds(1 / rate);
+  return waits ? Clock::time_point::max()
+               : Clock::now() + std::chrono::duration_cast<Clock::duration>(seconds);
+}
+
+/// Renders among what is `around` the picture's pixels; false, and there is no picture, when it was
+/// stopped.
+bool FramePainter::render(const Job& job, const Surroundings& around, int reduction,
+                          const std::function<bool()>& keepGoing)
+{
+  Frame frame = job.scene;
+  frame.width = around.width;
+  frame.height = around.height;
+  std::vector<float> ownDepth;
+  if (!this->Group.isAlone()) {
+    ownDepth = around.depth;
+    const PixelBox seen = PixelsOf(frame, this->Caster.model().volume.dims);
+    KeepOnly(PartOf(seen, this->Group.process(), this->Group.processes()),
+             {frame.width, frame.height}, ownDepth);
+  }
+  const std::vector<float>& depth = ownDepth.empty() ? around.depth : ownDepth;
+  frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
+  frame.layers = around.layers;
+  if (job.picture.showAgain(frame, this->CountSamples, this->Caster->majorantBuilds())) {
+    return true;
+  }
+  PaintedFrame& last = job.picture.last();
+  const bool depthRead = last.depthRead;
+  try {
+    last.statistics = this->Caster->render(frame, last.rgba, &last.depth, keepGoing,
+                                           this->CountSamples ? &last.samples : nullptr);
+  } catch (const Error& error) {
+    last = {}; // half a picture must not be written out later
+    if (error.code() == ErrorCode::Cancelled) {
+      last.depthRead = depthRead;
+      return false;
+    }
+    throw;
+  } catch (...) { // no memory
+    last = {};
+    throw;
+  }
+  last.backend = this->Caster.backendOf(last.statistics);
+  this->Caster.noteFailure();
+  last.reduction = reduction;
+  this->resolution(frame.mode)
+      .record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
+  if (IsFinal(last.statistics)) {
+    job.picture.finish(frame, this->CountSamples, this->Caster->majorantBuilds());
+  }
+  return true;
+}
+
+} // namespace inr

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Representations/Mapper/Pictures/RefinementTimer.h"
+
+#include "Representations/Mapper/Pictures/ImageReduction.h"
+
+#include <vtkCommand.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+
+#include <memory>
+#include <utility>
+
+namespace inr {
+
+namespace {
+constexpr double Patience = 0.2; ///< seconds until a busy application is asked again
+/// Before the application's observers: a timer that fires must not be destroyed by what these do.
+constexpr float First = 1000;
+} // namespace
+
+RefinementTimer::RefinementTimer(std::function<bool()> mayRefine, std::function<void()> begin)
+    : MayRefine(std::move(mayRefine)), Begin(std::move(begin))
+{
+  this->Command->SetClientData(this);
+  this->Command->SetCallback(&RefinementTimer::OnEvent);
+}
+
+bool RefinementTimer::isWatched(vtkRenderWindow* window)
+{
+  if (!window) {
+    return false;
+  }
+  // A window that has drawn nothing yet makes its interactor ready when it does.
+  vtkRenderWindowInteractor* interactor = window->GetInteractor();
+  return interactor && (interactor->GetInitialized() || window->GetNeverRendered()) &&
+         !window->GetOffScreenRendering();
+}
+
+bool RefinementTimer::canRefine(vtkRenderWindow* window)
+{
+  return isWatched(window) && window->GetSwapBuffers();
+}
+
+void RefinementTimer::request(vtkRenderWindow* window, double pause)
+{
+  this->start(window->GetInteractor(), pause);
+}
+
+void RefinementTimer::postpone()
+{
+  if (this->Pending && this->Interactor) {
+    this->start(this->Interactor, Patience);
+  }
+}
+
+void RefinementTimer::cancel()
+{
+  this->stop();
+  if (this->Interactor) {
+    this->Interactor->RemoveObserver(this->Command);
+  }
+  this->Interactor = nullptr;
+  this->Pending = false;
+}
+
+void RefinementTimer::start(vtkRenderWindowInteractor* interactor, double pause)
+{
+  this->stop();
+  if (this->Interactor != interactor) {
+    this->cancel();
+    this->Interactor = interactor;
+    this->Interacting = false;
+    for (const auto event : {vtkCommand::TimerEvent, vtkCommand::StartInteractionEvent,
+                             vtkCommand::EndInteractionEvent}) {
+      interactor->AddObserver(event, this->Command, First);
+    }
+  }
+  this->Timer = interactor->CreateOneShotTimer(static_cast<unsigned long>(pause * 1000));
+  this->Pending = this->Timer != 0; // else there is no event loop to tell the time
+}
+
+void RefinementTimer::stop()
+{
+  if (this->Interactor && this->Timer != 0) {
+    this->Interactor->DestroyTimer(this->Timer);
+  }
+  this->Timer = 0;
+}
+
+bool RefinementTimer::isBusy() const
+{
+  // VTK's styles have the rate of interactive pictures as long as a button is down; ParaView says
+  // so by events.
+  vtkRenderWindow* window = this->Interactor->GetRenderWindow();
+  return this->Interacting || !window ||
+         window->GetDesiredUpdateRate() >= ImageReduction::StillRate || !this->MayRefine();
+}
+
+void RefinementTimer::OnEvent(vtkObject*, unsigned long event, void* self, void* data)
+{
+  auto* refinement = static_cast<RefinementTimer*>(self);
+  if (event != vtkCommand::TimerEvent) {
+    refinement->Interacting = event == vtkCommand::StartInteractionEvent;
+  } else if (data && refinement->Timer != 0 && *static_cast<int*>(data) == refinement->Timer) {
+    refinement->fire();
+  }
+}
+
+void RefinementTimer::fire()
+{
+  // VTK's interactor for X is going through its timers: the one that fires must stay until then.
+  vtkRenderWindowInteractor* interactor = this->Interactor;
+  interactor->DestroyTimer(this->Fired);
+  this->Fired = std::exchange(this->Timer, 0);
+  const std::weak_ptr<const bool> life = this->Life;
+  const bool busy = this->isBusy();
+  if (life.expired()) { // the application has answered by deleting the mapper
+    return;
+  }
+  if (busy) {
+    this->start(interactor, Patience);
+    return;
+  }
+  this->Begin();
+  // Nothing of this from here on: rendering may delete the mapper.
+  interactor->Render();
+}
+
+} // namespace inr

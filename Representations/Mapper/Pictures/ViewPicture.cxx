@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Representations/Mapper/Pictures/ViewPicture.h"
+
+#include <utility>
+
+namespace inr {
+
+void ViewPicture::begin()
+{
+  this->Before = std::exchange(this->Last, {});
+  this->Scene.reset();
+}
+
+bool ViewPicture::showAgain(const Frame& frame, bool countsSamples, std::int64_t colors)
+{
+  const bool isThere = this->Key && !this->Before.rgba.pixels.empty();
+  if (!isThere || !this->Key->matches(frame, countsSamples, colors)) {
+    this->Key.reset();
+    this->Before = {};
+    return false;
+  }
+  this->Before.depthRead = this->Last.depthRead;
+  this->Before.statistics.work = {};
+  this->Last = std::exchange(this->Before, {});
+  return true;
+}
+
+void ViewPicture::finish(const Frame& frame, bool countsSamples, std::int64_t colors)
+{
+  this->Key.emplace(frame, countsSamples, colors);
+}
+
+void ViewPicture::depict(const DepictedScene& scene)
+{
+  Frame frame = scene.frame;
+  frame.timeLimit = 0; // how long it may take is nothing that it shows
+  this->Scene.emplace(frame, false, scene.colors);
+  this->Surroundings = scene.surroundings;
+}
+
+bool ViewPicture::depicts(const DepictedScene& scene) const
+{
+  return !this->Last.rgba.pixels.empty() && this->Surroundings == scene.surroundings &&
+         this->Scene && this->Scene->matches(scene.frame, false, scene.colors);
+}
+
+void ViewPicture::outdate()
+{
+  this->Key.reset();
+  this->Scene.reset();
+}
+
+} // namespace inr

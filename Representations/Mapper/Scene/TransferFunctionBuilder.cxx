@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Representations/Mapper/Scene/TransferFunctionBuilder.h"
+
+#include "Representations/Mapper/Scene/LogarithmicTable.h"
+
+#include <vtkColorTransferFunction.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkVolumeProperty.h>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace inr {
+namespace {
+
+constexpr int SmallestTable = 1024;
+constexpr int LargestTable = 16384;
+/// Places that are looked at for each interval of the largest table, where nodes are closer.
+constexpr int MostPerInterval = 64;
+
+/// How many intervals two nodes of a function that are closest to each other ask for.
+template <typename Function> int IntervalsFor(Function* function, double low, double high)
+{
+  if (function->GetSize() < 2) {
+    return SmallestTable;
+  }
+  const int estimate = function->EstimateMinNumberOfSamples(low, high);
+  return estimate > 0 ? estimate : std::numeric_limits<int>::max(); // more than an int can say
+}
+
+/// A property's two functions behind one question: what is at this value?
+struct Functions
+{
+  explicit Functions(vtkVolumeProperty* property)
+      : Rgb(property->GetColorChannels() == 3 ? property->GetRGBTransferFunction() : nullptr),
+        Gray(this->Rgb ? nullptr : property->GetGrayTransferFunction()),
+        Opacity(property->GetScalarOpacity())
+  {}
+
+  glm::vec4 at(double value) const
+  {
+    double rgb[3];
+    if (this->Rgb) {
+      this->Rgb->GetTable(value, value, 1, rgb); // GetColor would be the banded one in ParaView
+    } else {
+      rgb[0] = rgb[1] = rgb[2] = this->Gray->GetValue(value);
+    }
+    const double alpha = std::clamp(this->Opacity->GetValue(value), 0.0, 1.0);
+    return glm::vec4(rgb[0], rgb[1], rgb[2], alpha);
+  }
+
+  /// The same at n places from `low` to `high`, whose cost does not grow with nodes times places.
+  std::vector<glm::vec4> evenly(double low, double high, int n) const
+  {
+    const auto size = static_cast<std::size_t>(n);
+    std::vector<double> rgb(3 * size);
+    std::vector<double> alpha(size);
+    if (this->Rgb) {
+      this->Rgb->GetTable(low, high, n, rgb.data());
+    } else {
+      for (int channel = 0; channel < 3; ++channel) {
+        this->Gray->GetTable(low, high, n, rgb.data() + channel, 3);
+      }
+    }
+    this->Opacity->GetTable(low, high, n, alpha.data());
+    return Functions::joined(rgb, alpha);
+  }
+
+  /// The same at places whose logarithms are evenly apart; of colours with a logarithmic scale.
+  std::vector<glm::vec4> evenlyInLogarithms(double low, double high, int n) const
+  {
+    const auto size = static_cast<std::size_t>(n);
+    std::vector<double> rgb(3 * size);
+    OverLogarithms(this->Rgb)->GetTable(std::log10(low), std::log10(high), n, rgb.data());
+    std::vector<double> places(size);
+    for (int k = 0; k < n; ++k) {
+      places[static_cast<std::size_t>(k)] = low * std::pow(high / low, double(k) / (n - 1));
+    }
+    places.back() = high; // not beyond by a rounding
+    return Functions::joined(rgb, AtRising(this->Opacity, places));
+  }
+
+  int intervals(double low, double high) const
+  {
+    const int colour =
+        this->Rgb ? IntervalsFor(this->Rgb, low, high) : IntervalsFor(this->Gray, low, high);
+    return std::max(IntervalsFor(this->Opacity, low, high), colour);
+  }
+
+  int intervalsInLogarithms(double low, double high) const
+  {
+    return std::max(LogarithmicIntervals(NodesOf(this->Opacity), low, high),
+                    LogarithmicIntervals(NodesOf(this->Rgb), low, high));
+  }
+
+  vtkObject* colour() const { return this->Rgb ? static_cast<vtkObject*>(this->Rgb) : this->Gray; }
+
+  vtkColorTransferFunction* Rgb;
+  vtkPiecewiseFunction* Gray;
+  vtkPiecewiseFunction* Opacity;
+
+private:
+  static std::vector<glm::vec4> joined(const std::vector<double>& rgb,
+                                       const std::vector<double>& alpha)
+  {
+    std::vector<glm::vec4> entries(alpha.size());
+    for (std::size_t k = 0; k < alpha.size(); ++k) {
+      entries[k] =
+          glm::vec4(rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2], std::clamp(alpha[k], 0.0, 1.0));
+    }
+    return entries;
+  }
+};
+
+struct Range
+{
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  template <typename Function> void extend(Function* function)
+  {
+    if (function && function->GetSize() > 0) {
+      this->low = std::min(this->low, function->GetRange()[0]);
+      this->high = std::max(this->high, function->GetRange()[1]);
+    }
+  }
+  /// A range of positive length whatever the functions hold.
+  void complete()
+  {
+    if (!(this->low <= this->high)) {
+      this->low = 0;
+    }
+    if (!(this->low < this->high)) {
+      this->high = this->low + std::max(1.0, std::abs(this->low));
+    }
+  }
+};
+
+bool IsLogarithmic(const Functions& functions)
+{
+  return functions.Rgb && functions.Rgb->GetScale() == VTK_CTF_LOG10 &&
+         functions.Rgb->GetRange()[0] > 0 &&
+         functions.Rgb->GetRange()[0] < functions.Rgb->GetRange()[1];
+}
+
+Range TableRange(const Functions& functions, bool logarithmic)
+{
+  Range range;
+  range.extend(functions.Rgb);
+  range.extend(functions.Gray);
+  const double colourLow = range.low;
+  range.extend(functions.Opacity);
+  if (logarithmic && range.low <= 0) {
+    range.low = colourLow; // an opacity node at or below 0 has no place on a logarithmic axis
+  }
+  range.complete();
+  return range;
+}
+
+/// The range, kept just inside: with clamping off VTK's functions end at their outer nodes, and it
+/// takes logarithms of its own, rounded once more.
+Range Inside(const TransferFunction& table)
+{
+  const auto inset = [&](double end) {
+    return std::max(1e-12 * (table.high - table.low), 1e-14 * std::abs(end));
+  };
+  Range range;
+  range.low = table.logarithmic ? table.low * (1 + 1e-12) : table.low + inset(table.low);
+  range.high = std::max(range.low, table.high - inset(table.high));
+  return range;
+}
+
+/// At n places from one end to the other.
+std::vector<glm::vec4> Sampled(const Functions& functions, const TransferFunction& table, int n)
+{
+  const Range range = Inside(table);
+  return table.logarithmic ? functions.evenlyInLogarithms(range.low, range.high, n)
+                           : functions.evenly(range.low, range.high, n);
+}
+
+/// Every n-th of them, each the mean of those around it, the less the further: a peak between two
+/// entries adds to both, and what is linear remains what it is.
+std::vector<glm::vec4> Thinned(const std::vector<glm::vec4>& fine, int n)
+{
+  std::vector<glm::vec4> entries{fine.front()};
+  const auto step = static_cast<std::size_t>(n);
+  for (std::size_t middle = step; middle + step < fine.size(); middle += step) {
+    glm::dvec3 plain(0);
+    glm::dvec4 seen(0); // colours by their opacity
+    for (int k = 1 - n; k < n; ++k) {
+      const glm::dvec4 entry(fine[middle + static_cast<std::size_t>(n + k) - step]);
+      const double weight = (n - std::abs(k)) / (static_cast<double>(n) * n);
+      plain += weight * glm::dvec3(entry);
+      seen += weight * entry.w * glm::dvec4(glm::dvec3(entry), 1.0);
+    }
+    const glm::dvec3 color = seen.w > 0 ? glm::dvec3(seen) / seen.w : plain;
+    entries.emplace_back(glm::vec4(color, seen.w));
+  }
+  entries.push_back(fine.back());
+  return entries;
+}
+
+std::vector<glm::vec4> Entries(const Functions& functions, const TransferFunction& table)
+{
+  const int wanted = table.logarithmic ? functions.intervalsInLogarithms(table.low, table.high)
+                                       : functions.intervals(table.low, table.high);
+  if (wanted <= LargestTable) {
+    return Sampled(functions, table, std::max(wanted, SmallestTable) + 1);
+  }
+  const int finer = std::min(wanted / LargestTable + 1, MostPerInterval);
+  return Thinned(Sampled(functions, table, LargestTable * finer + 1), finer);
+}
+
+} // namespace
+
+TransferFunction BuildTransferFunction(vtkVolumeProperty* property)
+{
+  const Functions functions(property);
+  TransferFunction result;
+  result.logarithmic = IsLogarithmic(functions);
+  const Range range = TableRange(functions, result.logarithmic);
+  result.low = range.low;
+  result.high = range.high;
+  result.table = Entries(functions, result);
+  const double ratio = range.high / range.low;
+  const double width = range.high - range.low;
+  result.below = functions.at(result.logarithmic ? range.low / ratio : range.low - width);
+  result.above = functions.at(result.logarithmic ? range.high * ratio : range.high + width);
+  return result;
+}
+
+TransferFunctionCache::Key TransferFunctionCache::makeKey(vtkVolumeProperty* property)
+{
+  const Functions functions(property);
+  return {functions.colour(), functions.Opacity, functions.colour()->GetMTime(),
+          functions.Opacity->GetMTime()};
+}
+
+const TransferFunction& TransferFunctionCache::get(vtkVolumeProperty* property)
+{
+  const Key key = TransferFunctionCache::makeKey(property);
+  if (!(key == this->Built)) {
+    this->Table = BuildTransferFunction(property);
+    this->Built = key;
+  }
+  return this->Table;
+}
+
+} // namespace inr

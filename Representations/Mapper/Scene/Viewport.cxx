@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Representations/Mapper/Scene/Viewport.h"
+
+#include <vtkCamera.h>
+#include <vtkMatrix4x4.h>
+#include <vtkRenderer.h>
+
+#include <glm/matrix.hpp>
+
+namespace inr {
+
+glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
+{
+  glm::dmat4 result;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      result[column][row] = matrix->GetElement(row, column);
+    }
+  }
+  return result;
+}
+
+Viewport GetViewport(vtkRenderer* renderer)
+{
+  Viewport result;
+  renderer->GetTiledSizeAndOrigin(&result.width, &result.height, &result.x, &result.y);
+  return result;
+}
+
+glm::dmat4 ClipToWorld(vtkRenderer* renderer)
+{
+  // Not GetCompositeProjectionTransformMatrix: that one is for picking and leaves out stereo.
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const glm::dmat4 projection =
+      ToGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1));
+  return glm::inverse(projection * ToGlm(camera->GetModelViewTransformMatrix()));
+}
+
+std::size_t PixelUnder(std::size_t pixel, int width, int height, const Viewport& viewport)
+{
+  const auto across = static_cast<std::size_t>(width);
+  const double x = static_cast<double>(pixel % across) + 0.5;
+  const double y = static_cast<double>(pixel / across) + 0.5;
+  const auto row = static_cast<std::size_t>(y * viewport.height / height);
+  return row * viewport.width + static_cast<std::size_t>(x * viewport.width / width);
+}
+
+} // namespace inr

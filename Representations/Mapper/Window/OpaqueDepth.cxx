@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Representations/Mapper/Window/OpaqueDepth.h"
+
+#include "Representations/Mapper/Window/Props.h"
+
+#include <vtkActor2D.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+
+namespace inr {
+namespace {
+
+bool DrawsOpaque(vtkProp* prop)
+{
+  return prop->GetVisibility() && !vtkVolume::SafeDownCast(prop) &&
+         !vtkActor2D::SafeDownCast(prop) && prop->HasOpaqueGeometry();
+}
+
+template <class Test> bool AnyProp(vtkRenderer* renderer, const Test& test)
+{
+  bool any = false;
+  ForEachProp(renderer, [&](vtkProp* prop) { any = any || test(prop); });
+  return any;
+}
+
+} // namespace
+
+bool MayHaveOpaqueDepth(vtkRenderer* renderer)
+{
+  return renderer->GetPreserveDepthBuffer() || AnyProp(renderer, DrawsOpaque);
+}
+
+bool MayHideByWhatIsNotPicked(vtkRenderer* renderer)
+{
+  return AnyProp(renderer, [](vtkProp* prop) { return !prop->GetPickable() && DrawsOpaque(prop); });
+}
+
+std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewport)
+{
+  std::vector<float> depth(static_cast<std::size_t>(viewport.width) * viewport.height);
+  const int ok = renderer->GetRenderWindow()->GetZbufferData(
+      viewport.x, viewport.y, viewport.x + viewport.width - 1, viewport.y + viewport.height - 1,
+      depth.data());
+  return ok ? depth : std::vector<float>();
+}
+
+std::vector<float> ReduceDepth(const std::vector<float>& depth, const Viewport& viewport, int width,
+                               int height)
+{
+  std::vector<float> result(static_cast<std::size_t>(width) * height);
+  for (std::size_t pixel = 0; pixel < result.size(); ++pixel) {
+    result[pixel] = depth[PixelUnder(pixel, width, height, viewport)];
+  }
+  return result;
+}
+
+} // namespace inr
