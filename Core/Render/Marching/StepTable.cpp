@@ -26,15 +26,19 @@ bool IsTooLong(double begin, double end, double length)
 }
 
 /// Rows between two entries of the colour table.
-int Refinement(const ColorLookup& colors, double shortest, double longest)
+int Refinement(const ColorLookup& colors, const std::vector<double>& lengths)
 {
   int pieces = 1;
   for (int k = 0; k + 1 < colors.count; ++k) {
     const double begin = colors.entries[k].w;
     const double end = colors.entries[k + 1].w;
-    // The power bends most where opacity is high for short samples and where it is low for long.
-    for (const double length : {shortest, longest}) {
-      const double rise = end - begin;
+    if (begin == end) {
+      continue;
+    }
+    // Where the power bends most depends on the length: at high opacity for short samples, at low
+    // for long ones.
+    const double rise = end - begin;
+    for (const double length : lengths) {
       while (pieces * 2 * (colors.count - 1) <= MaximumRows &&
              (IsTooLong(begin, begin + rise / pieces, length) ||
               IsTooLong(end - rise / pieces, end, length))) {
@@ -95,7 +99,7 @@ StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
   for (int number = 0; number < lengths; ++number) {
     inUnits.push_back(stepLength * static_cast<double>(StepsOf(number)));
   }
-  const int pieces = Refinement(colors, inUnits.front(), inUnits.back());
+  const int pieces = Refinement(colors, inUnits);
   const int nodes = (colors.count - 1) * pieces + 1;
   this->Lookup.rows = nodes + 4;
   // A logarithm is taken before the lookup; what comes here is the coordinate itself.

@@ -52,6 +52,24 @@ TEST(StepTable, FollowsThePowerBetweenEntries)
   }
 }
 
+// Steps of an opacity unit distance are linear in it, and the longest samples of opaque values are
+// opaque; what lies in between is neither.
+TEST(StepTable, FollowsThePowerOfAllLengths)
+{
+  inr::TransferFunction function;
+  function.table = {{1, 1, 1, 0.2f}, {1, 1, 1, 0.95f}};
+  const inr::ColorTable colors(function, inr::VolumeInfo{});
+  const int lengths = inr::SampleLengths(6);
+  const inr::StepTable table(colors.lookup(), 1.0, lengths);
+  for (int number = 0; number < lengths; ++number) {
+    for (float y = 0; y <= 1; y += 1.0f / 1237) {
+      const double opacity = colors.lookup().at(y).w;
+      const double exact = 1 - std::pow(1.0 - opacity, inr::StepsOf(number));
+      ASSERT_NEAR(Read(table.lookup(), y, number).w, exact, 4e-4) << y << " " << number;
+    }
+  }
+}
+
 // Peaks that reach 1 or almost do, the ends of a plateau, and of the table: where short samples let
 // nothing through at one value and nearly everything next to it.
 TEST(StepTable, FollowsOpacitiesNextToOne)
