@@ -2,6 +2,7 @@
 #include "Representations/Mapper/Window/ImageBlender.h"
 
 #include "Readers/VTKCompat.h"
+#include "Representations/Mapper/Window/RenderTarget.h"
 
 #include INR_VTK_OPENGL_HEADER
 #include <vtkNew.h>
@@ -105,7 +106,8 @@ bool ImageBlender::draw(vtkRenderer* renderer, const Viewport& viewport, const I
                         Mode mode)
 {
   const bool blends = mode == Mode::Blend;
-  const bool exact = rgba.width == viewport.width && rgba.height == viewport.height;
+  const Viewport target = TargetOf(renderer, viewport).viewport;
+  const bool exact = rgba.width == target.width && rgba.height == target.height;
   auto* window = vtkOpenGLRenderWindow::SafeDownCast(renderer->GetRenderWindow());
   if (!window || !this->upload(window, rgba, blends && !exact)) {
     return false;
@@ -120,7 +122,7 @@ bool ImageBlender::draw(vtkRenderer* renderer, const Viewport& viewport, const I
   if (!quad->Program) {
     return false;
   }
-  const DrawingState scope(window->GetState(), viewport, blends);
+  const DrawingState scope(window->GetState(), target, blends);
   vtkTextureObject* texture = this->Self->Texture;
   texture->Activate();
   quad->Program->SetUniformi("image", texture->GetTextureUnit());

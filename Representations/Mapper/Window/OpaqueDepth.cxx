@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Window/OpaqueDepth.h"
 
+#include "Readers/VTKCompat.h"
 #include "Representations/Mapper/Window/Props.h"
+#include "Representations/Mapper/Window/RenderTarget.h"
 
+#include INR_VTK_OPENGL_HEADER
 #include <vtkActor2D.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
@@ -24,6 +29,23 @@ template <class Test> bool AnyProp(vtkRenderer* renderer, const Test& test)
   return any;
 }
 
+/// Of the framebuffer that is drawn into.
+std::vector<float> ReadBoundDepth(vtkRenderer* renderer, const Viewport& place)
+{
+  auto* window = static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow());
+  vtkOpenGLState* state = window->GetState();
+  int bound = 0;
+  state->vtkglGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+  state->PushReadFramebufferBinding();
+  state->vtkglBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<unsigned int>(bound));
+  std::vector<float> depth(static_cast<std::size_t>(place.width) * place.height);
+  state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(place.x, place.y, place.width, place.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+               depth.data());
+  state->PopReadFramebufferBinding();
+  return depth;
+}
+
 } // namespace
 
 bool MayHaveOpaqueDepth(vtkRenderer* renderer)
@@ -38,6 +60,11 @@ bool MayHideByWhatIsNotPicked(vtkRenderer* renderer)
 
 std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewport)
 {
+  const RenderTarget target = TargetOf(renderer, viewport);
+  if (!target.isWindow) {
+    return ReduceDepth(ReadBoundDepth(renderer, target.viewport), target.viewport, viewport.width,
+                       viewport.height);
+  }
   std::vector<float> depth(static_cast<std::size_t>(viewport.width) * viewport.height);
   const int ok = renderer->GetRenderWindow()->GetZbufferData(
       viewport.x, viewport.y, viewport.x + viewport.width - 1, viewport.y + viewport.height - 1,
