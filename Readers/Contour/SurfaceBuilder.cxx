@@ -34,6 +34,13 @@ template <class Array> auto* Grow(Array* array, vtkIdType count)
   return room;
 }
 
+bool AreLeftHanded(const glm::dmat3& axes)
+{
+  const glm::dvec3 normal =
+      glm::cross(glm::normalize(axes[0]), glm::normalize(axes[1])); // or products underflow
+  return glm::dot(normal, axes[2]) < 0;
+}
+
 bool NeedsDouble(const glm::dvec3& origin, const glm::dmat3& axes, const glm::i64vec3& size)
 {
   double farthest = 0;
@@ -55,7 +62,8 @@ template <class T> T* WriteTuple(const glm::dvec3& tuple, T* out)
 
 SurfaceBuilder::SurfaceBuilder(const NativeGrid& grid, int level, std::size_t surfaces,
                                bool normals)
-    : ArrayName(grid.arrayName), Axes(grid.Axes()), Shared(surfaces)
+    : ArrayName(grid.arrayName), Axes(grid.Axes()), Mirrors(AreLeftHanded(this->Axes)),
+      Shared(surfaces)
 {
   const glm::i64vec3 size = inr::VoxelsAtLevel(grid.model->volume.dims, level);
   const glm::dvec3 growth = glm::dvec3(grid.model->volume.dims) / glm::dvec3(size);
@@ -99,8 +107,12 @@ void SurfaceBuilder::Add(std::size_t surface, double value, const SurfacePatch& 
     this->Append(added, value);
   }
   vtkIdType* corners = Grow(this->Triangles.Get(), static_cast<vtkIdType>(patch.triangles.size()));
-  for (const std::int32_t corner : patch.triangles) {
-    *corners++ = ids[static_cast<std::size_t>(corner)];
+  // Counter-clockwise as seen from smaller values; axes that mirror turn that round.
+  const std::size_t second = this->Mirrors ? 2 : 1;
+  for (std::size_t first = 0; first < patch.triangles.size(); first += 3) {
+    for (const std::size_t corner : {std::size_t{0}, second, 3 - second}) {
+      *corners++ = ids[static_cast<std::size_t>(patch.triangles[first + corner])];
+    }
   }
 }
 

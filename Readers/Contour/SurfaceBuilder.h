@@ -48,6 +48,7 @@ private:
   glm::dvec3 Origin; ///< where voxel 0 of the level stands
   glm::dmat3 Axes;   ///< from one voxel of the level to the next
   glm::dmat3 GradientAxes;
+  bool Mirrors; ///< whether the axes are left-handed
   vtkSmartPointer<vtkDataArray> Points;
   vtkSmartPointer<vtkFloatArray> Normals; ///< null where nobody wants them
   vtkNew<vtkDoubleArray> Values;

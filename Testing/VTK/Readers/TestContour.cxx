@@ -371,6 +371,24 @@ TEST_F(Contour, LeavesNormalsOutWhenTold)
   EXPECT_EQ(with, without);
 }
 
+// As images with negative spacing and left-handed patients' axes have it.
+TEST_F(Contour, FacesOutwardsWhereAxesMirror)
+{
+  const auto model = MakeBall({40, 40, 40});
+  for (const double sign : {1.0, -1.0}) {
+    for (const int axis : {0, 2}) {
+      SCOPED_TRACE(sign * (axis + 1));
+      model->volume.direction = glm::dmat3(1.0);
+      model->volume.direction[axis] *= sign;
+      this->connect(*model);
+      this->Filter->SetValue(0, 0.5);
+      vtkPolyData* ball = this->update();
+      ASSERT_GT(ball->GetNumberOfCells(), 1000);
+      EXPECT_GT(PartThatFacesItsNormals(ball), 0.99);
+    }
+  }
+}
+
 TEST_F(Contour, HasTheNormalsOfAnyRangeOfValues)
 {
   const auto model = MakeModel({50, 37, 41}, inr::ScalarType::Float64);

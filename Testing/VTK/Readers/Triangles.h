@@ -3,10 +3,13 @@
 // What a surface's triangles are, however its points are numbered.
 #pragma once
 
+#include <vtkDataArray.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPolyData.h>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -70,4 +73,26 @@ inline int OpenEdges(vtkPolyData* surface)
   }
   return static_cast<int>(
       std::count_if(uses.begin(), uses.end(), [](const auto& use) { return use.second == 1; }));
+}
+
+/// The part of a surface's triangles whose corners go round counter-clockwise as seen from where
+/// their normals point to.
+inline double PartThatFacesItsNormals(vtkPolyData* surface)
+{
+  vtkDataArray* normals = surface->GetPointData()->GetNormals();
+  vtkIdType facing = 0;
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell) {
+    vtkNew<vtkIdList> ids;
+    surface->GetCellPoints(cell, ids);
+    glm::dvec3 corner[3], along(0.0);
+    for (int k = 0; k < 3; ++k) {
+      surface->GetPoint(ids->GetId(k), &corner[k].x);
+      glm::dvec3 normal;
+      normals->GetTuple(ids->GetId(k), &normal.x);
+      along += normal;
+    }
+    const glm::dvec3 face = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+    facing += glm::dot(face, along) >= 0 ? 1 : 0; // 0: corners that fall together
+  }
+  return static_cast<double>(facing) / static_cast<double>(surface->GetNumberOfCells());
 }
