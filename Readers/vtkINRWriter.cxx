@@ -127,7 +127,10 @@ int vtkINRWriter::Write()
   self.IsWriting = false;
   this->Modified(); // so that the steps are planned anew
   const bool isKnown = this->GetExecutive()->UpdateInformation() != 0;
-  this->Attempt([&] { this->RequireOfAll(isKnown); });
+  this->Attempt([&] {
+    this->RequireOfAll(isKnown);
+    this->RequireSameSteps();
+  });
   if (this->GetErrorCode() != vtkErrorCode::NoError || !this->CheckFiles(self.Steps.numbers())) {
     return 0;
   }
@@ -175,6 +178,29 @@ void vtkINRWriter::RequireOfAll(bool succeeded)
   ControllerGroup(this->Internal->Controller).together([&] {
     if (!succeeded) {
       throw inr::Error(inr::ErrorCode::CannotRead, "the source failed; what it reported says why");
+    }
+  });
+}
+
+/// In processes that see other ones, as of a series that is being written, some would be done with
+/// the last while others wait for them for ever.
+void vtkINRWriter::RequireSameSteps()
+{
+  vtkInformation* input = this->GetInputInformation();
+  const bool hasSteps = this->WriteTimeSteps && input->Has(Pipeline::TIME_STEPS());
+  const double* const times = hasSteps ? input->Get(Pipeline::TIME_STEPS()) : nullptr;
+  const std::vector<double> mine(times,
+                                 times + (hasSteps ? input->Length(Pipeline::TIME_STEPS()) : 0));
+  const ControllerGroup group(this->Internal->Controller);
+  const std::string bytes(reinterpret_cast<const char*>(mine.data()), mine.size() * sizeof(double));
+  const std::string first = group.fromFirst(bytes);
+  group.together([&] {
+    if (bytes != first) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument,
+                       "the data have " + std::to_string(mine.size()) + " time steps here and " +
+                           std::to_string(first.size() / sizeof(double)) +
+                           " in the first process, or at other times; save them when all "
+                           "processes see the same files");
     }
   });
 }

@@ -298,6 +298,7 @@ private:
 
   void WriteStep();
   void RequireOfAll(bool succeeded);
+  void RequireSameSteps();
   void Attempt(const std::function<void()>& act);
   bool CheckFiles(const std::vector<int>& steps);
   void PlanSteps(vtkInformation* input);

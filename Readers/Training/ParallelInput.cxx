@@ -29,8 +29,7 @@ std::array<int, 6> PieceOfGroup(const WholeImage& whole, const ControllerGroup& 
 bool IsCutByVTK(vtkImageData* image, const int* wanted, const ControllerGroup& group)
 {
   const bool here = IsEmpty(wanted) || (image && Contains(image->GetExtent(), wanted));
-  const std::vector<int> all = group.valuesOfAll(static_cast<int>(here));
-  return std::count(all.begin(), all.end(), 0) == 0;
+  return group.all(here);
 }
 
 /// The process' piece of what it has got, which may be all that there is; null where it has none.
@@ -49,15 +48,26 @@ vtkSmartPointer<vtkImageData> PieceOf(vtkImageData* image, const int* wanted, bo
   return piece;
 }
 
-/// What the first process knows of the whole, the others learn.
-void ShareInfo(inr::VolumeInfo& info, const ControllerGroup& group)
+/// The first of the processes that say so; that with rank 0 where none does.
+std::size_t FirstOf(bool said, const ControllerGroup& group)
 {
-  info.type = group.valueOfFirst(info.type);
-  info.dims = group.valueOfFirst(info.dims);
-  info.arrayName = group.fromFirst(info.arrayName);
-  const double time = group.valueOfFirst(info.time.value_or(0.0));
-  info.time =
-      group.valueOfFirst(info.time.has_value()) ? std::optional<double>(time) : std::nullopt;
+  const std::vector<bool> all = group.valuesOfAll(said);
+  const auto first = std::find(all.begin(), all.end(), true);
+  return first == all.end() ? 0 : static_cast<std::size_t>(first - all.begin());
+}
+
+/// What the process with rank `knowing` knows of the whole, the others learn.
+void ShareInfo(inr::VolumeInfo& info, std::size_t knowing, const ControllerGroup& group)
+{
+  info.type = group.valuesOfAll(info.type)[knowing];
+  info.dims = group.valuesOfAll(info.dims)[knowing];
+  info.origin = group.valuesOfAll(info.origin)[knowing];
+  info.spacing = group.valuesOfAll(info.spacing)[knowing];
+  info.direction = group.valuesOfAll(info.direction)[knowing];
+  info.arrayName = group.gather(info.arrayName)[knowing];
+  const double time = group.valuesOfAll(info.time.value_or(0.0))[knowing];
+  info.time = group.valuesOfAll(info.time.has_value())[knowing] ? std::optional<double>(time)
+                                                                : std::nullopt;
 }
 
 } // namespace
@@ -102,14 +112,15 @@ ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
   auto* const image = vtkImageData::SafeDownCast(data);
   const std::array<int, 6> wanted = PieceOfGroup(whole, group);
   const bool cut = IsCutByVTK(image, wanted.data(), group);
+  vtkSmartPointer<vtkImageData> piece;
+  group.together([&] { piece = image ? PieceOf(image, wanted.data(), cut) : nullptr; });
+  const std::size_t first = FirstOf(piece != nullptr, group);
   group.together([&] {
-    const vtkSmartPointer<vtkImageData> piece =
-        image ? PieceOf(image, wanted.data(), cut) : nullptr;
     if (!piece) {
-      if (!image || group.rank() == 0) {
+      if (!image || static_cast<std::size_t>(group.rank()) == first) {
         find(data); // says what is wrong with it
       }
-      return; // more processes than the image can be cut for
+      return; // more processes than the image can be cut for, or one that has no part of it
     }
     found.input = find(piece);
     const int* const extent = piece->GetExtent();
@@ -120,15 +131,15 @@ ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
     piece->TransformIndexToPhysicalPoint(whole.extent[0], whole.extent[2], whole.extent[4],
                                          &info.origin.x);
   });
-  const std::string first = group.fromFirst(info.arrayName);
-  RequireOneArray(found.input.values ? info.arrayName : first, group);
-  ShareInfo(info, group);
+  const std::string name = group.gather(info.arrayName)[first];
+  RequireOneArray(found.input.values ? info.arrayName : name, group);
+  ShareInfo(info, first, group);
   group.together([&] {
     if (found.input.values && found.input.data.type != info.type) {
       throw inr::Error(inr::ErrorCode::InvalidArgument,
                        "array '" + info.arrayName + "' holds " +
                            inr::ScalarName(found.input.data.type) + " here and " +
-                           inr::ScalarName(info.type) + " in the first process");
+                           inr::ScalarName(info.type) + " in process " + std::to_string(first + 1));
     }
   });
   return found;

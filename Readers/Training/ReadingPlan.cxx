@@ -41,9 +41,12 @@ ReadingPlan::ReadingPlan(vtkAlgorithm* consumer, vtkInformation* input, std::int
   const std::string wholeReader = group.firstOf(FindWholeFileReader(consumer));
   const bool isLarge = this->isTooLarge(this->Whole.bytes, group);
   this->InParts = wholeReader.empty();
-  this->WholeReader = isLarge && !this->InParts ? wholeReader + ", the source" : "";
+  const std::string collective =
+      group.size() > 1 ? group.firstOf(FindCollectiveFilter(consumer)) : std::string();
+  const std::string& whole = this->InParts ? collective : wholeReader;
+  this->WholeReader = isLarge && !whole.empty() ? whole + ", the source" : "";
   const bool mayBeLarge = this->InParts && this->isTooLarge(MostUntold * this->Whole.bytes, group);
-  if (group.any(this->InParts && isLarge)) {
+  if (group.any(whole.empty() && isLarge)) {
     this->Asks = FirstAsked::VoxelOfTooMuch;
   } else if (mayProbe && group.size() == 1 && mayBeLarge) {
     this->Asks = FirstAsked::VoxelToLearn;

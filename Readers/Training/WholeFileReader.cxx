@@ -51,14 +51,30 @@ bool GivesWholeFiles(vtkAlgorithm* algorithm, vtkAlgorithm* consumer)
                     reader->IsA("vtkTGAReader"));
 }
 
-} // namespace
+/// Of several processes: filters that must be executed in all of them at once and cut what all of
+/// them ask for together into a part for each, which of a voxel there is not.
+bool CutsForAllProcesses(vtkAlgorithm* algorithm) { return algorithm->IsA("vtkPResampleToImage"); }
 
-std::string FindWholeFileReader(vtkAlgorithm* algorithm)
+/// The class of one that `test` says yes to; empty where there is none.
+template <class Test> std::string FindUpstream(vtkAlgorithm* algorithm, const Test& test)
 {
-  for (vtkAlgorithm* reader : UpstreamOf(algorithm)) {
-    if (GivesWholeFiles(reader, algorithm)) {
-      return reader->GetClassName();
+  for (vtkAlgorithm* source : UpstreamOf(algorithm)) {
+    if (test(source)) {
+      return source->GetClassName();
     }
   }
   return {};
+}
+
+} // namespace
+
+std::string FindCollectiveFilter(vtkAlgorithm* algorithm)
+{
+  return FindUpstream(algorithm, CutsForAllProcesses);
+}
+
+std::string FindWholeFileReader(vtkAlgorithm* algorithm)
+{
+  return FindUpstream(algorithm,
+                      [&](vtkAlgorithm* reader) { return GivesWholeFiles(reader, algorithm); });
 }

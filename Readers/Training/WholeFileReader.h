@@ -10,3 +10,8 @@ class vtkAlgorithm;
 /// whole files or slices into the memory of the part; its reader of NRRD gives no parts of files
 /// that are compressed, and of text the values of other voxels.
 std::string FindWholeFileReader(vtkAlgorithm* algorithm);
+
+/// The class of a filter upstream that several processes must not ask for a part of what they need
+/// together; empty where there is none. ParaView's ResampleToImage cuts what is asked for into a
+/// part for each process, and ends the program where it cannot.
+std::string FindCollectiveFilter(vtkAlgorithm* algorithm);
