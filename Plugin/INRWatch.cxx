@@ -17,6 +17,16 @@
 
 namespace {
 
+/// Of the views that show a representation: who makes one by a script need not register it.
+void WatchViewsOf(vtkSMProxy* representation)
+{
+  for (unsigned int k = 0; k < representation->GetNumberOfConsumers(); ++k) {
+    if (auto* view = vtkSMViewProxy::SafeDownCast(representation->GetConsumerProxy(k))) {
+      vtkINREXRWriter::WatchView(view);
+    }
+  }
+}
+
 /// What happens to one representation.
 class Watch : public vtkCommand
 {
@@ -37,6 +47,7 @@ public:
     auto* representation = static_cast<vtkSMProxy*>(caller);
     const auto* property = static_cast<const char*>(data);
     if (event == vtkCommand::UpdateDataEvent) {
+      WatchViewsOf(representation);
       INRFollowData(representation);
     } else if (property && std::strcmp(property, "Representation") == 0) {
       this->changeType(representation);

@@ -258,6 +258,8 @@ void vtkINRVolumeMapper::GetFrameSize(int size[2]) const
 
 vtkMTimeType vtkINRVolumeMapper::GetFrameMTime() const { return this->Self->Drawn.GetMTime(); }
 
+const char* vtkINRVolumeMapper::GetWhyNotDrawn() const { return this->Self->LastError.c_str(); }
+
 bool vtkINRVolumeMapper::GetOpaqueDepthRead() const { return this->Self->Painter.last().depthRead; }
 
 inr::PaintSettings vtkINRVolumeMapper::PresentSettings()

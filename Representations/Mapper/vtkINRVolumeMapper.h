@@ -525,6 +525,9 @@ public:
    */
   vtkMTimeType GetFrameMTime() const;
 
+  /** Why the last frame was not drawn, as the error said that came then; empty when it was. */
+  const char* GetWhyNotDrawn() const;
+
   /** Whether the last frame read the depth of opaque geometry. */
   bool GetOpaqueDepthRead() const;
 

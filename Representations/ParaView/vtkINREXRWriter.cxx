@@ -163,8 +163,10 @@ void vtkINREXRWriter::Write()
   const std::vector<vtkINRLODVolume*> shown =
       view ? ShownBy(view) : std::vector<vtkINRLODVolume*>();
   if (shown.size() != 1) {
-    this->Fail("The view shows " + std::to_string(shown.size()) +
-               " INR volumes; an OpenEXR file takes the picture of one.");
+    const std::string parts = WhyOtherSize(latest.size, screenshot->GetDimensions());
+    this->Fail(!parts.empty() ? parts
+                              : "The view shows " + std::to_string(shown.size()) +
+                                    " INR volumes; an OpenEXR file takes the picture of one.");
     return;
   }
   const bool drawnHere = shown[0]->GetDrawnHere();
@@ -187,7 +189,9 @@ void vtkINREXRWriter::WriteFrom(vtkINRLODVolume* volume, vtkImageData* screensho
       volume->GetDrawnHere() ? vtkINRVolumeMapper::SafeDownCast(volume->GetMapper()) : nullptr;
   if (mapper && !volume->GetDrawn() && !mapper->GetHasPiece()) {
     this->WriteOutOfSight(*mapper, screenshot);
-  } else if (!mapper || mapper->GetImageReduction() == 0) {
+  } else if (mapper && mapper->GetImageReduction() == 0) {
+    this->Fail(std::string("The volume is not in the picture. ") + mapper->GetWhyNotDrawn());
+  } else if (!mapper) {
     this->Fail("This process cannot draw the view, and a server's picture has 8 bits only; hide "
                "what has to be drawn by the server, such as other volumes.");
   } else if (const std::string problem = WhyAnother(mapper, screenshot); !problem.empty()) {

@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 from exrfile import read_exr
-from paraview import simple
+from paraview import servermanager, simple
 from pvtest import MODEL, Messages, check, load_plugin, look_at, output_file, picture, show_view
 
 load_plugin()
@@ -104,6 +104,11 @@ for what, wanted, prepare in (
     check(messages.errors() == 1 and wanted in messages.text, what, "reported", messages.text)
     check(open(path, "rb").read() == before, what, "changed the file")
 simple.Show(reader, view)
+display.Scale = [1, 1, 0]
+messages = save(path)
+check("not in the picture. " in messages.text and "server" not in messages.text, "flat", messages.text)
+check(open(path, "rb").read() == before, "a flat volume changed the file")
+display.Scale = [1, 1, 1]
 messages = save(output_file("eyes.exr"), StereoMode="Both Eyes")
 check(messages.errors() > 0 and "one eye" in messages.text, "both eyes reported", messages.text)
 check(not os.path.exists(output_file("eyes_left.exr")), "both eyes made a file")
@@ -112,5 +117,25 @@ for bad in output_file("no-such-folder/picture.exr"), output_file("folder.exr"):
     messages = save(bad)
     check(messages.errors() == 1 and bad in messages.text, bad, "reported", messages.text)
     check(not os.path.isfile(bad), bad, "exists")
+
+# Of a view that nobody has registered, too, as of low-level scripts.
+save(path)
+unknown = servermanager.CreateRenderView()
+unknown.ViewSize = [160, 120]
+simple.Show(reader, unknown)
+look_at(unknown)
+unknown.GetActiveCamera().Azimuth(30)
+check(save(output_file("unknown.exr"), unknown).errors() == 0, "an unregistered view reported something")
+seen = read_exr(output_file("unknown.exr"))["A"]
+check(0.05 < (seen > 0.5).mean() and np.abs(seen - read_exr(path)["A"]).max() > 0.1, "another view's")
+
+# A layout of two views is no picture of one, whichever is drawn last.
+layout = simple.CreateLayout("two")
+for shown in simple.CreateView("RenderView"), simple.CreateView("RenderView"):
+    simple.AssignViewToLayout(view=shown, layout=layout)
+    simple.Show(reader if layout.GetViewLocation(shown) == 1 else simple.Sphere(), shown)
+layout.SplitHorizontal(0, 0.5)
+messages = save(output_file("layout.exr"), layout)
+check(messages.errors() == 1 and "parts" in messages.text, "a layout reported", messages.text)
 left = [name for name in os.listdir(os.path.dirname(path)) if ".exr." in name]
 check(not left, "half-written files stay:", left)
