@@ -53,7 +53,8 @@ public:
 
   ///@{
   /// Resolution level, 0 (the native grid) to 30; beyond the coarsest level that has two voxels per
-  /// axis, that one. -1 (default) = the finest one that takes at most MaximumSamples.
+  /// axis, that one. -1 (default) = the finest one that takes at most MaximumSamples, or the
+  /// coarsest.
   vtkSetClampMacro(Level, int, -1, 30);
   vtkGetMacro(Level, int);
   ///@}
