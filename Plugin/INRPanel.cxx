@@ -81,8 +81,7 @@ void INRPassOn(vtkSMProxy* representation, const char* changed)
 {
   for (const PanelProperty& property : PanelProperties) {
     if (std::strcmp(changed, property.panel) == 0) {
-      CopyToStock(representation, property);
-      representation->UpdateVTKObjects();
+      CopyToStock(representation, property); // whoever changed the one sends both
     }
   }
 }
