@@ -139,7 +139,7 @@ ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
       throw inr::Error(inr::ErrorCode::InvalidArgument,
                        "array '" + info.arrayName + "' holds " +
                            inr::ScalarName(found.input.data.type) + " here and " +
-                           inr::ScalarName(info.type) + " in process " + std::to_string(first + 1));
+                           inr::ScalarName(info.type) + " in process " + std::to_string(first));
     }
   });
   return found;
