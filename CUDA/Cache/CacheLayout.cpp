@@ -3,13 +3,8 @@
 
 #include "CUDA/Cache/Kernels/ListBricks.h"
 #include "Core/Cache/BrickCache.h"
-#include "Core/Error.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iomanip>
-#include <sstream>
-#include <string>
 
 namespace inr {
 namespace cuda {
@@ -107,26 +102,6 @@ private:
   CacheNeeds Needs;
 };
 
-/// Hundredths, so that what is said to be enough is.
-std::string InMebibytes(std::int64_t bytes, double (*round)(double))
-{
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(2)
-       << round(static_cast<double>(bytes) * 100 / (1 << 20)) / 100;
-  return text.str();
-}
-
-[[noreturn]] void RefuseBytes(const Hierarchy& hierarchy, std::int64_t bytes, std::int64_t least)
-{
-  const glm::ivec3& voxels = hierarchy.brickDims();
-  throw Error(ErrorCode::InvalidArgument,
-              "a cache of " + InMebibytes(bytes, std::floor) + " MiB on the GPU does not hold " +
-                  std::to_string(BrickCache::FewestBricks) + " bricks of " +
-                  std::to_string(voxels.x) + " x " + std::to_string(voxels.y) + " x " +
-                  std::to_string(voxels.z) + " voxels and what loads them; make it at least " +
-                  InMebibytes(least, std::ceil) + " MiB large, or the bricks smaller");
-}
-
 } // namespace
 
 CacheLayout LayOutCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes,
@@ -146,7 +121,8 @@ CacheLayout LayOutCache(const Hierarchy& hierarchy, CachePrecision precision, st
   }
   const CacheLayout smallest = planner.fit(bytes, 1, FewestRequests);
   if (smallest.capacity < BrickCache::FewestBricks) {
-    RefuseBytes(hierarchy, bytes, LeastCacheBytes(hierarchy, precision, needs));
+    BrickCache::refuse(hierarchy, "on the GPU ", bytes,
+                       LeastCacheBytes(hierarchy, precision, needs));
   }
   return smallest;
 }

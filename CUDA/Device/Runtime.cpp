@@ -2,6 +2,7 @@
 #include "CUDA/Device/Runtime.h"
 
 #include "Core/Error.h"
+#include "Core/Mebibytes.h"
 
 #include <algorithm>
 #include <exception>
@@ -11,11 +12,6 @@ namespace inr {
 namespace cuda {
 
 namespace {
-
-std::string MiB(std::int64_t bytes)
-{
-  return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
-}
 
 std::string DeviceText()
 {
@@ -156,11 +152,11 @@ void RequireFree(int device, std::int64_t bytes, const char* what)
   INR_CUDA(cudaMemGetInfo(&free, &total));
   const auto reserve = static_cast<std::int64_t>(total / 16);
   if (bytes + reserve > static_cast<std::int64_t>(free)) {
-    throw Error(ErrorCode::Device, std::string(what) + " would take " + MiB(bytes) + " of " +
-                                       DeviceText() + ", of whose " +
-                                       MiB(static_cast<std::int64_t>(total)) + " " +
-                                       MiB(static_cast<std::int64_t>(free)) + " are free and " +
-                                       MiB(reserve) + " stay so");
+    throw Error(ErrorCode::Device, std::string(what) + " would take " + InMebibytes(bytes) +
+                                       " of " + DeviceText() + ", of whose " +
+                                       InMebibytes(static_cast<std::int64_t>(total)) + " " +
+                                       InMebibytes(static_cast<std::int64_t>(free)) +
+                                       " are free and " + InMebibytes(reserve) + " stay so");
   }
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "CUDA/Inference/Kernels/PointKernels.h"
-#include "CUDA/Inference/Precision.h"
 #include "Core/Model/Model.h"
 
 #include <string>

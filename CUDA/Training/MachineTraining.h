@@ -10,7 +10,6 @@
 #include "Core/Inference/ModelView.h"
 #include "Core/Training/Descent/AdamSchedule.h"
 #include "Core/Training/Descent/GradientDescent.h"
-#include "Core/Training/Samples/StratifiedPositions.h"
 
 #include <algorithm>
 #include <memory>

@@ -4,6 +4,7 @@
 #include "CUDA/Inference/Kernels/Activate.h"
 #include "CUDA/Training/Kernels/TrainLayers.h"
 #include "Core/Error.h"
+#include "Core/Mebibytes.h"
 #include "Core/Training/Descent/AdamSchedule.h"
 #include "Core/Training/Descent/Optimiser.h"
 #include "Core/Training/Descent/TrainKernel.h"
@@ -22,11 +23,6 @@ constexpr std::int64_t MostLayerFloats = std::int64_t{1} << 26;
 /// Samples of a shard at least; the more shards, the more warps share the weights' gradients.
 constexpr std::int64_t LeastShard = 128;
 constexpr std::int64_t MostShardFloats = std::int64_t{1} << 24;
-
-std::string InMiB(std::int64_t bytes)
-{
-  return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
-}
 
 std::int64_t BytesOf(const NormalisedVolume& volume)
 {
@@ -83,9 +79,10 @@ TrainingPlan::TrainingPlan(const TrainingTask& task, std::int64_t freeBytes)
   const std::int64_t ofTables = static_cast<std::int64_t>(sizeof(AdamStep)) * (LastAdamUpdate + 1);
   this->bytes = ofParameters + ofBatch + ofLosses + ofSums + ofUpdates + ofTables;
   if (this->bytes > freeBytes) {
-    throw Error(ErrorCode::Device,
-                "training this model takes " + InMiB(this->bytes) + " of the GPU's memory, and " +
-                    InMiB(std::max<std::int64_t>(freeBytes, 0)) + " are to be had");
+    throw Error(ErrorCode::Device, "training this model takes " + InMebibytes(this->bytes) +
+                                       " of the GPU's memory, and " +
+                                       InMebibytes(std::max<std::int64_t>(freeBytes, 0)) +
+                                       " are to be had");
   }
   this->holdsVolume = task.volume && this->bytes + BytesOf(*task.volume) <= freeBytes;
   this->bytes += this->holdsVolume ? BytesOf(*task.volume) : 0;

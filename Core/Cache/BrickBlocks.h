@@ -4,7 +4,7 @@
 #include "Core/Cache/BlockLattice.h"
 #include "Core/Cache/BlockSet.h"
 #include "Core/Cache/BrickPool.h"
-#include "Core/Model/Model.h"
+#include "Core/Model/MacroCells.h"
 
 #include <glm/vec3.hpp>
 

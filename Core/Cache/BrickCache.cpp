@@ -18,7 +18,7 @@ namespace {
 constexpr auto Word = static_cast<std::int64_t>(sizeof(std::uint64_t));
 
 /// Hundredths, so that what is said to be enough is.
-std::string InMebibytes(std::int64_t bytes, double (*round)(double))
+std::string InHundredths(std::int64_t bytes, double (*round)(double))
 {
   std::ostringstream text;
   text << std::fixed << std::setprecision(2)
@@ -60,14 +60,20 @@ std::int64_t BrickCache::capacityFor(const Hierarchy& hierarchy, CachePrecision 
   const std::int64_t each = bytesPerBrick(hierarchy, precision) + Word;
   const std::int64_t capacity = (bytes - PageTable::bytesFor(0)) / each;
   if (capacity < FewestBricks) {
-    throw Error(ErrorCode::InvalidArgument,
-                "a cache of " + InMebibytes(bytes, std::floor) + " MiB does not hold " +
-                    std::to_string(FewestBricks) + " bricks of " + SizeOf(hierarchy.brickDims()) +
-                    " voxels; make it at least " +
-                    InMebibytes(PageTable::bytesFor(0) + FewestBricks * each, std::ceil) +
-                    " MiB large, or the bricks smaller");
+    refuse(hierarchy, "", bytes, PageTable::bytesFor(0) + FewestBricks * each);
   }
   return std::min({capacity, std::max(most, FewestBricks), enough});
+}
+
+void BrickCache::refuse(const Hierarchy& hierarchy, const char* where, std::int64_t bytes,
+                        std::int64_t least)
+{
+  throw Error(ErrorCode::InvalidArgument,
+              "a cache of " + InHundredths(bytes, std::floor) + " MiB " + where + "does not hold " +
+                  std::to_string(FewestBricks) + " bricks of " + SizeOf(hierarchy.brickDims()) +
+                  " voxels and what goes with them; make it at "
+                  "least " +
+                  InHundredths(least, std::ceil) + " MiB large, or the bricks smaller");
 }
 
 BrickCache::BrickCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes)

@@ -86,6 +86,11 @@ public:
   /// The latest use of all bricks that were ever evicted, 0 when none was.
   std::uint64_t lostUse() const { return this->LostUse; }
 
+  /// Throws Error(InvalidArgument): so many bytes, `where` they are ("on the GPU " or nothing), do
+  /// not hold FewestBricks; `least` would.
+  [[noreturn]] static void refuse(const Hierarchy& hierarchy, const char* where, std::int64_t bytes,
+                                  std::int64_t least);
+
 private:
   static std::int64_t bytesPerBrick(const Hierarchy& hierarchy, CachePrecision precision);
   static std::int64_t capacityFor(const Hierarchy& hierarchy, CachePrecision precision,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Cache/Hierarchy.h"
+#include "Core/Cache/BrickKey.h"
 
 #include <cstdint>
 #include <functional>

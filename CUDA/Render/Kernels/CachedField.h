@@ -2,7 +2,7 @@
 #pragma once
 
 #include "CUDA/Render/Kernels/BrickSampling.h"
-#include "CUDA/Render/Kernels/RayMarch.h"
+#include "CUDA/Render/Kernels/RayCounts.h"
 #include "Core/Render/Bricks/OnMiss.h"
 #include "Core/Render/Paths/FieldPoint.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "CUDA/Device/Kernels/Atomics.h"
-#include "CUDA/Render/Kernels/RayMarch.h"
+#include "CUDA/Render/Kernels/RayCounts.h"
 
 #include <cstdint>
 

@@ -7,6 +7,7 @@
 
 #include "CUDA/Render/Kernels/BrickGradient.h"
 #include "CUDA/Render/Kernels/CompositeSamples.h"
+#include "CUDA/Render/Kernels/RayCounts.h"
 #include "Core/Render/Marching/StepLattice.h"
 #include "Core/Render/Marching/StepTable.h"
 
@@ -38,31 +39,6 @@ INR_HOST_DEVICE inline void WriteSamples(const RayProgress& ray, const PictureVi
   picture.samples[2 * pixel + 1] =
       count > 0 ? static_cast<float>(static_cast<double>(ray.levels) / count) : -1.0f;
 }
-
-/// What happened while a ray came further.
-struct RayCounts
-{
-  std::uint32_t rays = 0; ///< 1 where it began, and meets the volume
-  std::uint32_t samples = 0;
-  std::uint32_t missed = 0;
-  std::uint32_t clamped = 0;
-  std::uint32_t gradients = 0;
-  std::uint32_t scatterings = 0; ///< of paths that ended
-  std::uint32_t lightSteps = 0;  ///< samples of these on the way to a light
-  std::uint32_t levels = 0;      ///< a bit for each that samples came from
-
-  INR_HOST_DEVICE void add(const RayCounts& part)
-  {
-    this->rays += part.rays;
-    this->samples += part.samples;
-    this->missed += part.missed;
-    this->clamped += part.clamped;
-    this->gradients += part.gradients;
-    this->scatterings += part.scatterings;
-    this->lightSteps += part.lightSteps;
-    this->levels |= part.levels;
-  }
-};
 
 /// A ray while a thread has it. It comes from stretch to stretch, within one from brick to brick,
 /// and within a brick by a few samples at once: so the threads of a warp, whose rays meet all that

@@ -146,32 +146,16 @@ ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volum
   lookup.below = function.below;
   lookup.above = function.above;
   MapValues(function, volume, lookup);
-  this->Maxima.emplace_back();
+  std::vector<float> extinctions;
   for (const glm::vec4& entry : this->Entries) {
-    this->Maxima[0].push_back(ExtinctionOf(entry.w));
+    extinctions.push_back(ExtinctionOf(entry.w));
   }
-  for (std::size_t span = 2; span <= this->Entries.size(); span *= 2) {
-    const std::vector<float>& half = this->Maxima.back();
-    std::vector<float> row(this->Entries.size() - span + 1);
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      row[k] = std::max(half[k], half[k + span / 2]);
-    }
-    this->Maxima.push_back(std::move(row));
-  }
-}
-
-float ColorTable::maximumOverNodes(int first, int last) const
-{
-  const auto count = static_cast<unsigned>(last - first + 1);
-  const int level = 31 - __builtin_clz(count);
-  const std::vector<float>& row = this->Maxima[static_cast<std::size_t>(level)];
-  const int lastSpan = last - (1 << level) + 1;
-  return std::max(row[static_cast<std::size_t>(first)], row[static_cast<std::size_t>(lastSpan)]);
+  this->Extinctions = SparseTable<Largest>(std::move(extinctions));
 }
 
 bool ColorTable::hidesAny() const
 {
-  const std::vector<float>& extinctions = this->Maxima.front();
+  const std::vector<float>& extinctions = this->Extinctions.values();
   return this->Below <= 0.0f || this->Above <= 0.0f ||
          *std::min_element(extinctions.begin(), extinctions.end()) <= 0.0f;
 }
@@ -200,7 +184,7 @@ float ColorTable::maximumExtinction(const ValueRange& range) const
   const float inside = std::clamp(end, 0.0f, top);
   const int before = static_cast<int>(inside);
   const int last = static_cast<float>(before) < inside ? before + 1 : before;
-  return std::max(maximum, this->maximumOverNodes(first, last));
+  return std::max(maximum, this->Extinctions.over(first, last));
 }
 
 void ColorTable::maximumExtinctions(const ValueRange* ranges, std::int64_t count,

@@ -3,6 +3,7 @@
 
 #include "Core/HostDevice.h"
 #include "Core/Model/Model.h"
+#include "Core/Render/Scene/SparseTable.h"
 #include "Core/Render/Scene/TransferFunction.h"
 
 #include <glm/common.hpp>
@@ -71,12 +72,9 @@ public:
   void maximumExtinctions(const ValueRange* ranges, std::int64_t count, float* extinctions) const;
 
 private:
-  float maximumOverNodes(int first, int last) const;
-
   std::vector<glm::vec4> Entries;
-  /// Maxima[k][i]: largest extinction of entries i .. i + 2^k - 1.
-  std::vector<std::vector<float>> Maxima;
-  float Below; ///< extinction outside the transfer function's range
+  SparseTable<Largest> Extinctions; ///< of the entries
+  float Below;                      ///< extinction outside the transfer function's range
   float Above;
   ColorLookup Lookup;
 };

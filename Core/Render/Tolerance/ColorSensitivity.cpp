@@ -65,22 +65,6 @@ Interval SlopesOf(const glm::dvec2& color, const glm::dvec2& opacity, double beh
   return {own.low + steep.low, own.high + steep.high};
 }
 
-std::vector<std::vector<float>> Doubled(std::vector<float> single,
-                                        const float& (*choose)(const float&, const float&))
-{
-  const std::size_t count = single.size();
-  std::vector<std::vector<float>> rows{std::move(single)};
-  for (std::size_t span = 2; span <= count; span *= 2) {
-    const std::vector<float>& half = rows.back();
-    std::vector<float> row(count - span + 1);
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      row[k] = choose(half[k], half[k + span / 2]);
-    }
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
 } // namespace
 
 ColorSensitivity::ColorSensitivity(const ColorLookup& colors, double stepLength) : Colors(colors)
@@ -119,12 +103,12 @@ ColorSensitivity::ColorSensitivity(const ColorLookup& colors, double stepLength)
     }
     depths.push_back(std::min(depthOf(entries[k]), depthOf(entries[k + 1])));
   }
-  this->Depths.smallest = Doubled(std::move(depths), std::min<float>);
+  this->Depths = SparseTable<Least>(std::move(depths));
   this->DepthBelow = depthOf(colors.below);
   this->DepthAbove = depthOf(colors.above);
   for (int row = 0; row < 7; ++row) {
-    this->Channels.push_back({Doubled(std::move(smallest[row]), std::min<float>),
-                              Doubled(std::move(largest[row]), std::max<float>)});
+    this->Channels.push_back({SparseTable<Least>(std::move(smallest[row])),
+                              SparseTable<Largest>(std::move(largest[row]))});
   }
 }
 
@@ -145,14 +129,10 @@ ColorSensitivity::Slopes ColorSensitivity::slopes(const ValueRange& range) const
   };
   const int first = interval(begin);
   const int last = interval(end);
-  const auto row =
-      static_cast<std::size_t>(31 - __builtin_clz(static_cast<unsigned>(last - first + 1)));
-  const auto left = static_cast<std::size_t>(first);
-  const auto right = static_cast<std::size_t>(last + 1 - (1 << row));
   const bool constantBelow = begin < 0.0f; // where the slope is 0
   const bool constantAbove = end > top;
   Slopes slopes;
-  slopes.depth = std::min(this->Depths.smallest[row][left], this->Depths.smallest[row][right]);
+  slopes.depth = this->Depths.over(first, last);
   slopes.depth = constantBelow ? std::min(slopes.depth, this->DepthBelow) : slopes.depth;
   slopes.depth = constantAbove ? std::min(slopes.depth, this->DepthAbove) : slopes.depth;
   if ((constantBelow && this->JumpsBelow) || (constantAbove && this->JumpsAbove)) {
@@ -160,8 +140,8 @@ ColorSensitivity::Slopes ColorSensitivity::slopes(const ValueRange& range) const
     return slopes;
   }
   for (const Extremes& channel : this->Channels) {
-    float smallest = std::min(channel.smallest[row][left], channel.smallest[row][right]);
-    float largest = std::max(channel.largest[row][left], channel.largest[row][right]);
+    float smallest = channel.smallest.over(first, last);
+    float largest = channel.largest.over(first, last);
     if (constantBelow || constantAbove) {
       smallest = std::min(smallest, 0.0f);
       largest = std::max(largest, 0.0f);

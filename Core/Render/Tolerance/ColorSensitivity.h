@@ -3,6 +3,7 @@
 
 #include "Core/Model/MacroCells.h"
 #include "Core/Render/Scene/ColorTable.h"
+#include "Core/Render/Scene/SparseTable.h"
 
 #include <vector>
 
@@ -33,18 +34,18 @@ public:
   Slopes slopes(const ValueRange& range) const;
 
 private:
-  /// The extremes of one slope over 2^k table intervals from i on: [k][i].
+  /// Of one slope, over table intervals.
   struct Extremes
   {
-    std::vector<std::vector<float>> smallest;
-    std::vector<std::vector<float>> largest;
+    SparseTable<Least> smallest;
+    SparseTable<Largest> largest;
   };
 
   ColorLookup Colors;
   bool JumpsBelow; ///< where the table begins
   bool JumpsAbove;
   std::vector<Extremes> Channels; ///< per table entry
-  Extremes Depths;                ///< of a step
+  SparseTable<Least> Depths;      ///< of a step
   float DepthBelow;
   float DepthAbove;
 };

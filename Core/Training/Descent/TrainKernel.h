@@ -4,6 +4,7 @@
 #include "Core/CacheLine.h"
 #include "Core/Inference/InstructionSet.h"
 #include "Core/Inference/ModelView.h"
+#include "Core/Training/Descent/AdamSchedule.h"
 
 #include <cstdint>
 
@@ -49,20 +50,6 @@ struct AdamRun
   float* secondMoments;
   float beta1, epsilon;
   float decay; ///< L2 regularisation: decay * parameter joins the gradient
-};
-
-/// What differs from update to update.
-struct AdamStep
-{
-  float rate;  ///< learning rate, the correction of the moments' bias included
-  float beta2; ///< how much of the second moment is kept
-};
-
-/// A parameter's t-th update, t = 1 .. last, with a learning rate of 1; then it stays.
-struct AdamSchedule
-{
-  const AdamStep* steps;
-  std::uint16_t last;
 };
 
 /// An update of a layer's weights by orthogonalised momentum: of the matrix that gradient and

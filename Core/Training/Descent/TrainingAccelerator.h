@@ -38,7 +38,7 @@ public:
   /// StratifiedBatches would draw, to the last bit.
   virtual bool drawsSamples() const = 0;
 
-  /// Copies what GradientDescent::state() names there and back; get() waits for it.
+  /// Copies GradientDescent::state() there and back, in its order; get() waits for it.
   virtual void put(const StateArrays& state) = 0;
   virtual void get(const StateArrays& state) = 0;
 

@@ -2,6 +2,7 @@
 #include "Core/Training/Streaming/StreamBudget.h"
 
 #include "Core/Error.h"
+#include "Core/Mebibytes.h"
 #include "Core/Training/Parallel/GradientExchange.h"
 #include "Core/Training/Samples/BatchSource.h"
 #include "Core/Training/Samples/BlockGrid.h"
@@ -56,8 +57,6 @@ std::int64_t FreeBytes(const VolumeInfo& info, const TrainingOptions& options,
 
 std::int64_t LeastFreeBytes() { return (CopiesOfBlock + 1) * SmallestShare; }
 
-std::string InMiB(std::int64_t bytes) { return std::to_string(bytes / MiB + 1) + " MiB"; }
-
 const char* LimitText(int processes)
 {
   return processes > 1 ? " in each process and its share of the MemoryLimit is "
@@ -72,9 +71,10 @@ void RequireRoomForCells(const VolumeInfo& info, const TrainingOptions& options,
   if (cells + others > options.memoryLimit && cells > others) {
     throw Error(ErrorCode::InvalidArgument,
                 "the ranges of macro-cells of " + std::to_string(MacroCellSizeOf(info, options)) +
-                    " voxels, of a volume read in pieces, take " + InMiB(cells + others) +
+                    " voxels, of a volume read in pieces, take " + InMebibytes(cells + others) +
                     " with what they are measured in" + LimitText(processes) +
-                    InMiB(options.memoryLimit - 1) + "; raise it or choose a larger MacroCellSize");
+                    InMebibytes(options.memoryLimit) +
+                    "; raise it or choose a larger MacroCellSize");
   }
 }
 
@@ -132,8 +132,8 @@ StreamBudget PlanStream(const VolumeInfo& info, const TrainingOptions& options,
     throw Error(ErrorCode::InvalidArgument,
                 "training a model of " + std::to_string(Layout(budget.description).parameterCount) +
                     " parameters from a volume read in pieces takes " +
-                    InMiB(options.memoryLimit - left + LeastFreeBytes()) + LimitText(processes) +
-                    InMiB(options.memoryLimit - 1) + "; raise it" +
+                    InMebibytes(options.memoryLimit - left + LeastFreeBytes()) +
+                    LimitText(processes) + InMebibytes(options.memoryLimit) + "; raise it" +
                     (leftBySmallest < LeastFreeBytes()
                          ? ", as the smallest model takes too much, too"
                          : " or ask for a smaller model (TargetRatio, or ModelConfig)"));
