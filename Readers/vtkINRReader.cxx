@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRReader.h"
 
+#include "Core/Cache/CacheOptions.h"
 #include "Core/Error.h"
-#include "Core/Render/CachedRenderer.h"
 #include "Readers/Extents.h"
 #include "Readers/Grid/NativeGrid.h"
 #include "Readers/Grid/PresentedGrid.h"

@@ -7,8 +7,8 @@
 #include "CUDA/Render/Kernels/PathKernels.h"
 #include "CUDA/Render/PathTiles.h"
 #include "CUDA/Render/WindowedRays.h"
+#include "Core/Cache/CacheOptions.h"
 #include "Core/Render/AcceleratedRenderer.h"
-#include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Scene/KeptFrame.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 

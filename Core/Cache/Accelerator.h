@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Cache/BrickSource.h"
+#include "Core/Cache/CacheOptions.h"
 #include "Core/Inference/Evaluator.h"
 
 #include <atomic>
@@ -15,7 +16,6 @@ namespace inr {
 
 class AcceleratedField;
 class AcceleratedRenderer;
-struct CacheOptions;
 
 /// A processor beside the CPU that computes what networks give, such as a GPU. One object is for
 /// all renderers, on any threads, that are to share models in its memory and the bricks that come

@@ -5,7 +5,6 @@
 #include "Core/Error.h"
 #include "Core/Render/Tiles/TileLoop.h"
 #include "Core/Render/Tiles/WorkLimit.h"
-#include "Core/UsableMemory.h"
 
 #include <algorithm>
 #include <memory>
@@ -47,12 +46,6 @@ StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<co
 }
 
 } // namespace
-
-std::int64_t DefaultCacheBytes(int processes)
-{
-  constexpr std::int64_t most = std::int64_t{16} << 30;
-  return std::min(UsableMemory() / 4 / processes, most);
-}
 
 CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field,
                                const std::shared_ptr<const void>& identity,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MachineShare.h"
 
+#include "Core/Cache/CacheOptions.h"
 #include "Core/Parallel.h"
-#include "Core/Render/CachedRenderer.h"
 #include "vtkMultiProcessController.h"
 #include "vtkType.h"
 
