@@ -169,7 +169,8 @@ void DeviceModel::beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& p
 
 template <class Numbers>
 void DeviceModel::beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& plan,
-                             const BrickRun& run, std::int64_t blocks, const Stream& stream) const
+                             const BrickLaunch& run, std::int64_t blocks,
+                             const Stream& stream) const
 {
   WithTiles(copy.packed.neuronTiles, [&](auto tiles) {
     const FusedBricks<decltype(tiles)::value, Numbers> kernel{
@@ -193,7 +194,7 @@ void DeviceModel::begin(const LaunchPlan& plan, const PointRun& run, std::int64_
   }
 }
 
-void DeviceModel::begin(const LaunchPlan& plan, const BrickRun& run, std::int64_t blocks,
+void DeviceModel::begin(const LaunchPlan& plan, const BrickLaunch& run, std::int64_t blocks,
                         float* scratch, const Stream& stream) const
 {
   const CurrentDevice current(this->Where.ordinal);
@@ -226,14 +227,14 @@ void DeviceModel::inferBricks(const LaunchPlan& plan, const BrickJob* jobs, std:
                               std::int64_t items, float* values, float* scratch,
                               const Stream& stream) const
 {
-  this->begin(plan, BrickRun{jobs, count, items, nullptr, values}, std::min(plan.blocks, items),
+  this->begin(plan, BrickLaunch{jobs, count, items, nullptr, values}, std::min(plan.blocks, items),
               scratch, stream);
 }
 
 void DeviceModel::inferBricks(const LaunchPlan& plan, const BrickJob* jobs, const BrickEnd* end,
                               float* values, float* scratch, const Stream& stream) const
 {
-  this->begin(plan, BrickRun{jobs, 0, 0, end, values}, plan.blocks, scratch, stream);
+  this->begin(plan, BrickLaunch{jobs, 0, 0, end, values}, plan.blocks, scratch, stream);
 }
 
 std::shared_ptr<const DeviceModel> UploadModel(ModelPointer model, const Device& device,

@@ -63,7 +63,7 @@ private:
     const std::uint64_t* end; ///< where not null, of so many instead
     float* values;
   };
-  struct BrickRun
+  struct BrickLaunch
   {
     const BrickJob* jobs;
     std::int64_t count;
@@ -99,13 +99,13 @@ private:
   LaunchPlan planPlain(bool bricks) const;
   void begin(const LaunchPlan& plan, const PointRun& run, std::int64_t blocks, float* scratch,
              const Stream& stream) const;
-  void begin(const LaunchPlan& plan, const BrickRun& run, std::int64_t blocks, float* scratch,
+  void begin(const LaunchPlan& plan, const BrickLaunch& run, std::int64_t blocks, float* scratch,
              const Stream& stream) const;
   template <class Numbers>
   void beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& plan, const PointRun& run,
                   std::int64_t blocks, const Stream& stream) const;
   template <class Numbers>
-  void beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& plan, const BrickRun& run,
+  void beginFused(const FusedCopy<Numbers>& copy, const LaunchPlan& plan, const BrickLaunch& run,
                   std::int64_t blocks, const Stream& stream) const;
 
   ModelPointer Source;

@@ -51,10 +51,9 @@ public:
                          const std::function<bool()>& keepGoing);
   /// Around what follows; see BrickStore.
   BrickStore::Call call() const { return {*this->Store, this->Threads}; }
-  /// Within a call: traces a round of a path-traced picture and brings what its paths missed: as
-  /// much as `limit` allows. Where the cache has no room for
-  /// what the picture wants, the rest is inferred at the paths' points instead, or stays
-  /// coarser.
+  /// Within a call: traces a round of a path-traced picture and brings what its paths missed, as
+  /// much as `limit` allows. Where the cache has no room for what the picture wants, the rest is
+  /// inferred at the paths' points instead, or stays coarser.
   TracedTiles tracePaths(const PathRound& round, const Majorants& majorants,
                          const ColorTable& colors, const WorkLimit& limit,
                          const std::function<bool()>& keepGoing);

@@ -10,11 +10,12 @@
 
 namespace inr {
 
-/// Which blocks of a cache's bricks show anything under some colours: what is not known is not
-/// looked at, see SufficientBricks, and of the others, all that is interpolated from their voxels
-/// is transparent, and so it is when it is moved into the range of its macro-cell, if that holds
-/// (Majorants::rangesHold): by no more than what the cache rounds. Found out brick by brick when
-/// first asked for, by any number of threads.
+/// Which blocks of a cache's bricks show anything under some colours. Of a block that shows
+/// nothing, all that is interpolated from its voxels is transparent. So it is when it is moved into
+/// the range of its macro-cell, where that holds (Majorants::rangesHold): by no more than what the
+/// cache rounds. Blocks that are not known count as showing nothing; SufficientBricks sees to it
+/// that nobody looks at them. Found out brick by brick when first asked for, by any number of
+/// threads.
 class BlockVisibility
 {
 public:

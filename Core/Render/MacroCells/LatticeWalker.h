@@ -11,9 +11,10 @@
 
 namespace inr {
 
-/// A ray's way through the cells of a regular lattice, cell by cell. Where the ray enters and
-/// leaves a cell is a function of ray and cell alone, so that a walk may stop and start again
-/// anywhere. The outermost cells reach as far as any ray.
+/// A ray's way through the cells of a regular lattice, cell by cell (a digital differential
+/// analyser in space, as Amanatides and Woo's, Eurographics 1987). Where the ray enters and leaves
+/// a cell is a function of ray and cell alone, so that a walk may stop and start again anywhere.
+/// The outermost cells reach as far as any ray.
 class LatticeWalker
 {
 public:

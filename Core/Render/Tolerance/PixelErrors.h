@@ -23,7 +23,7 @@ class PixelErrors
 public:
   /// What lines of voxels add, times that, is taken to be the most that rays add, which may go
   /// where no line that is looked at does: see ErrorTolerance.md, which says how the worst of many
-  /// pictures that are hard to keep to was found. Errors of single steps are looked at all.
+  /// pictures that are hard to keep to was found. Errors of single steps are all looked at.
   static constexpr double Unseen = 1.8;
 
   struct Error
