@@ -299,9 +299,18 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
 void vtkINRVolumeMapper::RenderForSelection(vtkRenderer* renderer, vtkVolume* volume)
 {
   vtkHardwareSelector* selector = renderer->GetSelector();
+  std::vector<const inr::Image*> over; // or the one that comes last would be selected
+  for (vtkVolume* other : inr::VolumesBefore(renderer, volume)) {
+    const auto* mapper = static_cast<vtkINRVolumeMapper*>(other->GetMapper());
+    const inr::Image* shown = mapper->Self->Painter.shown(renderer, other);
+    if (shown && other->GetPickable()) {
+      over.push_back(shown);
+    }
+  }
   selector->BeginRenderProp();
-  const std::string problem = ProblemOf(
-      [&] { return this->Self->Painter.mark(this, renderer, volume, this->PresentSettings()); });
+  const std::string problem = ProblemOf([&] {
+    return this->Self->Painter.mark(this, renderer, volume, this->PresentSettings(), over);
+  });
   selector->EndRenderProp();
   if (!problem.empty()) { // else what was reported of the frame stays reported
     this->ReportOnce(problem);

@@ -32,7 +32,9 @@
  *
  * Several volumes in a renderer, each with a mapper of its own, are blended one after another, from
  * the furthest to the nearest, whatever their order there. Where they overlap they are not mixed;
- * the one whose middle is nearer to the camera lies over the other.
+ * the one whose middle is nearer to the camera lies over the other. Those in assemblies and in a
+ * vtkLODProp3D come in the renderer's order. Of lights, VTK's diffuse colour counts, for all of
+ * their light, on both sides.
  *
  * Refused with an error and not drawn: the blend mode slice, projections of a piece of the grid
  * (but see SetController) or by path tracing, paths cropped to what is no box, gradient opacity, 2D
@@ -367,7 +369,9 @@ public:
    * far too dense for its size (ScalarOpacityUnitDistance) parts of a first picture may be missing:
    * see inr::Frame::timeLimit. 0: a still frame is
    * complete, however long it takes. Below 0, the default: 0.5 where the window has an interactor,
-   * else 0. Screenshots and offscreen windows are always complete.
+   * else 0. ParaView's screenshots, tiles of larger ones (SetTileScale) and offscreen windows are
+   * always complete; of others that render the window anew, as vtkWindowToImageFilter does by
+   * default, set it to 0 before.
    */
   vtkSetMacro(StillTimeLimit, double);
   vtkGetMacro(StillTimeLimit, double);
@@ -525,7 +529,7 @@ public:
    */
   vtkMTimeType GetFrameMTime() const;
 
-  /** Why the last frame was not drawn, as the error said that came then; empty when it was. */
+  /** Why nothing was drawn when that was last asked for, as the error said that came; or empty. */
   const char* GetWhyNotDrawn() const;
 
   /** Whether the last frame read the depth of opaque geometry. */

@@ -92,8 +92,14 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   return problem;
 }
 
+const Image* FramePainter::shown(vtkRenderer* renderer, vtkVolume* volume) const
+{
+  const ViewPicture* picture = this->Pictures.find(renderer, volume);
+  return picture ? &picture->last().rgba : nullptr;
+}
+
 std::string FramePainter::mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
-                               const PaintSettings& settings)
+                               const PaintSettings& settings, const std::vector<const Image*>& over)
 {
   if (!MayBeSelected(renderer)) {
     return {};
@@ -106,9 +112,10 @@ std::string FramePainter::mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, v
   }
   const PaintedFrame& seen = this->look(scene, renderer, volume).last();
   if (!seen.rgba.pixels.empty()) {
-    const PickedCells cells(seen.rgba, seen.depth, scene.clipToWorld, FindInput(mapper).grid,
+    const Image rgba = WithoutWhatIsUnder(seen.rgba, over);
+    const PickedCells cells(rgba, seen.depth, scene.clipToWorld, FindInput(mapper).grid,
                             scene.worldToIndex);
-    MarkForSelection(renderer, seen.rgba, cells, this->Blender);
+    MarkForSelection(renderer, rgba, cells, this->Blender);
   }
   return {};
 }

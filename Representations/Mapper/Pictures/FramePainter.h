@@ -20,6 +20,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 class vtkINRDataArray;
 class vtkRenderWindow;
@@ -43,9 +44,12 @@ public:
                     const PaintSettings& settings);
   /// Marks where the volume is seen, and which cells, in a selection buffer: in the picture that
   /// the view shows or, where that is not of the present scene, in another one, which nobody sees.
-  /// A group's processes each mark their part. Returns and throws as above.
+  /// A group's processes each mark their part. Not where one of `over` shows anything, pictures of
+  /// other volumes in the same viewport. Returns and throws as above.
   std::string mark(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
-                   const PaintSettings& settings);
+                   const PaintSettings& settings, const std::vector<const Image*>& over);
+  /// The latest picture of a volume in that view; null where there is none.
+  const Image* shown(vtkRenderer* renderer, vtkVolume* volume) const;
   const PaintedFrame& last() const { return this->Pictures.latest().last(); }
   /// Those that are not complete.
   StillPictures& stills() { return this->Stills; }

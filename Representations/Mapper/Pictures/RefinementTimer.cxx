@@ -38,7 +38,8 @@ bool RefinementTimer::isWatched(vtkRenderWindow* window)
 
 bool RefinementTimer::canRefine(vtkRenderWindow* window)
 {
-  return isWatched(window) && window->GetSwapBuffers();
+  const bool isTile = window && (window->GetTileScale()[0] > 1 || window->GetTileScale()[1] > 1);
+  return isWatched(window) && window->GetSwapBuffers() && !isTile;
 }
 
 void RefinementTimer::request(vtkRenderWindow* window, double pause)

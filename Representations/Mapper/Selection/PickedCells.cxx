@@ -53,6 +53,22 @@ Image PaintedWith(const glm::vec3& color, const Image& rgba)
   return Painted(rgba, [&](int, int, float* pixel) { std::copy_n(&color.x, 3, pixel); });
 }
 
+Image WithoutWhatIsUnder(Image rgba, const std::vector<const Image*>& over)
+{
+  for (const Image* other : over) {
+    for (int y = 0; y < rgba.height && !other->pixels.empty(); ++y) {
+      for (int x = 0; x < rgba.width; ++x) {
+        const int column = x * other->width / rgba.width; // one of them may be smaller
+        const int row = y * other->height / rgba.height;
+        if (other->pixel(column, row)[3] > 0) {
+          std::fill_n(rgba.pixel(x, y), 4, 0.0f);
+        }
+      }
+    }
+  }
+  return rgba;
+}
+
 glm::vec3 ColorOfBits(std::uint64_t bits)
 {
   glm::vec3 color;

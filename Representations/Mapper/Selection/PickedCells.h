@@ -8,12 +8,17 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <vector>
 
 namespace inr {
 
 /// A picture of the volume as a selection buffer wants it: RGBA, opaque wherever `rgba` is not
 /// transparent, and empty elsewhere.
 Image PaintedWith(const glm::vec3& color, const Image& rgba);
+
+/// A picture of RGBA without the pixels in which another one, over the same viewport, shows
+/// anything.
+Image WithoutWhatIsUnder(Image rgba, const std::vector<const Image*>& over);
 
 /// The lowest 24 bits in red, green and blue, as selection buffers have them.
 glm::vec3 ColorOfBits(std::uint64_t bits);

@@ -9,6 +9,8 @@
 #include <vtkInformationObjectBaseVectorKey.h>
 #include <vtkOpenGLRenderPass.h>
 
+#include <algorithm>
+
 namespace inr {
 
 namespace {
@@ -38,38 +40,48 @@ bool DeferredDrawing::isDue(vtkVolume* volume)
 
 void DeferredDrawing::request(vtkRenderer* renderer, vtkVolume* volume)
 {
-  if (this->Renderer == renderer && this->Volume == volume) {
-    return; // the next peel of the same frame
+  bool isWatched = false;
+  for (const Waiting& waiting : this->Requested) {
+    if (waiting.renderer == renderer && waiting.volume == volume) {
+      return; // the next peel of the same frame
+    }
+    isWatched = isWatched || waiting.renderer == renderer;
   }
-  this->cancel();
-  this->Renderer = renderer;
-  this->Volume = volume;
-  renderer->AddObserver(vtkCommand::EndEvent, this->Command);
+  if (!isWatched) {
+    renderer->AddObserver(vtkCommand::EndEvent, this->Command);
+  }
+  this->Requested.push_back({renderer, volume});
 }
 
 void DeferredDrawing::cancel()
 {
-  if (this->Renderer) {
-    this->Renderer->RemoveObserver(this->Command);
+  for (const Waiting& waiting : this->Requested) {
+    if (waiting.renderer) {
+      waiting.renderer->RemoveObserver(this->Command);
+    }
   }
-  this->Renderer = nullptr;
-  this->Volume = nullptr;
+  this->Requested.clear();
 }
 
-void DeferredDrawing::drawNow()
+void DeferredDrawing::draw(vtkRenderer* renderer)
 {
-  const vtkWeakPointer<vtkRenderer> renderer = this->Renderer;
-  const vtkWeakPointer<vtkVolume> volume = this->Volume;
-  this->cancel();
-  if (renderer && volume) {
-    this->DrawVolume(renderer, volume);
-    RedrawOverlays(renderer);
+  renderer->RemoveObserver(this->Command);
+  const auto others = std::stable_partition(
+      this->Requested.begin(), this->Requested.end(),
+      [renderer](const Waiting& waiting) { return waiting.renderer == renderer; });
+  const std::vector<Waiting> due(this->Requested.begin(), others);
+  this->Requested.erase(this->Requested.begin(), others);
+  for (const Waiting& waiting : due) {
+    if (waiting.volume) {
+      this->DrawVolume(renderer, waiting.volume);
+    }
   }
+  RedrawOverlays(renderer);
 }
 
-void DeferredDrawing::OnEnd(vtkObject*, unsigned long, void* self, void*)
+void DeferredDrawing::OnEnd(vtkObject* renderer, unsigned long, void* self, void*)
 {
-  static_cast<DeferredDrawing*>(self)->drawNow();
+  static_cast<DeferredDrawing*>(self)->draw(static_cast<vtkRenderer*>(renderer));
 }
 
 } // namespace inr

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <utility>
+#include <vector>
 
 namespace inr {
 
@@ -28,18 +29,22 @@ public:
 
   /// Whether `volume` is being drawn as part of a pass like that.
   static bool isDue(vtkVolume* volume);
-  /// Has the volume drawn, once, at the end of the present frame. What lies over the scene is drawn
-  /// again on top.
+  /// Has the volume drawn, once, at the end of the renderer's present frame; so for several. What
+  /// lies over the scene is drawn again on top.
   void request(vtkRenderer* renderer, vtkVolume* volume);
 
 private:
   void cancel();
-  void drawNow();
+  void draw(vtkRenderer* renderer);
   static void OnEnd(vtkObject* renderer, unsigned long event, void* self, void* unused);
 
   Draw DrawVolume;
-  vtkWeakPointer<vtkRenderer> Renderer;
-  vtkWeakPointer<vtkVolume> Volume;
+  struct Waiting
+  {
+    vtkWeakPointer<vtkRenderer> renderer;
+    vtkWeakPointer<vtkVolume> volume;
+  };
+  std::vector<Waiting> Requested;
   vtkNew<vtkCallbackCommand> Command;
 };
 

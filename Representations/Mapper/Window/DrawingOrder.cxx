@@ -87,22 +87,38 @@ bool IsBehind(const Eye& eye, const Box& a, const Box& b)
   return DistanceOf(eye, a) > DistanceOf(eye, b);
 }
 
-} // namespace
-
-std::vector<vtkVolume*> VolumesBehind(vtkRenderer* renderer, vtkVolume* volume)
+/// The other volumes of such mappers of which `isWanted`, called with both boxes, says so.
+template <class Test>
+std::vector<vtkVolume*> OtherVolumes(vtkRenderer* renderer, vtkVolume* volume, const Test& isWanted)
 {
-  std::vector<vtkVolume*> behind;
+  std::vector<vtkVolume*> found;
   ForEachProp(renderer, [&](vtkProp* prop) {
     vtkVolume* other = vtkVolume::SafeDownCast(prop);
     // The volume itself may be part of a prop in the renderer, which then has the same mapper.
     const bool isOther = other && other != volume && other->GetMapper() != volume->GetMapper();
     auto* mapper = isOther ? vtkINRVolumeMapper::SafeDownCast(other->GetMapper()) : nullptr;
     if (mapper && mapper->GetDataObjectInput() && other->GetVisibility() && other->GetBounds() &&
-        IsBehind(EyeOf(renderer->GetActiveCamera()), BoxOf(other), BoxOf(volume))) {
-      behind.push_back(other);
+        isWanted(BoxOf(other), BoxOf(volume))) {
+      found.push_back(other);
     }
   });
-  return behind;
+  return found;
+}
+
+} // namespace
+
+std::vector<vtkVolume*> VolumesBehind(vtkRenderer* renderer, vtkVolume* volume)
+{
+  const Eye eye = EyeOf(renderer->GetActiveCamera());
+  return OtherVolumes(renderer, volume,
+                      [&](const Box& other, const Box& own) { return IsBehind(eye, other, own); });
+}
+
+std::vector<vtkVolume*> VolumesBefore(vtkRenderer* renderer, vtkVolume* volume)
+{
+  const Eye eye = EyeOf(renderer->GetActiveCamera());
+  return OtherVolumes(renderer, volume,
+                      [&](const Box& other, const Box& own) { return IsBehind(eye, own, other); });
 }
 
 DrawingOrder::DrawingOrder()

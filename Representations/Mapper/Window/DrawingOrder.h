@@ -16,6 +16,8 @@ namespace inr {
 /// `volume`: on the other side of a plane along two of the world's axes that separates their
 /// bounds, or, if there is none, with their middle further from the camera.
 std::vector<vtkVolume*> VolumesBehind(vtkRenderer* renderer, vtkVolume* volume);
+/// Those that it lies behind.
+std::vector<vtkVolume*> VolumesBefore(vtkRenderer* renderer, vtkVolume* volume);
 
 /// Remembers which volumes a mapper has drawn in the present frame: those behind another one are
 /// drawn before it, ahead of their turn.

@@ -135,6 +135,39 @@ TEST(Selection, SeesThroughWhatIsNotPicked)
   EXPECT_EQ(Select(highlit), cells);
 }
 
+/// Also where the volume in front comes first, and the one behind is marked after it.
+TEST(Selection, IsOfTheVolumeInFront)
+{
+  for (const bool frontFirst : {true, false}) {
+    SCOPED_TRACE(frontFirst);
+    OneVolume one;
+    const auto mapper = test::InrMapper(test::Write(*test::MakeModel(), "Selection.inr"));
+    vtkVolume* const other = one.scene.addVolume(one.renderer, mapper);
+    const double* center = one.volume->GetCenter();
+    const double* eye = one.renderer->GetActiveCamera()->GetPosition();
+    vtkVolume* const front = frontFirst ? one.volume : other;
+    vtkVolume* const back = frontFirst ? other : one.volume;
+    for (int axis = 0; axis < 3; ++axis) { // a third of the way to the eye
+      const double way = (eye[axis] - center[axis]) / 3;
+      front->AddPosition(axis == 0 ? way : 0, axis == 1 ? way : 0, axis == 2 ? way : 0);
+    }
+    const Cells alone = [&] {
+      front->VisibilityOff();
+      one.scene.window->Render();
+      const Cells cells = Select(one.renderer, back);
+      front->VisibilityOn();
+      return cells;
+    }();
+    one.scene.window->Render();
+    const Cells cells = Select(one.renderer, front);
+    EXPECT_GT(cells.size(), 100u);
+    EXPECT_LT(Select(one.renderer, back).size(), alone.size());
+    back->VisibilityOff();
+    one.scene.window->Render();
+    EXPECT_EQ(Select(one.renderer, front), cells);
+  }
+}
+
 TEST(Selection, IsOfEachViewport)
 {
   for (const bool drawn : {false, true}) {

@@ -272,6 +272,30 @@ TEST_P(Translucent, LeaveWhatLiesOverTheSceneOnTop)
   }
 }
 
+/// As two volumes with one mapper.
+TEST_P(Translucent, EachVolumeOfOneMapperIsDrawn)
+{
+  Glasses scene(this->GetParam());
+  scene.volume->VisibilityOff();
+  const vtkSmartPointer<vtkVolume> copy = vtkSmartPointer<vtkVolume>::New();
+  copy->SetMapper(scene.mapper);
+  copy->SetProperty(scene.volume->GetProperty());
+  const double* bounds = scene.volume->GetBounds();
+  copy->SetPosition(0.6 * (bounds[1] - bounds[0]), 0, 0);
+  scene.renderer->AddVolume(copy);
+  const inr::Image second = scene.scene.capture();
+  scene.volume->VisibilityOn();
+  copy->VisibilityOff();
+  const inr::Image first = scene.scene.capture();
+  copy->VisibilityOn();
+  const inr::Image both = scene.scene.capture();
+  int missing = 0;
+  for (std::size_t k = 3; k < both.pixels.size(); k += 4) {
+    missing += both.pixels[k] < std::max(first.pixels[k], second.pixels[k]) - 0.02f ? 1 : 0;
+  }
+  EXPECT_EQ(missing, 0);
+}
+
 TEST_P(Translucent, InteractivePicturesHaveThemToo)
 {
   Glasses scene(this->GetParam());
