@@ -5,6 +5,7 @@
 #include "vtkCommand.h"
 #include "vtkRenderWindow.h"
 #include "vtkSmartPointer.h"
+#include "vtkTimeStamp.h"
 
 #include <algorithm>
 #include <utility>
@@ -57,6 +58,9 @@ void OnEnd(vtkObject* caller, unsigned long, void*, void* isInteractive)
   LatestTwo& renders = Renders();
   StillRender now;
   now.view = view;
+  vtkTimeStamp end;
+  end.Modified();
+  now.time = end.GetMTime();
   if (vtkRenderWindow* window = view->GetRenderWindow()) {
     std::copy_n(window->GetActualSize(), 2, now.size);
     now.stereoType = window->GetStereoRender() ? window->GetStereoType() : 0;

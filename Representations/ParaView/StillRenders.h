@@ -13,6 +13,7 @@ struct StillRender
   int size[2] = {0, 0};                ///< pixels of the window
   int stereoType = 0;                  ///< VTK_STEREO_..., 0: none
   bool sameStereo = false;             ///< stereo was on all the time since the one before
+  vtkMTimeType time = 0;               ///< when it was complete
 };
 
 /// From now on what `view` draws counts below.

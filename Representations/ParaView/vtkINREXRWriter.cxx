@@ -162,8 +162,14 @@ void vtkINREXRWriter::Write()
   auto* view = vtkSMRenderViewProxy::SafeDownCast(latest.view);
   const std::vector<vtkINRLODVolume*> shown =
       view ? ShownBy(view) : std::vector<vtkINRLODVolume*>();
+  if (vtkINRLODVolume::GetLatestShownMTime() > latest.time) {
+    this->Fail("A view that ParaView does not list has drawn an INR volume, and this may be its "
+               "picture; to save it, register the view under \"views\" first.");
+    return;
+  }
   if (shown.size() != 1) {
-    const std::string parts = WhyOtherSize(latest.size, screenshot->GetDimensions());
+    const std::string parts =
+        shown.empty() ? WhyOtherSize(latest.size, screenshot->GetDimensions()) : std::string();
     this->Fail(!parts.empty() ? parts
                               : "The view shows " + std::to_string(shown.size()) +
                                     " INR volumes; an OpenEXR file takes the picture of one.");
@@ -190,7 +196,9 @@ void vtkINREXRWriter::WriteFrom(vtkINRLODVolume* volume, vtkImageData* screensho
   if (mapper && !volume->GetDrawn() && !mapper->GetHasPiece()) {
     this->WriteOutOfSight(*mapper, screenshot);
   } else if (mapper && mapper->GetImageReduction() == 0) {
-    this->Fail(std::string("The volume is not in the picture. ") + mapper->GetWhyNotDrawn());
+    const std::string why = mapper->GetWhyNotDrawn();
+    this->Fail("The volume is not in the picture. " +
+               (why.empty() ? "It was not drawn to its end." : why));
   } else if (!mapper) {
     this->Fail("This process cannot draw the view, and a server's picture has 8 bits only; hide "
                "what has to be drawn by the server, such as other volumes.");

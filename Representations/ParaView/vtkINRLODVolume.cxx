@@ -13,6 +13,14 @@ vtkStandardNewMacro(vtkINRLODVolume);
 
 namespace {
 
+vtkMTimeType LatestShown = 0;
+
+} // namespace
+
+vtkMTimeType vtkINRLODVolume::GetLatestShownMTime() { return LatestShown; }
+
+namespace {
+
 bool IsPeeling(vtkInformation* keys)
 {
   return keys && keys->Has(vtkOpenGLRenderPass::RenderPasses());
@@ -39,6 +47,7 @@ void vtkINRLODVolume::Show(bool here)
 {
   this->DrawnHere = here;
   this->Shown.Modified();
+  LatestShown = this->Shown.GetMTime();
 }
 
 int vtkINRLODVolume::Draw(vtkViewport* viewport)

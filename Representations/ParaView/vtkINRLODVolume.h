@@ -33,6 +33,8 @@ public:
    */
   void Show(bool here);
   vtkMTimeType GetShownMTime() const { return this->Shown.GetMTime(); }
+  /// When it was said last of any of them.
+  static vtkMTimeType GetLatestShownMTime();
   /// Whether the renderer has had this drawn since then; else it is out of sight.
   bool GetDrawn() const { return this->Drawn.GetMTime() > this->Shown.GetMTime(); }
   bool GetDrawnHere() const { return this->DrawnHere; }

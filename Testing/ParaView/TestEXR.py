@@ -129,6 +129,15 @@ check(save(output_file("unknown.exr"), unknown).errors() == 0, "an unregistered 
 seen = read_exr(output_file("unknown.exr"))["A"]
 check(0.05 < (seen > 0.5).mean() and np.abs(seen - read_exr(path)["A"]).max() > 0.1, "another view's")
 
+# Unless nobody knows of its representation either.
+hidden = servermanager.CreateRenderView()
+hidden.ViewSize = [160, 120]
+hidden.Representations = [servermanager.CreateRepresentation(reader, hidden)]
+hidden.Representations[0].SetRepresentationType("INR Volume")
+messages = save(path, hidden)
+check(messages.errors() == 1 and "register" in messages.text, "a hidden view reported", messages.text)
+save(path)
+
 # A layout of two views is no picture of one, whichever is drawn last.
 layout = simple.CreateLayout("two")
 for shown in simple.CreateView("RenderView"), simple.CreateView("RenderView"):
