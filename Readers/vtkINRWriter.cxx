@@ -182,25 +182,29 @@ void vtkINRWriter::RequireOfAll(bool succeeded)
   });
 }
 
-/// In processes that see other ones, as of a series that is being written, some would be done with
-/// the last while others wait for them for ever.
+/// Processes may find different time steps, as of a series that is still being written: those with
+/// fewer of them would finish while the others wait for ever. Of the ones to be saved.
 void vtkINRWriter::RequireSameSteps()
 {
-  vtkInformation* input = this->GetInputInformation();
-  const bool hasSteps = this->WriteTimeSteps && input->Has(Pipeline::TIME_STEPS());
-  const double* const times = hasSteps ? input->Get(Pipeline::TIME_STEPS()) : nullptr;
-  const std::vector<double> mine(times,
-                                 times + (hasSteps ? input->Length(Pipeline::TIME_STEPS()) : 0));
-  const ControllerGroup group(this->Internal->Controller);
+  const Internals& self = *this->Internal;
+  const ControllerGroup group(self.Controller);
+  const std::vector<double> mine = self.Steps.times();
   const std::string bytes(reinterpret_cast<const char*>(mine.data()), mine.size() * sizeof(double));
   const std::string first = group.fromFirst(bytes);
   group.together([&] {
+    if (!self.Problem.empty()) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument, self.Problem);
+    }
+    if (bytes.size() != first.size()) {
+      throw inr::Error(inr::ErrorCode::InvalidArgument,
+                       "there are " + std::to_string(mine.size()) +
+                           " time steps to save here and " +
+                           std::to_string(first.size() / sizeof(double)) +
+                           " in the first process; save them when all processes see the same");
+    }
     if (bytes != first) {
       throw inr::Error(inr::ErrorCode::InvalidArgument,
-                       "the data have " + std::to_string(mine.size()) + " time steps here and " +
-                           std::to_string(first.size() / sizeof(double)) +
-                           " in the first process, or at other times; save them when all "
-                           "processes see the same files");
+                       "the time steps to save are at other times here than in the first process");
     }
   });
 }

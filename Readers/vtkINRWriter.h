@@ -306,7 +306,7 @@ private:
   TrainingInput FindInput(vtkDataObject* data);
   std::int64_t MemoryLimitInBytes() const;
   inr::TrainingOptions MakeOptions() const;
-  void WarnOfWhole(const std::string& source);
+  void WarnOfWhole(const std::string& why);
   void WarnOfLargeFile(const inr::Model& model);
   void WarnOfSmallModel(const inr::Model& model, const inr::TrainingOptions& options);
   /// `showsHidden`: of any process; see TrainingInput.

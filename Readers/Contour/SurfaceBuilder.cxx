@@ -36,9 +36,12 @@ template <class Array> auto* Grow(Array* array, vtkIdType count)
 
 bool AreLeftHanded(const glm::dmat3& axes)
 {
-  const glm::dvec3 normal =
-      glm::cross(glm::normalize(axes[0]), glm::normalize(axes[1])); // or products underflow
-  return glm::dot(normal, axes[2]) < 0;
+  glm::dmat3 scaled; // or products of small or large ones are 0 or infinite
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec3 sizes = glm::abs(axes[axis]);
+    scaled[axis] = axes[axis] / std::max({sizes.x, sizes.y, sizes.z});
+  }
+  return glm::determinant(scaled) < 0;
 }
 
 bool NeedsDouble(const glm::dvec3& origin, const glm::dmat3& axes, const glm::i64vec3& size)

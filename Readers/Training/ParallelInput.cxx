@@ -19,9 +19,26 @@ namespace {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 /// As VTK cuts an image for the processes of the group; empty for those that are too many.
-std::array<int, 6> PieceOfGroup(const WholeImage& whole, const ControllerGroup& group)
+std::array<int, 6> PieceOfGroup(const int* whole, const ControllerGroup& group)
 {
-  return PieceExtent(whole.extent, group.rank(), group.size(), 0);
+  return PieceExtent(whole, group.rank(), group.size(), 0);
+}
+
+/// The first of the processes that say so; that with rank 0 where none does.
+std::size_t FirstOf(bool said, const ControllerGroup& group)
+{
+  const std::vector<bool> all = group.valuesOfAll(said);
+  const auto first = std::find(all.begin(), all.end(), true);
+  return first == all.end() ? 0 : static_cast<std::size_t>(first - all.begin());
+}
+
+/// Of the whole image, also where this process' source tells of none.
+std::array<int, 6> ExtentOfWhole(const WholeImage& whole, const ControllerGroup& group)
+{
+  std::array<int, 6> own{};
+  std::copy_n(whole.extent, 6, own.data());
+  const std::size_t first = FirstOf(!IsEmpty(whole.extent), group);
+  return group.valuesOfAll(own)[first];
 }
 
 /// Whether all processes of the group have what VTK would cut for them, or more. Those of a
@@ -46,14 +63,6 @@ vtkSmartPointer<vtkImageData> PieceOf(vtkImageData* image, const int* wanted, bo
     piece->Crop(extent); // nothing is copied where the extents are the same
   }
   return piece;
-}
-
-/// The first of the processes that say so; that with rank 0 where none does.
-std::size_t FirstOf(bool said, const ControllerGroup& group)
-{
-  const std::vector<bool> all = group.valuesOfAll(said);
-  const auto first = std::find(all.begin(), all.end(), true);
-  return first == all.end() ? 0 : static_cast<std::size_t>(first - all.begin());
 }
 
 /// What the process with rank `knowing` knows of the whole, the others learn.
@@ -87,7 +96,7 @@ void RequireOneArray(const std::string& name, const ControllerGroup& group)
 bool IsPieceInMemory(vtkInformation* input, const WholeImage& whole, const ControllerGroup& group)
 {
   auto* image = vtkImageData::SafeDownCast(input->Get(vtkDataObject::DATA_OBJECT()));
-  const std::array<int, 6> piece = PieceOfGroup(whole, group);
+  const std::array<int, 6> piece = PieceOfGroup(whole.extent, group);
   return image && image->GetPointData()->GetNumberOfArrays() > 0 &&
          (IsEmpty(piece.data()) || Contains(image->GetExtent(), piece.data()));
 }
@@ -110,7 +119,8 @@ ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
   ParallelInput found;
   inr::VolumeInfo& info = found.input.info;
   auto* const image = vtkImageData::SafeDownCast(data);
-  const std::array<int, 6> wanted = PieceOfGroup(whole, group);
+  const std::array<int, 6> all = ExtentOfWhole(whole, group);
+  const std::array<int, 6> wanted = PieceOfGroup(all.data(), group);
   const bool cut = IsCutByVTK(image, wanted.data(), group);
   vtkSmartPointer<vtkImageData> piece;
   group.together([&] { piece = image ? PieceOf(image, wanted.data(), cut) : nullptr; });
@@ -125,11 +135,10 @@ ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
     found.input = find(piece);
     const int* const extent = piece->GetExtent();
     for (int axis = 0; axis < 3; ++axis) {
-      found.first[axis] = std::int64_t{extent[2 * axis]} - whole.extent[2 * axis];
+      found.first[axis] = std::int64_t{extent[2 * axis]} - all[2 * axis];
     }
     info.dims = whole.dims;
-    piece->TransformIndexToPhysicalPoint(whole.extent[0], whole.extent[2], whole.extent[4],
-                                         &info.origin.x);
+    piece->TransformIndexToPhysicalPoint(all[0], all[2], all[4], &info.origin.x);
   });
   const std::string name = group.gather(info.arrayName)[first];
   RequireOneArray(found.input.values ? info.arrayName : name, group);

@@ -3,7 +3,7 @@
 
 #include "Core/Error.h"
 #include "Readers/Extents.h"
-#include "Readers/Training/WholeFileReader.h"
+#include "Readers/Training/UndividedSource.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
@@ -37,14 +37,17 @@ ReadingPlan::ReadingPlan(vtkAlgorithm* consumer, vtkInformation* input, std::int
                      ? this->Whole.isInMemory
                      : IsPieceInMemory(input, this->Whole, group) || ComesFromApplication(consumer);
   this->Problem = FindFileProblem(consumer, input, {}, true, group);
-  // Processes that see other files, as those of others are written, must not part.
+  // All processes must decide alike, even where they see different files.
   const std::string wholeReader = group.firstOf(FindWholeFileReader(consumer));
   const bool isLarge = this->isTooLarge(this->Whole.bytes, group);
   this->InParts = wholeReader.empty();
   const std::string collective =
       group.size() > 1 ? group.firstOf(FindCollectiveFilter(consumer)) : std::string();
-  const std::string& whole = this->InParts ? collective : wholeReader;
-  this->WholeReader = isLarge && !whole.empty() ? whole + ", the source" : "";
+  const std::string whole =
+      !this->InParts        ? wholeReader + ", the source, cannot give parts of its data"
+      : !collective.empty() ? collective + " upstream gives all processes their parts at once"
+                            : std::string();
+  this->WhyWhole = isLarge ? whole : "";
   const bool mayBeLarge = this->InParts && this->isTooLarge(MostUntold * this->Whole.bytes, group);
   if (group.any(whole.empty() && isLarge)) {
     this->Asks = FirstAsked::VoxelOfTooMuch;
@@ -98,7 +101,7 @@ vtkDataObject* ReadingPlan::afterProbe(vtkDataObject* data, bool failed,
   if (this->InPieces) {
     return data;
   }
-  this->WholeReader = isLarge ? "The source" : "";
+  this->WhyWhole = isLarge ? "The source cannot give parts of its data" : "";
   // Also where all came: a filter may have made it of the one voxel that it asked for.
   const auto all = [&](vtkInformation* input) { this->ask(input, group); };
   const bool afresh = allWhole || group.size() > 1;

@@ -48,8 +48,8 @@ public:
   /// What is wrong with a raw file that had to be read; the same in all processes.
   const std::string& problem() const { return this->Problem; }
 
-  /// What gives the whole of too much, for the user; empty where nothing does.
-  const std::string& wholeReader() const { return this->WholeReader; }
+  /// Why all of too much is read at once, for the user; empty where it is not.
+  const std::string& whyWhole() const { return this->WhyWhole; }
 
   /// What upstream has reported since this was made, and reports as long as that lives.
   std::unique_ptr<UpstreamErrors> takeErrors() { return std::move(this->Errors); }
@@ -82,6 +82,6 @@ private:
   FirstAsked Asks = FirstAsked::All;
   bool InPieces = false; ///< after find()
   std::string Problem;
-  std::string WholeReader;
+  std::string WhyWhole;
   std::unique_ptr<UpstreamErrors> Errors;
 };

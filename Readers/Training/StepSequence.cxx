@@ -22,6 +22,15 @@ StepSequence::StepSequence(std::vector<double> times, int first, int last, int s
   }
 }
 
+std::vector<double> StepSequence::times() const
+{
+  std::vector<double> times;
+  for (const int number : this->Numbers) {
+    times.push_back(this->Times[static_cast<std::size_t>(number)]);
+  }
+  return times;
+}
+
 bool StepSequence::advance()
 {
   ++this->Position;

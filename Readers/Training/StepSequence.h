@@ -19,6 +19,7 @@ public:
 
   /// Numbers of all its steps, and of how many they are chosen.
   const std::vector<int>& numbers() const { return this->Numbers; }
+  std::vector<double> times() const;
   std::size_t available() const { return this->Times.size(); }
 
   int number() const { return this->Numbers[this->Position]; } ///< of the present step

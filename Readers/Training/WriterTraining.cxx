@@ -144,7 +144,7 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
     backend->tell(group.rank() == 0);
   };
 
-  const std::string whole = this->Internal->Reading.wholeReader();
+  const std::string whole = this->Internal->Reading.whyWhole();
   if (!whole.empty() && group.rank() == 0) {
     this->WarnOfWhole(whole);
   }

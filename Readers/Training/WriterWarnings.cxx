@@ -4,12 +4,11 @@
 #include "Core/Training/Quality/TargetReport.h"
 #include "Readers/Training/WriterInternals.h"
 
-void vtkINRWriter::WarnOfWhole(const std::string& source)
+void vtkINRWriter::WarnOfWhole(const std::string& why)
 {
-  vtkWarningMacro(<< source << " of '" << this->Internal->Target
-                  << "' cannot give parts of its data: all of them, "
+  vtkWarningMacro(<< why << ": what '" << this->Internal->Target << "' is made of, "
                   << this->Internal->Reading.whole().bytes / MiB
-                  << " MiB, are in memory, more than half of the MemoryLimit of "
+                  << " MiB, is in memory, more than half of the MemoryLimit of "
                   << this->MemoryLimitInBytes() / MiB << " MiB.");
 }
 

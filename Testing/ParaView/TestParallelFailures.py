@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A source that fails, or has something else, in one process of several that write a model of it: all say
-so, none waits for ever, and there is no file; and there is one where the first process has nothing. The first argument is "write" in processes that each run all of this, "check"
-in one."""
+"""A source that fails, or has something else, in one process of several that write a model of it: all
+say so, none waits for ever, and there is no file. Where only the first process has nothing, there is one.
+The first argument is "write" in processes that each run all of this, "check" in one."""
 import os
 import sys
 
@@ -18,7 +18,7 @@ LARGE = (0, 99, 0, 99, 0, 99)  # 4 MiB: more than is held of it where MemoryLimi
 FAILED = "process 1: the source failed"
 # What the first process says where the second one fails, or has an array of its own.
 NAME = "process 1: the array to be saved is 'another' here and 'RTData' in the first process"
-STEPS = "process 1: the data have 2 time steps here and 3 in the first process"
+STEPS = "process 1: there are 2 time steps to save here and 3 in the first process"
 TOLD = {"nothing": None, "information": FAILED, "extent": "leave gaps", "data": FAILED, "name": NAME,
         "name in pieces": NAME, "steps": STEPS, "first without": None, "resampled": None}
 

@@ -81,6 +81,7 @@ inline double PartThatFacesItsNormals(vtkPolyData* surface)
 {
   vtkDataArray* normals = surface->GetPointData()->GetNormals();
   vtkIdType facing = 0;
+  vtkIdType others = 0; // than those whose corners fall together
   for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell) {
     vtkNew<vtkIdList> ids;
     surface->GetCellPoints(cell, ids);
@@ -92,7 +93,10 @@ inline double PartThatFacesItsNormals(vtkPolyData* surface)
       along += normal;
     }
     const glm::dvec3 face = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-    facing += glm::dot(face, along) >= 0 ? 1 : 0; // 0: corners that fall together
+    if (glm::length(face) > 0) {
+      ++others;
+      facing += glm::dot(face, along) > 0 ? 1 : 0;
+    }
   }
-  return static_cast<double>(facing) / static_cast<double>(surface->GetNumberOfCells());
+  return static_cast<double>(facing) / static_cast<double>(others);
 }

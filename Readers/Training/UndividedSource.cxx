@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Readers/Training/WholeFileReader.h"
+#include "Readers/Training/UndividedSource.h"
 
 #include "Readers/Training/Upstream.h"
 
@@ -51,8 +51,8 @@ bool GivesWholeFiles(vtkAlgorithm* algorithm, vtkAlgorithm* consumer)
                     reader->IsA("vtkTGAReader"));
 }
 
-/// Of several processes: filters that must be executed in all of them at once and cut what all of
-/// them ask for together into a part for each, which of a voxel there is not.
+/// Of several processes: filters that must be executed in all of them at once and cut what is asked
+/// for into a part for each. A single voxel cannot be cut so.
 bool CutsForAllProcesses(vtkAlgorithm* algorithm) { return algorithm->IsA("vtkPResampleToImage"); }
 
 /// The class of one that `test` says yes to; empty where there is none.
