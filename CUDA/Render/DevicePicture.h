@@ -2,6 +2,7 @@
 #pragma once
 
 #include "CUDA/Render/Kernels/FrameCounts.h"
+#include "CUDA/Render/Kernels/RenderScene.h"
 #include "Core/Render/Scene/Frame.h"
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "CUDA/Inference/Kernels/BrickKernels.h"
 #include "CUDA/Inference/Overflow.h"
 #include "CUDA/Inference/PackedModel.h"
+#include "CUDA/Inference/Precision.h"
 #include "Testing/CUDA/HostLaunch.h"
 
 #include <gtest/gtest.h>

@@ -63,8 +63,8 @@ public:
   INR_HOST_DEVICE const MajorantGridView& grid(int number) const { return this->Grids[number]; }
   /// See Majorants.
   INR_HOST_DEVICE int coarsestLevel(int grid) const { return this->Coarsest[grid]; }
-  /// The finest grid that bounds a level.
-  int gridFor(int level) const
+  /// Number of the finest grid that bounds a level.
+  INR_HOST_DEVICE int gridFor(int level) const
   {
     int grid = 0;
     while (grid + 1 < this->Count && this->Coarsest[grid] < level) {

@@ -150,7 +150,7 @@ ColorTable::ColorTable(const TransferFunction& function, const VolumeInfo& volum
   for (const glm::vec4& entry : this->Entries) {
     extinctions.push_back(ExtinctionOf(entry.w));
   }
-  this->Extinctions = SparseTable<Largest>(std::move(extinctions));
+  this->Extinctions = SparseTable<Maximum>(std::move(extinctions));
 }
 
 bool ColorTable::hidesAny() const

@@ -73,7 +73,7 @@ public:
 
 private:
   std::vector<glm::vec4> Entries;
-  SparseTable<Largest> Extinctions; ///< of the entries
+  SparseTable<Maximum> Extinctions; ///< of the entries
   float Below;                      ///< extinction outside the transfer function's range
   float Above;
   ColorLookup Lookup;

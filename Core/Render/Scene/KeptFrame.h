@@ -7,7 +7,7 @@
 
 namespace inr {
 
-/// A frame with its opaque depth, to be compared with later ones.
+/// A frame with its opaque depth, to be gone on with, or compared with later ones.
 class KeptFrame
 {
 public:

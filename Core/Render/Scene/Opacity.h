@@ -2,7 +2,7 @@
 //
 // Opacity and extinction: 1 - exp(-depth) is the opacity of an optical depth, which is extinction
 // times length (Max, "Optical models for direct volume rendering", IEEE TVCG 1(2), 1995). Opacities
-// are 0 to 1, lengths 0 or more in opacity unit distances, and extinctions per such distance. What
+// are 0 to 1, lengths above 0 in opacity unit distances, and extinctions per such distance. What
 // the inner loops look up instead of computing it is in Marching/StepTable.h.
 #pragma once
 
@@ -24,7 +24,7 @@ inline double OpacityOver(double length, double opacity)
   return opacity < 1.0 ? OpacityOf(length * ExtinctionOf(opacity)) : 1.0;
 }
 
-/// The same for inner loops, to a few units in the last place.
+/// The same for inner loops, to within 2e-6 and, relatively, 1e-3.
 INR_HOST_DEVICE inline float OpacityOver(float length, float opacity)
 {
   // The power is faster, but what is faint or short it loses to rounding.

@@ -7,11 +7,11 @@
 
 namespace inr {
 
-struct Least
+struct Minimum
 {
   float operator()(float a, float b) const { return a < b ? a : b; }
 };
-struct Largest
+struct Maximum
 {
   float operator()(float a, float b) const { return a > b ? a : b; }
 };

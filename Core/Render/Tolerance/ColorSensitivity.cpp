@@ -103,12 +103,12 @@ ColorSensitivity::ColorSensitivity(const ColorLookup& colors, double stepLength)
     }
     depths.push_back(std::min(depthOf(entries[k]), depthOf(entries[k + 1])));
   }
-  this->Depths = SparseTable<Least>(std::move(depths));
+  this->Depths = SparseTable<Minimum>(std::move(depths));
   this->DepthBelow = depthOf(colors.below);
   this->DepthAbove = depthOf(colors.above);
   for (int row = 0; row < 7; ++row) {
-    this->Channels.push_back({SparseTable<Least>(std::move(smallest[row])),
-                              SparseTable<Largest>(std::move(largest[row]))});
+    this->Channels.push_back({SparseTable<Minimum>(std::move(smallest[row])),
+                              SparseTable<Maximum>(std::move(largest[row]))});
   }
 }
 

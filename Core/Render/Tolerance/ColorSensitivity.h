@@ -37,15 +37,15 @@ private:
   /// Of one slope, over table intervals.
   struct Extremes
   {
-    SparseTable<Least> smallest;
-    SparseTable<Largest> largest;
+    SparseTable<Minimum> smallest;
+    SparseTable<Maximum> largest;
   };
 
   ColorLookup Colors;
   bool JumpsBelow; ///< where the table begins
   bool JumpsAbove;
   std::vector<Extremes> Channels; ///< per table entry
-  SparseTable<Least> Depths;      ///< of a step
+  SparseTable<Minimum> Depths;    ///< of a step
   float DepthBelow;
   float DepthAbove;
 };

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -248,14 +247,17 @@ LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const Box
                           int power, const LineKernel& kernel, const IsTooLarge& isTooLarge)
 {
   LineErrors errors;
-  const auto areTooLargeAlong = [&](int axis, const auto& ways) {
+  const auto sweepAlong = [&](int axis, const auto& ways) { // false: errors are too large
     LineSweep sweep(fine, taken, part, axis, kernel);
-    return std::any_of(std::begin(ways), std::end(ways), [&](const glm::i64vec3& way) {
+    for (const glm::i64vec3& way : ways) {
       SweepBoth(sweep, way, power, errors);
-      return isTooLarge(errors);
-    });
+      if (isTooLarge(errors)) {
+        return false;
+      }
+    }
+    return true;
   };
-  if (areTooLargeAlong(2, WaysUpZ) || areTooLargeAlong(1, WaysUpY)) {
+  if (!sweepAlong(2, WaysUpZ) || !sweepAlong(1, WaysUpY)) {
     return errors;
   }
   const Turned turned(fine, taken, part, power);

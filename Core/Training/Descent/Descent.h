@@ -3,8 +3,8 @@
 
 #include "Core/AlignedVector.h"
 #include "Core/Inference/ModelView.h"
-#include "Core/Training/Descent/StateArray.h"
 #include "Core/Training/Samples/BatchSource.h"
+#include "Core/Training/StateArray.h"
 #include "Core/Training/StopCheck.h"
 
 #include <cstdint>

@@ -2,8 +2,8 @@
 #include "Core/Training/Parallel/ParallelTraining.h"
 
 #include "Core/Error.h"
+#include "Core/Training/Parallel/PieceBatches.h"
 #include "Core/Training/Quality/Quality.h"
-#include "Core/Training/Samples/PieceBatches.h"
 #include "Core/Training/TrainingLoop.h"
 #include "Core/Training/TrainingRun.h"
 

@@ -3,8 +3,8 @@
 
 #include "Core/Model/MacroCells.h"
 #include "Core/Parallel.h"
-#include "Core/Training/Descent/StateArray.h"
 #include "Core/Training/Parallel/TrainingGroup.h"
+#include "Core/Training/StateArray.h"
 #include "Core/Training/Volume.h"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "Core/Model/Model.h"
-#include "Core/Training/Descent/StateArray.h"
 #include "Core/Training/Samples/SampleSource.h"
 #include "Core/Training/Samples/StratifiedPositions.h"
+#include "Core/Training/StateArray.h"
 #include "Core/Training/StopCheck.h"
 
 #include <glm/vec3.hpp>

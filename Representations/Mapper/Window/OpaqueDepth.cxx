@@ -29,7 +29,7 @@ template <class Test> bool AnyProp(vtkRenderer* renderer, const Test& test)
   return any;
 }
 
-/// Of the framebuffer that is drawn into.
+/// Of the framebuffer that is drawn into; empty where it has none, or several samples of a pixel.
 std::vector<float> ReadBoundDepth(vtkRenderer* renderer, const Viewport& place)
 {
   auto* window = static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow());
@@ -40,10 +40,13 @@ std::vector<float> ReadBoundDepth(vtkRenderer* renderer, const Viewport& place)
   state->vtkglBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<unsigned int>(bound));
   std::vector<float> depth(static_cast<std::size_t>(place.width) * place.height);
   state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
+  while (glGetError() != GL_NO_ERROR) {
+  }
   glReadPixels(place.x, place.y, place.width, place.height, GL_DEPTH_COMPONENT, GL_FLOAT,
                depth.data());
+  const bool isRead = glGetError() == GL_NO_ERROR;
   state->PopReadFramebufferBinding();
-  return depth;
+  return isRead ? depth : std::vector<float>();
 }
 
 } // namespace
@@ -62,8 +65,9 @@ std::vector<float> ReadOpaqueDepth(vtkRenderer* renderer, const Viewport& viewpo
 {
   const RenderTarget target = TargetOf(renderer, viewport);
   if (!target.isWindow) {
-    return ReduceDepth(ReadBoundDepth(renderer, target.viewport), target.viewport, viewport.width,
-                       viewport.height);
+    const std::vector<float> depth = ReadBoundDepth(renderer, target.viewport);
+    return depth.empty() ? depth
+                         : ReduceDepth(depth, target.viewport, viewport.width, viewport.height);
   }
   std::vector<float> depth(static_cast<std::size_t>(viewport.width) * viewport.height);
   const int ok = renderer->GetRenderWindow()->GetZbufferData(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/Samples/PieceBatches.h"
+#include "Core/Training/Parallel/PieceBatches.h"
 
 #include <algorithm>
 
