@@ -276,6 +276,7 @@ TEST_P(Translucent, LeaveWhatLiesOverTheSceneOnTop)
 TEST_P(Translucent, EachVolumeOfOneMapperIsDrawn)
 {
   Glasses scene(this->GetParam());
+  scene.addSheet(-0.7, Clear, 5); // without one, nothing is peeled
   scene.volume->VisibilityOff();
   const vtkSmartPointer<vtkVolume> copy = vtkSmartPointer<vtkVolume>::New();
   copy->SetMapper(scene.mapper);
@@ -283,12 +284,12 @@ TEST_P(Translucent, EachVolumeOfOneMapperIsDrawn)
   const double* bounds = scene.volume->GetBounds();
   copy->SetPosition(0.6 * (bounds[1] - bounds[0]), 0, 0);
   scene.renderer->AddVolume(copy);
-  const inr::Image second = scene.scene.capture();
+  const inr::Image second = scene.rgba();
   scene.volume->VisibilityOn();
   copy->VisibilityOff();
-  const inr::Image first = scene.scene.capture();
+  const inr::Image first = scene.rgba();
   copy->VisibilityOn();
-  const inr::Image both = scene.scene.capture();
+  const inr::Image both = scene.rgba();
   int missing = 0;
   for (std::size_t k = 3; k < both.pixels.size(); k += 4) {
     missing += both.pixels[k] < std::max(first.pixels[k], second.pixels[k]) - 0.02f ? 1 : 0;
