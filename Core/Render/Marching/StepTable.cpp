@@ -111,6 +111,7 @@ StepTable::StepTable(const ColorLookup& colors, double stepLength, int lengths)
     : StepLength(stepLength), Lengths(lengths)
 {
   std::vector<double> inUnits; // of the lengths
+  inUnits.reserve(static_cast<std::size_t>(lengths));
   for (int number = 0; number < lengths; ++number) {
     inUnits.push_back(stepLength * static_cast<double>(StepsOf(number)));
   }

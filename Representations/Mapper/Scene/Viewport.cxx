@@ -40,7 +40,8 @@ std::size_t PixelUnder(std::size_t pixel, int width, int height, const Viewport&
 {
   const auto across = static_cast<std::size_t>(width);
   const double x = static_cast<double>(pixel % across) + 0.5;
-  const double y = static_cast<double>(pixel / across) + 0.5;
+  const std::size_t whole = pixel / across;
+  const double y = static_cast<double>(whole) + 0.5;
   const auto row = static_cast<std::size_t>(y * viewport.height / height);
   return row * viewport.width + static_cast<std::size_t>(x * viewport.width / width);
 }
