@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Window/Surroundings.h"
 
+#include "Representations/Mapper/Window/OpaqueDepth.h"
 #include "Representations/Mapper/Window/Props.h"
 
 #include <vtkRenderer.h>

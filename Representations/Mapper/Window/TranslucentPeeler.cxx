@@ -2,6 +2,7 @@
 #include "Representations/Mapper/Window/TranslucentPeeler.h"
 
 #include "Readers/VTKCompat.h"
+#include "Representations/Mapper/Window/OpaqueDepth.h"
 #include "Representations/Mapper/Window/Props.h"
 
 #include INR_VTK_OPENGL_HEADER
