@@ -163,8 +163,10 @@ void vtkINREXRWriter::Write()
   const std::vector<vtkINRLODVolume*> shown =
       view ? ShownBy(view) : std::vector<vtkINRLODVolume*>();
   if (vtkINRLODVolume::GetLatestShownMTime() > latest.time) {
-    this->Fail("A view that ParaView does not list has drawn an INR volume, and this may be its "
-               "picture; to save it, register the view under \"views\" first.");
+    this->Fail(
+        "A view that ParaView does not list by itself has drawn an INR volume, such as a part "
+        "of a comparative view, and this may be its picture; save a render view, registered "
+        "under \"views\".");
     return;
   }
   if (shown.size() != 1) {

@@ -138,6 +138,14 @@ messages = save(path, hidden)
 check(messages.errors() == 1 and "register" in messages.text, "a hidden view reported", messages.text)
 save(path)
 
+# Nor of several in one.
+several = simple.CreateView("ComparativeRenderView")
+several.ViewSize = [160, 120]
+simple.Show(reader, several)
+messages = save(output_file("several.exr"), several)
+check(messages.errors() == 1 and "comparative" in messages.text, "several reported", messages.text)
+simple.Delete(several)
+
 # A layout of two views is no picture of one, whichever is drawn last.
 layout = simple.CreateLayout("two")
 for shown in simple.CreateView("RenderView"), simple.CreateView("RenderView"):
