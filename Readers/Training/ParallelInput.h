@@ -33,8 +33,8 @@ struct ParallelInput
 };
 
 /// The piece that came, or is cut out of what came, of which `find` says what is to be trained on;
-/// there may be none in other processes than the first. Throws inr::Error in all processes when it
-/// does in one, or when they have different arrays.
+/// some processes may have none, and need not know of the whole. Throws inr::Error in all processes
+/// when it does in one, or when they have different arrays.
 ParallelInput FindPiece(vtkDataObject* data, const WholeImage& whole,
                         const std::function<TrainingInput(vtkDataObject*)>& find,
                         const ControllerGroup& group);

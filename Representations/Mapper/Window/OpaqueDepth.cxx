@@ -40,7 +40,7 @@ std::vector<float> ReadBoundDepth(vtkRenderer* renderer, const Viewport& place)
   state->vtkglBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<unsigned int>(bound));
   std::vector<float> depth(static_cast<std::size_t>(place.width) * place.height);
   state->vtkglPixelStorei(GL_PACK_ALIGNMENT, 1);
-  while (glGetError() != GL_NO_ERROR) {
+  for (int k = 0; k < 16 && glGetError() != GL_NO_ERROR; ++k) { // of others; without end if lost
   }
   glReadPixels(place.x, place.y, place.width, place.height, GL_DEPTH_COMPONENT, GL_FLOAT,
                depth.data());
