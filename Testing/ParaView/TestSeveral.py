@@ -103,6 +103,19 @@ with Messages() as messages:
     check(min(contrasts) > 0.02, "a view of the comparative one is empty:", contrasts)
     simple.Delete(comparative)
 
+    # A click takes the volume in front, also where that was shown first.
+    clicked = show_view((100, 100))
+    for shown in readers[:2]:
+        simple.Show(shown, clicked)
+    look_at(clicked)
+    front, back = (simple.GetDisplayProperties(shown, clicked) for shown in readers[:2])
+    eye = np.array(clicked.CameraPosition) - np.array(clicked.CameraFocalPoint)
+    front.Position = list(0.3 * eye)
+    front.ScalarOpacityUnitDistance = back.ScalarOpacityUnitDistance = 0.01
+    simple.Render(clicked)
+    check(clicked.SMProxy.Pick(50, 50) == front.SMProxy, "the volume behind is picked")
+    simple.Delete(clicked)
+
     # Sources go while others are shown and load.
     simple.Show(readers[1], view)
     view.SMProxy.InteractiveRender()

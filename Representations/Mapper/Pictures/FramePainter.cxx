@@ -94,7 +94,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
 
 const Image* FramePainter::shown(vtkRenderer* renderer, vtkVolume* volume) const
 {
-  const ViewPicture* picture = this->Pictures.find(renderer, volume);
+  const ViewPicture* picture = this->Pictures.findShown(renderer, volume);
   return picture ? &picture->last().rgba : nullptr;
 }
 

@@ -47,6 +47,17 @@ const ViewPicture* PictureStore::find(vtkRenderer* renderer, vtkVolume* volume) 
   return found != this->Views.end() ? &found->picture : nullptr;
 }
 
+const ViewPicture* PictureStore::findShown(vtkRenderer* renderer, vtkVolume* prop) const
+{
+  if (const ViewPicture* own = this->find(renderer, prop)) {
+    return own;
+  }
+  const auto found = std::find_if(this->Views.begin(), this->Views.end(), [&](const View& view) {
+    return view.isOf(renderer, view.volume);
+  });
+  return found != this->Views.end() ? &found->picture : nullptr;
+}
+
 int PictureStore::freeNumber() const
 {
   int number = 0;

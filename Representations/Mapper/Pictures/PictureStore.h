@@ -28,6 +28,9 @@ public:
   ViewPicture& of(vtkRenderer* renderer, vtkVolume* volume);
   /// The same, null where there is none; it does not become the latest.
   const ViewPicture* find(vtkRenderer* renderer, vtkVolume* volume) const;
+  /// That of `prop` or, where it is a prop that has others drawn for it, as in ParaView, the one
+  /// drawn last in that renderer.
+  const ViewPicture* findShown(vtkRenderer* renderer, vtkVolume* prop) const;
   /// An empty one before the first.
   const ViewPicture& latest() const { return this->Views.front().picture; }
   /// None is to be shown again.
