@@ -4,6 +4,7 @@
 #include "CUDA/Render/MarchedPicture.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/Marching/StepTable.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/KeptFrame.h"
 #include "Core/Render/Scene/PerView.h"
 

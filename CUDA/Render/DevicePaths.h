@@ -9,6 +9,7 @@
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Cache/CacheOptions.h"
 #include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/KeptFrame.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 

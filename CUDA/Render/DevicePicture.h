@@ -4,6 +4,7 @@
 #include "CUDA/Render/Kernels/FrameCounts.h"
 #include "CUDA/Render/Kernels/RenderScene.h"
 #include "Core/Render/Scene/Frame.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <algorithm>
 #include <cstdint>

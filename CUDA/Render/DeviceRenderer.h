@@ -4,6 +4,7 @@
 #include "CUDA/Render/DeviceMarcher.h"
 #include "CUDA/Render/DevicePaths.h"
 #include "CUDA/Render/DeviceStore.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstdint>
 #include <memory>

@@ -8,6 +8,7 @@
 #include "CUDA/Render/Kernels/MarchKernels.h"
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Render/CachedRenderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/Timer.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 

@@ -9,6 +9,7 @@
 #include "CUDA/Render/Kernels/PathWave.h"
 #include "CUDA/Render/PathTiles.h"
 #include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/Timer.h"
 
 #include <cstdint>

@@ -5,6 +5,7 @@
 
 #include "CUDA/Render/DevicePicture.h"
 #include "Core/Render/Paths/PathPicture.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <algorithm>
 #include <cstdint>

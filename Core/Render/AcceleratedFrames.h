@@ -3,6 +3,7 @@
 
 #include "Core/Cache/AcceleratedField.h"
 #include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstdint>
 #include <functional>

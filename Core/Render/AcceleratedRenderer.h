@@ -3,6 +3,7 @@
 
 #include "Core/Render/Marching/Shading.h"
 #include "Core/Render/Paths/PathPicture.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstdint>
 #include <functional>

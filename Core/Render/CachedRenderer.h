@@ -11,6 +11,7 @@
 #include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Paths/PathShortage.h"
 #include "Core/Render/Refinement.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/PerView.h"
 
 #include <functional>

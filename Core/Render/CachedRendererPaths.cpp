@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Paths/CachedPaths.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 
 #include <algorithm>

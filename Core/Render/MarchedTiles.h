@@ -3,6 +3,7 @@
 
 #include "Core/Cache/Requests.h"
 #include "Core/Render/Bricks/CachedPasses.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,6 +3,7 @@
 
 #include "Core/Render/Bricks/CachedPasses.h"
 #include "Core/Render/PictureCopy.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/KeptFrame.h"
 
 #include <optional>

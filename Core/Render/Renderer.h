@@ -8,6 +8,7 @@
 #include "Core/Model/Model.h"
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Scene/Frame.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/TransferFunction.h"
 
 #include <functional>

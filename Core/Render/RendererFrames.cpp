@@ -4,6 +4,7 @@
 #include "Core/Render/Marching/TileMarcher.h"
 #include "Core/Render/Paths/CachedPaths.h"
 #include "Core/Render/RendererImplementation.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <algorithm>
 #include <optional>

@@ -8,6 +8,7 @@
 #include "Core/Render/Marching/PreIntegratedColors.h"
 #include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/PerView.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 #include "Core/Render/Tolerance/LevelChooser.h"

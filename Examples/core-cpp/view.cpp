@@ -6,6 +6,7 @@
 #include "Core/Image/Exr.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

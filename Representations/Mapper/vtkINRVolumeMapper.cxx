@@ -4,6 +4,7 @@
 #include "CUDA/CudaAccelerator.h"
 #include "Core/Error.h"
 #include "Core/Image/Exr.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Representations/Mapper/Pictures/FramePainter.h"
 #include "Representations/Mapper/Pictures/PaintSettings.h"
 #include "Representations/Mapper/Window/DeferredDrawing.h"

@@ -6,6 +6,7 @@
 //   file
 #include "Core/Image/Metrics.h"
 #include "Core/Model/ModelFile.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/Timer.h"
 #include "Testing/Benchmarks/FrameScenes.h"
 

@@ -7,6 +7,7 @@
 //
 // prints one JSON object per line; flight.py writes the result file.
 #include "Core/Model/ModelFile.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Benchmarks/FrameScenes.h"
 
 #include <cmath>

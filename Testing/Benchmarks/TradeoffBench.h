@@ -3,6 +3,7 @@
 // Times and errors of bench_tradeoff's points.
 #pragma once
 
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Benchmarks/TradeoffKnobs.h"
 #include "Testing/Benchmarks/TradeoffScenes.h"
 

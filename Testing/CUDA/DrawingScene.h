@@ -5,6 +5,7 @@
 
 #include "CUDA/CudaAccelerator.h"
 #include "Core/Image/Metrics.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/CUDA/EmulatedAccelerator.h"
 #include "Testing/CUDA/Places.h"
 #include "Testing/CUDA/TrainedModel.h"

@@ -3,6 +3,7 @@
 // Frames of more bricks than their cache on the device holds, and how tests draw them.
 #pragma once
 
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/CUDA/SmallCache.h"
 
 #include <glm/gtc/matrix_transform.hpp>

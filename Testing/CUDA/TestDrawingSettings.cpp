@@ -2,6 +2,7 @@
 //
 // Pictures that kernels draw through the cache with whatever a renderer may be set to, against
 // those of Core's renderer.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/CUDA/DrawingScene.h"
 
 namespace test::drawing_settings {

@@ -2,6 +2,7 @@
 //
 // Pictures that want more bricks than their cache on the device holds, in a limited time: they come
 // piece by piece, over several calls.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/CUDA/OverfullFrames.h"
 
 #include <array>

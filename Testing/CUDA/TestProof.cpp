@@ -2,6 +2,7 @@
 //
 // A device that draws some kind of picture wrong is found out when the first one of that kind is
 // drawn, whatever it has drawn before.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/CUDA/DrawingScene.h"
 
 #include <atomic>

@@ -2,6 +2,7 @@
 //
 // Pictures that a device hands over before all bricks are there: what is shown instead, what is
 // asked for, and what is said of it.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/CUDA/DrawingScene.h"
 
 namespace test::unfinished_drawing {

@@ -2,6 +2,7 @@
 //
 // Pictures that want more bricks than their cache holds, drawn by a machine that counts what it is
 // told.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/CUDA/EmulatedRenderers.h"
 #include "Testing/CUDA/FailingMachine.h"
 #include "Testing/CUDA/OverfullFrames.h"

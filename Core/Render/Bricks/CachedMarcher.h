@@ -5,6 +5,7 @@
 #include "Core/Render/Bricks/SamplePlacer.h"
 #include "Core/Render/Bricks/SampleShader.h"
 #include "Core/Render/Marching/RayMarching.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstdint>
 #include <optional>

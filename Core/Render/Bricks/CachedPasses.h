@@ -3,6 +3,7 @@
 
 #include "Core/Image/Image.h"
 #include "Core/Render/Bricks/CachedMarcher.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/Tiling.h"
 
 #include <functional>

@@ -3,6 +3,7 @@
 
 #include "Core/Cache/Requests.h"
 #include "Core/Render/Scene/Frame.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstdint>
 

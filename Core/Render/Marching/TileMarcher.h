@@ -7,6 +7,7 @@
 #include "Core/Render/Marching/RayMarching.h"
 #include "Core/Render/Marching/Shading.h"
 #include "Core/Render/Marching/SurfaceCrossings.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/Tiling.h"
 
 #include <functional>

@@ -6,6 +6,7 @@
 #include "Core/Render/Bricks/SufficientBricks.h"
 #include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Paths/PathTracingField.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstdint>
 #include <functional>

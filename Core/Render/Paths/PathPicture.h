@@ -3,6 +3,7 @@
 
 #include "Core/Render/Bricks/CachedPasses.h"
 #include "Core/Render/Paths/PathTracer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/KeptFrame.h"
 
 #include <cstdint>

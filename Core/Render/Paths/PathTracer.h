@@ -5,6 +5,7 @@
 #include "Core/Render/MacroCells/Majorants.h"
 #include "Core/Render/MacroCells/SeenSpans.h"
 #include "Core/Render/Paths/PathTracing.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/Tiling.h"
 
 #include <cstdint>

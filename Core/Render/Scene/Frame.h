@@ -7,13 +7,11 @@
 #include "Core/Render/Scene/Material.h"
 #include "Core/Render/Scene/PathOptions.h"
 #include "Core/Render/Scene/TranslucentLayers.h"
-#include "Core/Render/Scene/WorkDone.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -131,63 +129,5 @@ bool IsSamePicture(const Frame& a, const Frame& b);
 
 /// The values of a frame's opaque depth; empty when it has none.
 std::vector<float> CopyOfDepth(const Frame& frame);
-
-/// Levels of resolution from the finest to the coarsest that was met; 0 is the full resolution.
-struct LevelSpan
-{
-  int finest = 64;
-  int coarsest = -1;
-
-  bool empty() const { return this->coarsest < this->finest; }
-  void add(const LevelSpan& other)
-  {
-    this->finest = std::min(this->finest, other.finest);
-    this->coarsest = std::max(this->coarsest, other.coarsest);
-  }
-};
-
-/// What making a picture took; of path tracing, one path through each pixel, the latest, but for
-/// the wall time and the work.
-struct FrameStatistics
-{
-  std::int64_t rays = 0;    ///< that met the volume; the CPU leaves out some that show nothing
-  std::int64_t samples = 0; ///< values of the field that were looked up or inferred
-  std::int64_t missed = 0;  ///< of these, read from a coarser level than wanted
-  std::int64_t hidden = 0;  ///< samples besides, left out as the voxels around them show nothing
-  std::int64_t clamped = 0; ///< samples outside their macro-cell's range, moved to its nearer end
-  /// All samples that may show something were taken, and each came from the level it asked for or,
-  /// if the options are to make do with that, the best that a full cache has.
-  bool complete = true;
-  std::int64_t paths = 0; ///< of path tracing: through each pixel, in the picture shown
-  LevelSpan levels;       ///< of the cache, that samples came from
-  /// Whether an accelerator has drawn it, or part of it; else the CPU did, of what that inferred.
-  bool accelerated = false;
-  double seconds = 0; ///< wall time
-  /// Wall time of the rays or paths, without what was loaded into the cache in between. Where only
-  /// some tiles of a picture were marched again, the time that all of them had taken at first or,
-  /// where these were not reached, may take.
-  double marchSeconds = 0;
-  WorkDone work; ///< of the call
-
-  /// Which part of the samples is not missed, those that are left out included; 1 of none.
-  double hitRate() const
-  {
-    const std::int64_t all = this->samples + this->hidden;
-    return all > 0 ? 1.0 - static_cast<double>(this->missed) / static_cast<double>(all) : 1.0;
-  }
-
-  /// Adds what was counted in another part of the picture; times are not counts.
-  void add(const FrameStatistics& part)
-  {
-    this->rays += part.rays;
-    this->samples += part.samples;
-    this->missed += part.missed;
-    this->hidden += part.hidden;
-    this->clamped += part.clamped;
-    this->levels.add(part.levels);
-    this->accelerated = this->accelerated || part.accelerated;
-    this->work.add(part.work);
-  }
-};
 
 } // namespace inr

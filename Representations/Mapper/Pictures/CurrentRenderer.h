@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstdint>
 #include <memory>

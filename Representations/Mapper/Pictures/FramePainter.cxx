@@ -4,6 +4,7 @@
 #include "Core/Error.h"
 #include "Core/Render/PictureParts.h"
 #include "Core/Render/Scene/DrawnFrame.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tolerance/StoragePrecision.h"
 #include "Representations/Mapper/Pictures/FrameBuilder.h"
 #include "Representations/Mapper/Scene/MapperInput.h"

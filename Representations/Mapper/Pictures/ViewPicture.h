@@ -3,6 +3,7 @@
 
 #include "Core/Image/Image.h"
 #include "Core/Render/Scene/Frame.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Representations/Mapper/Pictures/PictureKey.h"
 
 #include <cstdint>

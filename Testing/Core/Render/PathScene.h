@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Render/Paths/PathTracer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/TileLoop.h"
 #include "Testing/Core/Render/Scene.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <atomic>

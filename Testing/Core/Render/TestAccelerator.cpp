@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What an accelerator computes for a renderer.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/AcceleratedScene.h"
 
 #include <optional>

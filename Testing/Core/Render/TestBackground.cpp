@@ -2,6 +2,7 @@
 //
 // Bricks that come in between frames: what may change is when a picture is complete, never the
 // complete picture.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Render/Scene.h"
 

@@ -3,6 +3,7 @@
 // Blocks of bricks that show nothing: which those are, and pictures without them.
 #include "Core/Random.h"
 #include "Core/Render/Bricks/BlockVisibility.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/HiddenScene.h"
 
 #include <gtest/gtest.h>

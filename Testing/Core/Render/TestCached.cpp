@@ -4,6 +4,7 @@
 // be its storage format's error and nothing else.
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/FieldCells.h"
 #include "Testing/Core/Render/VoxelScene.h"
 

@@ -2,6 +2,7 @@
 //
 // Frames in a limited time that no clock has a part in: the same sequence is the same pictures,
 // however fast the machine is.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <gtest/gtest.h>

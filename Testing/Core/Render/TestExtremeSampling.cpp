@@ -2,6 +2,7 @@
 //
 // Very many samples, and pictures of extreme shapes.
 #include "Core/Error.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/PathScene.h"
 #include "Testing/Core/Render/VoxelScene.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Bricks that show nothing, and those behind what is opaque: what loading them must not do.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/HiddenScene.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What blocks of bricks hide, where samples are moved into the ranges of macro-cells.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/HiddenScene.h"
 
 #include <algorithm>

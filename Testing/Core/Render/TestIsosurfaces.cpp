@@ -5,6 +5,7 @@
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
 #include "Core/Render/Marching/Shading.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/BlendScene.h"
 
 #include <gtest/gtest.h>

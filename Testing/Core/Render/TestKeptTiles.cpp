@@ -3,6 +3,7 @@
 // Pictures that are asked for again while bricks come in: of those, only the tiles are marched
 // again for which much of what they lacked has come.
 #include "Core/Image/Metrics.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/RecordingField.h"
 
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 #include "Core/Model/ScaledModel.h"
 #include "Core/Render/MacroCells/CellWalker.h"
 #include "Core/Render/Rays/LevelOfDetail.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Render/Scene.h"
 

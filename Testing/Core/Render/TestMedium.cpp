@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Media with analytic transmittance: the picture must not depend on how finely it is sampled.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/Scene.h"
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 //
 // Pictures that make do with what the cache has room for.
 #include "Core/Image/Metrics.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <gtest/gtest.h>

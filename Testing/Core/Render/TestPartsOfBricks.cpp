@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pictures from bricks of which only what can be seen is inferred, against those from whole ones.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/HiddenScene.h"
 
 #include <gtest/gtest.h>

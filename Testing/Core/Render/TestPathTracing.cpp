@@ -3,6 +3,7 @@
 // Paths through media whose light is known in closed form, and what a picture may depend on.
 #include "Core/Error.h"
 #include "Core/Render/Scene/FrameCheck.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/PathScene.h"
 
 #include <glm/vector_relational.hpp>

@@ -3,6 +3,7 @@
 // Path-traced pictures that several calls of the Renderer make, of one view or of several by turns.
 #include "Core/Error.h"
 #include "Core/Render/Paths/PathPicture.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/PerView.h"
 #include "Testing/Core/Render/PathPictures.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pictures of pieces of a volume, blended in order of depth, against the picture of the whole.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/PathScene.h"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 // along the rays in double.
 #include "Core/Error.h"
 #include "Core/Render/Rays/RayGeometry.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/BlendScene.h"
 
 #include <gtest/gtest.h>

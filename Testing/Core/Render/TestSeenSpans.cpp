@@ -5,6 +5,7 @@
 #include "Core/Random.h"
 #include "Core/Render/MacroCells/SeenSpans.h"
 #include "Core/Render/Paths/PathTracer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 // How much is measured for Frame::errorTolerance, and how long it may take.
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/ToleranceScene.h"
 
 #include <glm/gtc/matrix_transform.hpp>

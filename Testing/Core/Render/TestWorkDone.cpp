@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Whether the work that a frame reports is what the field was really asked.
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/RecordingField.h"
 
 #include <chrono>

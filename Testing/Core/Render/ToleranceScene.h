@@ -4,6 +4,7 @@
 #pragma once
 
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/FieldCells.h"
 #include "Testing/Core/Render/VoxelScene.h"
 

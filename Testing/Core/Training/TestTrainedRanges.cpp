@@ -5,6 +5,7 @@
 #include "Core/Model/ScaledModel.h"
 #include "Core/Random.h"
 #include "Core/Render/Renderer.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
 
