@@ -9,8 +9,8 @@
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Scene/FrameStatistics.h"
-#include "Core/Render/Tiles/Timer.h"
 #include "Core/Render/Tiles/WorkLimit.h"
+#include "Core/Timer.h"
 
 #include <cstdint>
 #include <functional>

@@ -10,7 +10,7 @@
 #include "CUDA/Render/PathTiles.h"
 #include "Core/Render/AcceleratedRenderer.h"
 #include "Core/Render/Scene/FrameStatistics.h"
-#include "Core/Render/Tiles/Timer.h"
+#include "Core/Timer.h"
 
 #include <cstdint>
 #include <utility>

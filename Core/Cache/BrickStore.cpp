@@ -2,9 +2,9 @@
 #include "Core/Cache/BrickStore.h"
 
 #include "Core/Error.h"
+#include "Core/Timer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <new>
 #include <utility>
 
@@ -136,11 +136,8 @@ void BrickStore::clear()
 void BrickStore::loadFor(double seconds, std::vector<BrickPart> parts, const Arena& arena)
 {
   if (!this->makeQueue(static_cast<std::int64_t>(parts.size()))) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    this->load(std::move(parts), arena, [&] {
-      return std::chrono::duration<double>(Clock::now() - start).count() < seconds;
-    });
+    const Timer timer(seconds);
+    this->load(std::move(parts), arena, [&] { return timer.left() > 0; });
     return;
   }
   this->completeKnown(parts);

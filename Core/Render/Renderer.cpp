@@ -5,7 +5,7 @@
 #include "Core/Render/RendererImplementation.h"
 #include "Core/Render/Scene/DrawnFrame.h"
 #include "Core/Render/Scene/FrameCheck.h"
-#include "Core/Render/Tiles/Timer.h"
+#include "Core/Timer.h"
 
 #include <optional>
 #include <utility>

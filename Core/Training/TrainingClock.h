@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
+#include "Core/Timer.h"
 
 namespace inr {
 
-/// Seconds since some moment, by a clock that never goes back.
-inline double SteadySeconds()
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// Wall time since construction, in seconds, and what had passed before.
+/// Wall time since construction, in seconds, and what a training that goes on had taken before.
 class TrainingClock
 {
 public:
   explicit TrainingClock(double before = 0) : Before(before) {}
 
-  double seconds() const { return this->Before + SteadySeconds() - this->Start; }
+  double seconds() const { return this->Before + this->SinceThen.seconds(); }
 
 private:
   double Before;
-  double Start = SteadySeconds();
+  Timer SinceThen;
 };
 
 } // namespace inr

@@ -8,6 +8,7 @@
 #include "Core/Model/Compression.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
+#include "Core/Timer.h"
 #include "Core/Training/Checkpoint/TrainingIdentity.h"
 #include "Core/Training/Descent/AcceleratedDescent.h"
 #include "Core/Training/NoMemory.h"
@@ -313,7 +314,7 @@ std::shared_ptr<Model> TrainingRun::store(const PsnrEstimate& estimate)
 /// Lets the observer stop what comes between training and measuring.
 StopCheck TrainingRun::storingCheck() const
 {
-  return StopCheck([this, clock = TrainingClock(), last = 0.0]() mutable {
+  return StopCheck([this, clock = Timer(), last = 0.0]() mutable {
     constexpr double interval = 0.2; // seconds
     if (this->Observer && clock.seconds() - last >= interval) {
       last = clock.seconds();

@@ -7,7 +7,7 @@
 #include "Core/Image/Metrics.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Render/Scene/FrameStatistics.h"
-#include "Core/Render/Tiles/Timer.h"
+#include "Core/Timer.h"
 #include "Testing/Benchmarks/FrameScenes.h"
 
 #include <algorithm>

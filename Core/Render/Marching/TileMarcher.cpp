@@ -2,7 +2,7 @@
 #include "Core/Render/Marching/TileMarcher.h"
 
 #include "Core/Render/Tiles/TileLoop.h"
-#include "Core/Render/Tiles/Timer.h"
+#include "Core/Timer.h"
 
 #include <algorithm>
 

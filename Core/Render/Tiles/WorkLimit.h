@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Tiles/Timer.h"
+#include "Core/Timer.h"
 
 #include <algorithm>
 #include <limits>

@@ -3,7 +3,7 @@
 
 #include "Core/Parallel.h"
 #include "Core/Render/Tiles/TileLoop.h"
-#include "Core/Render/Tiles/Timer.h"
+#include "Core/Timer.h"
 
 #include <algorithm>
 #include <atomic>

@@ -3,6 +3,7 @@
 
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
+#include "Core/Timer.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -117,7 +118,7 @@ bool CheckpointKeeper::isDue() const
 /// Replaces the checkpoint; says why it cannot, and otherwise nothing.
 std::string CheckpointKeeper::replace(const TrainingState& state, const StateArrays& arrays)
 {
-  const TrainingClock clock;
+  const Timer clock;
   std::string problem;
   try {
     if (this->IsOthers) {

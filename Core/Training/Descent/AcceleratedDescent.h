@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Timer.h"
 #include "Core/Training/Descent/Descent.h"
 #include "Core/Training/Descent/GradientDescent.h"
 #include "Core/Training/Descent/TrainingAccelerator.h"
-#include "Core/Training/TrainingClock.h"
 
 #include <cstdint>
 #include <functional>

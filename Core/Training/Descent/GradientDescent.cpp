@@ -315,16 +315,21 @@ void GradientDescent::updateLayers(float learningRate)
   });
 }
 
+AdamRun GradientDescent::adamFrom(std::size_t first, float decay)
+{
+  return {&this->Parameters[first],
+          &this->Gradient[first],
+          &this->FirstMoments[first],
+          &this->SecondMoments[first],
+          FirstMomentKept,
+          AdamEpsilon,
+          decay};
+}
+
 void GradientDescent::updateOtherLayers(float learningRate)
 {
   const std::size_t first = this->firstOtherWeight();
-  const AdamRun run{&this->Parameters[first],
-                    &this->Gradient[first],
-                    &this->FirstMoments[first],
-                    &this->SecondMoments[first],
-                    FirstMomentKept,
-                    AdamEpsilon,
-                    WeightDecay};
+  const AdamRun run = this->adamFrom(first, WeightDecay);
   const std::size_t last = std::min<std::uint64_t>(this->Steps, LastAdamUpdate);
   AdamStep step = this->Updating[last];
   step.rate *= learningRate;
@@ -339,13 +344,7 @@ void GradientDescent::updateGrid(float learningRate)
   this->Threads.forEachBlock(count, 1, [&](std::int64_t task, std::int64_t) {
     const GridGradient::Piece& piece = pieces[static_cast<std::size_t>(task)];
     const std::size_t first = this->Shape.gridOffset + piece.first;
-    const AdamRun run{&this->Parameters[first],
-                      &this->Gradient[first],
-                      &this->FirstMoments[first],
-                      &this->SecondMoments[first],
-                      FirstMomentKept,
-                      AdamEpsilon,
-                      0.0f};
+    const AdamRun run = this->adamFrom(first, 0.0f);
     this->Kernel.adamSparse(run, piece.count, piece.touched, learningRate,
                             &this->Updates[piece.first], schedule);
   });

@@ -90,6 +90,7 @@ private:
   void scatter(const float* xyz, std::int64_t count, const StopCheck& check);
   void update();
   void updateLayers(float learningRate);
+  AdamRun adamFrom(std::size_t first, float decay);
   void updateOtherLayers(float learningRate);
   void updateGrid(float learningRate);
 

@@ -2,7 +2,7 @@
 #include "Core/Training/Parallel/GradientExchange.h"
 
 #include "Core/Model/LittleEndian.h"
-#include "Core/Training/TrainingClock.h"
+#include "Core/Timer.h"
 
 #include <algorithm>
 #include <cstring>
@@ -154,10 +154,10 @@ std::int64_t ExchangeBytes(const Layout& shape, int processes)
 
 void GradientExchange::together(const std::function<void()>& work)
 {
-  TrainingClock clock;
+  Timer clock;
   this->Group.together([&] {
     work();
-    clock = TrainingClock();
+    clock = Timer();
   });
   this->Times.waiting += clock.seconds();
 }
@@ -165,7 +165,7 @@ void GradientExchange::together(const std::function<void()>& work)
 std::optional<double> GradientExchange::sum(const std::optional<double>& loss, float* weights,
                                             std::size_t count, GridGradient& grid)
 {
-  const TrainingClock clock;
+  const Timer clock;
   const std::vector<std::string> all = this->Group.gather(WeightsMessage(loss, weights, count));
   const auto stopped = [](const std::string& message) { return message.empty(); };
   if (std::any_of(all.begin(), all.end(), stopped)) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The first reading of a volume, and what a checkpoint keeps of it.
+#include "Core/Timer.h"
 #include "Core/Training/Samples/RandomStream.h"
 #include "Core/Training/Streaming/StreamedVolume.h"
-#include "Core/Training/TrainingClock.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace inr {
 
 void StreamedVolume::survey(const Progress& progress)
 {
-  const TrainingClock clock;
+  const Timer clock;
   for (std::int64_t k = 0; k < this->Share.mostBlocks; ++k) {
     const std::int64_t block = this->Share.firstBlock + k;
     this->Group.together(

@@ -3,7 +3,6 @@
 
 #include "Core/Error.h"
 #include "Core/Training/Samples/RandomStream.h"
-#include "Core/Training/TrainingClock.h"
 #include "Core/Training/TrainingRun.h"
 
 #include <algorithm>

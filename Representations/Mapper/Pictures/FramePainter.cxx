@@ -24,28 +24,23 @@
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
+#include <limits>
 #include <thread>
 #include <utility>
 
 namespace inr {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start)
-{
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+constexpr double Unlimited = std::numeric_limits<double>::infinity();
 
 /// Asks clock and window between tiles whether to go on. The window's observers may touch the
 /// application, so they are only called on the thread that called the mapper.
-std::function<bool()> Unless(vtkRenderWindow* window, Clock::time_point deadline)
+std::function<bool()> Unless(vtkRenderWindow* window, const Timer& deadline)
 {
   return [window, deadline, caller = std::this_thread::get_id()] {
-    const bool inTime = deadline == Clock::time_point::max() || Clock::now() < deadline;
-    return inTime && (std::this_thread::get_id() != caller || !window->CheckAbortStatus());
+    return deadline.left() > 0 &&
+           (std::this_thread::get_id() != caller || !window->CheckAbortStatus());
   };
 }
 
@@ -64,7 +59,7 @@ FramePainter::FramePainter(std::function<bool()> mayRefine)
 std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                                 const PaintSettings& settings)
 {
-  const auto start = Clock::now();
+  const Timer timer;
   this->Group = settings.group;
   ViewPicture& picture = this->Pictures.of(renderer, volume);
   picture.begin();
@@ -88,7 +83,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
               "float textures.";
   }
   picture.depict(this->depicted(frame, renderer, volume));
-  picture.last().seconds = SecondsSince(start);
+  picture.last().seconds = timer.seconds();
   this->Stills.followUp(picture, renderer->GetRenderWindow(), settings);
   return problem;
 }
@@ -157,7 +152,7 @@ bool FramePainter::drawUnseen(const Job& job)
   const int reduction = this->Rays.factor(window->GetDesiredUpdateRate(), pixels);
   const Surroundings around = LookAround(job.renderer, viewport, this->Group, nullptr);
   return this->render(job, this->reduced(around, viewport, reduction), reduction,
-                      Unless(window, Clock::time_point::max()));
+                      Unless(window, Timer(Unlimited)));
 }
 
 DepictedScene FramePainter::depicted(const Frame& scene, vtkRenderer* renderer,
@@ -228,10 +223,10 @@ bool FramePainter::draw(const Job& job)
   job.picture.last().depthRead = around.depthRead;
   const double rate = renderer->GetRenderWindow()->GetDesiredUpdateRate();
   int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
-  Clock::time_point deadline = this->deadline(rate, reduction);
+  Timer deadline = this->deadline(rate, reduction);
   Surroundings here = this->reduced(around, viewport, reduction);
   while (!this->renderTogether(job, here, reduction, deadline)) {
-    if (this->Group.all(Clock::now() < deadline)) {
+    if (this->Group.all(deadline.left() > 0)) {
       return true; // aborted
     }
     reduction = std::min(4 * reduction, ImageReduction::Largest);
@@ -260,7 +255,7 @@ Surroundings FramePainter::reduced(const Surroundings& around, const Viewport& v
 }
 
 bool FramePainter::renderTogether(const Job& job, const Surroundings& around, int reduction,
-                                  Clock::time_point deadline)
+                                  const Timer& deadline)
 {
   const auto keepGoing = Unless(job.renderer->GetRenderWindow(), deadline);
   bool done = false;
@@ -284,13 +279,11 @@ bool FramePainter::blend(const Job& job, const Surroundings& around)
 
 /// When a picture is given up for one with fewer pixels, so that the window stays alive whatever a
 /// picture costs.
-FramePainter::Clock::time_point FramePainter::deadline(double rate, int reduction) const
+Timer FramePainter::deadline(double rate, int reduction) const
 {
   const bool waits = rate < ImageReduction::StillRate || this->Caster.options().deterministic ||
                      reduction >= ImageReduction::Largest;
-  const std::chrono::duration<double> seconds(1 / rate);
-  return waits ? Clock::time_point::max()
-               : Clock::now() + std::chrono::duration_cast<Clock::duration>(seconds);
+  return Timer(waits ? Unlimited : 1 / rate);
 }
 
 /// Renders among what is `around` the picture's pixels; false, and there is no picture, when it was

@@ -3,6 +3,7 @@
 
 #include "Core/Render/Renderer.h"
 #include "Core/Render/Scene/Frame.h"
+#include "Core/Timer.h"
 #include "Representations/Mapper/Pictures/CurrentRenderer.h"
 #include "Representations/Mapper/Pictures/ImageReduction.h"
 #include "Representations/Mapper/Pictures/PaintSettings.h"
@@ -15,7 +16,6 @@
 #include "Representations/Mapper/Window/Surroundings.h"
 #include "Representations/Mapper/Window/TranslucentPeeler.h"
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -79,20 +79,19 @@ private:
   std::string prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer, vtkVolume* volume,
                       const PaintSettings& settings, Frame& frame);
   void makeRenderer(const vtkINRDataArray& array, const RendererOptions& options);
-  using Clock = std::chrono::steady_clock;
 
   bool draw(const Job& job);
   ImageReduction& resolution(RenderMode mode)
   {
     return mode == RenderMode::PathTracing ? this->Paths : this->Rays;
   }
-  Clock::time_point deadline(double rate, int reduction) const;
+  Timer deadline(double rate, int reduction) const;
   Surroundings reduced(const Surroundings& around, const Viewport& viewport, int reduction) const;
   bool render(const Job& job, const Surroundings& around, int reduction,
               const std::function<bool()>& keepGoing);
   /// The same of all processes, each with its part.
   bool renderTogether(const Job& job, const Surroundings& around, int reduction,
-                      Clock::time_point deadline);
+                      const Timer& deadline);
   bool blend(const Job& job, const Surroundings& around);
   /// The picture for a selection.
   const ViewPicture& look(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume);
