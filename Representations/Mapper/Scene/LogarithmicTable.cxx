@@ -52,6 +52,7 @@ vtkSmartPointer<vtkColorTransferFunction> OverLogarithms(vtkColorTransferFunctio
   result->RemoveAllPoints();
   result->SetScaleToLinear();
   // Which VTK does not copy.
+  result->SetAllowDuplicateScalars(function->GetAllowDuplicateScalars()); // colours that leap
   result->SetUseBelowRangeColor(function->GetUseBelowRangeColor());
   result->SetBelowRangeColor(function->GetBelowRangeColor());
   result->SetUseAboveRangeColor(function->GetUseAboveRangeColor());

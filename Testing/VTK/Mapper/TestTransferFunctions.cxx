@@ -177,6 +177,26 @@ TEST_F(TransferFunctions, OfALogScaleKeepWhatTheFunctionsAreSetTo)
   EXPECT_NEAR(LookUp(table, 100).a, 0.5, 0.002);
 }
 
+/// Two nodes at one value, between which the colour leaps, as ParaView's maps may have them.
+TEST_F(TransferFunctions, OfALogScaleLeapWhereTheFunctionDoes)
+{
+  this->colour->AllowDuplicateScalarsOn();
+  this->colour->AddRGBPoint(1, 0, 0, 0);
+  this->colour->AddRGBPoint(60, 1, 0, 0);
+  this->colour->AddRGBPoint(60, 0, 0, 1);
+  this->colour->AddRGBPoint(240, 1, 1, 1);
+  this->colour->SetScaleToLog10();
+  this->opacity->AddPoint(1, 0.5);
+  this->opacity->AddPoint(240, 0.5);
+  const auto table = inr::BuildTransferFunction(this->property);
+  for (const double value : {2.0, 30.0, 59.0, 61.0, 120.0}) {
+    double rgb[3];
+    this->colour->GetColor(value, rgb);
+    ExpectColour(LookUp(table, value), rgb[0], rgb[1], rgb[2], 0.005);
+  }
+  EXPECT_GT(LookUp(table, 59).r, 0.99);
+}
+
 /// Which takes time for nodes and for entries, not for each node at each entry.
 TEST_F(TransferFunctions, OfALogScaleMayHaveTenThousandOpacities)
 {
