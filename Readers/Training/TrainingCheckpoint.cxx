@@ -79,8 +79,10 @@ void TrainingCheckpoint::remove(int rank)
 inr::Error TrainingCheckpoint::complete(const inr::Error& error)
 {
   const std::string text = error.what();
+  std::error_code ignored;
+  const bool isThere = std::filesystem::exists(this->Path, ignored); // and not taken away
   // After a divergence the same would come again.
-  if (!this->Ours || error.code() == inr::ErrorCode::InvalidModel ||
+  if (!this->Ours || !isThere || error.code() == inr::ErrorCode::InvalidModel ||
       text.find(this->Path) != std::string::npos) {
     return error;
   }

@@ -115,6 +115,9 @@ bool CheckpointKeeper::isDue() const
              std::max(this->Options.interval, LeastShare * this->WriteSeconds);
 }
 
+/// Whether the checkpoint of before is there still, which somebody may have taken away.
+bool CheckpointKeeper::isKept() const { return this->HasWritten && IsFile(this->Options.path); }
+
 /// Replaces the checkpoint; says why it cannot, and otherwise nothing.
 std::string CheckpointKeeper::replace(const TrainingState& state, const StateArrays& arrays)
 {
@@ -144,9 +147,9 @@ void CheckpointKeeper::write(const TrainingState& state, const StateArrays& arra
 {
   const std::string problem = this->replace(state, arrays);
   if (!problem.empty() && !std::exchange(this->HasFailed, true)) {
-    this->tell(CheckpointEvent::Failed, problem + "; the training goes on, " +
-                                            (this->HasWritten ? "the checkpoint of before is kept"
-                                                              : "without a checkpoint"));
+    this->tell(CheckpointEvent::Failed,
+               problem + "; the training goes on, " +
+                   (this->isKept() ? "the checkpoint of before is kept" : "without a checkpoint"));
   }
 }
 
@@ -167,7 +170,7 @@ std::string CheckpointKeeper::writeAtStop(const TrainingState& state, const Stat
     return "its " + std::to_string(state.steps) + " steps are kept in '" + this->Options.path +
            "', from where the same training goes on";
   }
-  return problem + (this->HasWritten ? "; the checkpoint of before is kept" : "; nothing was kept");
+  return problem + (this->isKept() ? "; the checkpoint of before is kept" : "; nothing was kept");
 }
 
 void CheckpointKeeper::tell(CheckpointEvent event, const std::string& text) const

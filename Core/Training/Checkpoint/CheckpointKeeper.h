@@ -47,6 +47,7 @@ public:
   std::string writeAtStop(const TrainingState& state, const StateArrays& arrays);
 
 private:
+  bool isKept() const;
   std::string replace(const TrainingState& state, const StateArrays& arrays);
   void tell(CheckpointEvent event, const std::string& text) const;
 

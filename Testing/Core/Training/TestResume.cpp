@@ -339,6 +339,25 @@ TEST_F(Resume, GoesOnWithoutACheckpointWhereNoneCanBeWritten)
   EXPECT_NE(this->stopAfter(2, options).find("No such file"), std::string::npos);
 }
 
+TEST_F(Resume, DoesNotSayThatWhatIsGoneIsKept)
+{
+  const std::string folder = this->Folder.file("folder");
+  std::filesystem::create_directory(folder);
+  inr::TrainingOptions options = this->options(300);
+  options.checkpoint.path = folder + "/checkpoint";
+  options.checkpoint.interval = 0.01;
+  std::string said;
+  options.checkpoint.tell = [&](CheckpointEvent event, const std::string& text) {
+    if (event == CheckpointEvent::Written) {
+      std::filesystem::remove_all(folder);
+    } else {
+      said += text;
+    }
+  };
+  EXPECT_EQ(this->train(options)->training->steps, 300u);
+  EXPECT_NE(said.find("the training goes on, without a checkpoint"), std::string::npos) << said;
+}
+
 TEST_F(Resume, ClearsAwayWhatAKilledProcessLeft)
 {
   const std::string abandoned = this->Path + ".4194305.0.tmp"; // above the largest process number
