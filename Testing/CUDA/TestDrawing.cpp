@@ -6,6 +6,7 @@
 #include "Testing/CUDA/SmallCache.h"
 
 #include <algorithm>
+#include <atomic>
 #include <set>
 #include <tuple>
 
@@ -188,7 +189,7 @@ TEST_P(Drawing, TracesThePathsOfTheCpu)
 /// Draws, but not for ever.
 Drawn DrawnInTheEnd(const inr::Frame& frame, const inr::RendererOptions& options)
 {
-  int asked = 0;
+  std::atomic<int> asked{0};
   const auto keepGoing = [&] { return ++asked < 20000; };
   inr::Renderer renderer = RendererOf(options);
   Drawn drawn;

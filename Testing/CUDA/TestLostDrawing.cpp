@@ -5,6 +5,8 @@
 #include "Testing/CUDA/EmulatedRenderers.h"
 #include "Testing/CUDA/FailingMachine.h"
 
+#include <atomic>
+
 namespace test::lost_drawing {
 
 /// Infers as the emulated one does, and draws on a failing machine.
@@ -119,7 +121,7 @@ TEST(LostDrawing, StopsOnRequest)
     inr::Renderer renderer = RendererOf(OptionsWith(Device()));
     inr::Image image;
     for (int most = 0; most < 4; ++most) {
-      int asked = 0;
+      std::atomic<int> asked{0};
       const auto stopAfterSome = [&] { return asked++ < most; };
       EXPECT_THROW(renderer.render(frame, image, nullptr, stopAfterSome), inr::Error) << most;
     }

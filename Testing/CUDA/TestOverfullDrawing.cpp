@@ -6,6 +6,7 @@
 #include "Testing/CUDA/OverfullFrames.h"
 
 #include <array>
+#include <atomic>
 #include <vector>
 
 namespace test::overfull_drawing {
@@ -77,7 +78,7 @@ TEST_P(OverfullDrawing, GoesOnBetweenTheSurfacesOfAStep)
   const Drawn truth = Draw(frame, RoomFor(GetParam(), 0));
   inr::Renderer renderer = RendererOf(RoomFor(GetParam(), inr::BrickCache::FewestBricks));
   inr::Image image;
-  int asked = 0;
+  std::atomic<int> asked{0};
   renderer.render(frame, image, nullptr, [&] { return ++asked < 1000000; });
   EXPECT_EQ(image.pixels, truth.rgba.pixels);
   EXPECT_FALSE(renderer.acceleratorFailure());

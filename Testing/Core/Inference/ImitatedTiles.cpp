@@ -28,7 +28,8 @@ struct Unit
 
 thread_local Unit Tiles;
 
-void Require(bool fine, const char* instruction, const std::string& what)
+/// Takes no memory where all is fine: in a signal's handler nothing may.
+void Require(bool fine, const char* instruction, const char* what)
 {
   if (!fine) {
     throw TileFault(std::string(instruction) + ": " + what);
@@ -37,11 +38,10 @@ void Require(bool fine, const char* instruction, const std::string& what)
 
 void RequireTile(int tile, const char* instruction)
 {
-  const std::string name = "tile " + std::to_string(tile);
   Require(Tiles.configured, instruction, "no tiles are configured");
-  Require(0 <= tile && tile < TileCount, instruction, "there is no " + name);
-  Require(Tiles.rows(tile) > 0, instruction, name + " is not configured");
-  Require(Tiles.bytes(tile) % 4 == 0, instruction, name + " has no whole columns");
+  Require(0 <= tile && tile < TileCount, instruction, "there is no such tile");
+  Require(Tiles.rows(tile) > 0, instruction, "a tile is not configured");
+  Require(Tiles.bytes(tile) % 4 == 0, instruction, "a tile has no whole columns");
 }
 
 void RequireShapes(const inr::TileShapes& shapes)

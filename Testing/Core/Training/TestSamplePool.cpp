@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <thread>
 
 namespace test::sample_pool {
@@ -34,7 +35,7 @@ public:
   /// All blocks again, as fast as they are wanted, until step `last` is prepared.
   void goOnTo(std::uint64_t last)
   {
-    bool done = false;
+    std::atomic<bool> done{false};
     std::thread trainer([&] {
       this->Samples.prepare({last, Planned}, inr::StopCheck());
       done = true;
