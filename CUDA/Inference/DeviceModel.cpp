@@ -112,7 +112,7 @@ DeviceModel::DeviceModel(ModelPointer model, const Device& device, Precision pre
       return;
     }
   }
-  RequireValid(*this->Source);
+  CheckedLayout(*this->Source); // throws where it is not valid
   this->Plain.emplace(*this->Source, device.ordinal, stream);
 }
 

@@ -114,23 +114,6 @@ const char* NameOf(const FloatNumbers& /*numbers*/) { return "by tensor cores"; 
 
 } // namespace
 
-void RequireValid(const Model& model)
-{
-  const Layout layout(model.description);
-  if (layout.parameterCount != model.parameters.size()) {
-    throw Error(ErrorCode::InvalidModel,
-                "the description asks for " + std::to_string(layout.parameterCount) +
-                    " parameters, the model has " + std::to_string(model.parameters.size()));
-  }
-  const auto bad = std::find_if(model.parameters.begin(), model.parameters.end(),
-                                [](float parameter) { return !std::isfinite(parameter); });
-  if (bad != model.parameters.end()) {
-    throw Error(ErrorCode::InvalidModel,
-                "parameter " + std::to_string(bad - model.parameters.begin()) +
-                    " of the model is " + std::to_string(*bad) + "; train it again");
-  }
-}
-
 std::string WhyNotFused(const Model& model)
 {
   const NetworkDescription& network = model.description.network;
@@ -160,13 +143,12 @@ PackedModel<Numbers>::PackedModel(const Model& model, bool withFeatures)
       Hidden(model.description.network.activation),
       Output(model.description.network.outputActivation)
 {
-  RequireValid(model);
+  const Layout layout = CheckedLayout(model);
   const std::string reason = WhyNot(Numbers(), model);
   if (!reason.empty()) {
     throw Error(ErrorCode::Unsupported,
                 std::string("the model cannot be evaluated ") + NameOf(Numbers()) + ": " + reason);
   }
-  const Layout layout(model.description);
   const float* const parameters = model.parameters.data();
   const ModelViewStorage views(model.description, layout, parameters);
   this->levels.assign(views.view().levels, views.view().levels + views.view().levelCount);

@@ -10,10 +10,6 @@
 namespace inr {
 namespace cuda {
 
-/// Throws Error(InvalidModel) where Core's evaluator would: when the parameter count does not fit
-/// the description or a parameter is NaN or infinite.
-void RequireValid(const Model& model);
-
 /// Why a fused kernel cannot evaluate a model, or nothing: layers of more than MostFusedNeurons.
 std::string WhyNotFused(const Model& model);
 
@@ -29,7 +25,7 @@ template <class Numbers> struct PackedModel
   using Feature = typename Numbers::Feature;
   using Weight = typename Numbers::Weight;
 
-  /// Throws what RequireValid throws, and Error(Unsupported) with WhyNotHalf, or WhyNotFused.
+  /// Throws what CheckedLayout throws, and Error(Unsupported) with WhyNotHalf, or WhyNotFused.
   /// `features`: whether they are packed, too.
   explicit PackedModel(const Model& model, bool features = true);
 

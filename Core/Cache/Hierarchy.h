@@ -57,9 +57,6 @@ public:
   /// Position p in voxels of level 0 (voxel i at i) is p * scale + bias in voxels of `level`.
   const glm::dvec3& scale(int level) const { return this->at(level).scale; }
   const glm::dvec3& bias(int level) const { return this->at(level).bias; }
-  /// And p * brickScale + brickBias in bricks, rounded down, is the brick that it lies in.
-  const glm::dvec3& brickScale(int level) const { return this->at(level).brickScale; }
-  const glm::dvec3& brickBias(int level) const { return this->at(level).brickBias; }
 
   using Location = BrickLocation;
   /// Where `level` keeps the field at a position in voxels of level 0, clamped to the voxels.

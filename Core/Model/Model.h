@@ -80,6 +80,10 @@ struct Model
 
 using ModelPointer = std::shared_ptr<const Model>;
 
+/// How the parameters are laid out. Throws Error(InvalidModel) when their count does not fit the
+/// description, or one of them is NaN or infinite.
+Layout CheckedLayout(const Model& model);
+
 /// Places along each axis that the field tells apart, between which it is smooth: the points of its
 /// finest lattice, or the voxels that it was trained from where those are fewer, as samples between
 /// them are linear.

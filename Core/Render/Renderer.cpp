@@ -119,7 +119,7 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-std::int64_t Renderer::majorantBuilds() const { return this->Self->MajorantBuilds; }
+std::int64_t Renderer::colorsVersion() const { return this->Self->MajorantBuilds; }
 
 std::int64_t Renderer::cacheBytes() const
 {

@@ -83,9 +83,9 @@ public:
   /// high, or a logarithmic range that is not positive.
   void setTransferFunction(const TransferFunction& transferFunction);
 
-  /// How often the majorants have been rebuilt (for tests and statistics): for a transfer function
-  /// or a frame whose Blending is not that of the one before.
-  std::int64_t majorantBuilds() const;
+  /// Rises by one whenever what pictures depend on of the colours changes, and the majorants are
+  /// rebuilt: for a transfer function or a frame whose Blending is not that of the one before.
+  std::int64_t colorsVersion() const;
 
   /// Bytes in use by the caches of all renderers of the process, their tables and queues: at most
   /// the largest of their CacheOptions::bytes. (One that comes while the others draw with all of
@@ -119,9 +119,9 @@ public:
   /// `samples`, when given, receives two channels: the samples that each pixel took and the mean of
   /// the levels of the cache that they came from, -1 where there were none; it is left empty when
   /// paths are traced or there is no cache; where more bricks are at hand, rays look further ahead,
-  /// and take samples that come to nothing. `keepGoing` is asked between tiles, from any thread;
-  /// returning false throws Error(Cancelled). Throws Error(InvalidArgument) for a frame outside its
-  /// documented ranges, singular matrices or a missing transfer function.
+  /// and take samples that come to nothing. `keepGoing` is asked between tiles, by several
+  /// threads at once; returning false throws Error(Cancelled). Throws Error(InvalidArgument) for a
+  /// frame outside its documented ranges, singular matrices or a missing transfer function.
   FrameStatistics render(const Frame& frame, Image& rgba, Image* depth = nullptr,
                          const std::function<bool()>& keepGoing = {}, Image* samples = nullptr);
 

@@ -13,7 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
-/// Points of a presented grid that some array holds: inclusive limits as in VTK's extents.
+/// Points of a presented grid that some array holds: the first one, and how many along each axis.
 struct GridPart
 {
   glm::i64vec3 first{0};

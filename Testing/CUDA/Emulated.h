@@ -35,8 +35,7 @@ public:
         return;
       }
     }
-    inr::cuda::RequireValid(*this->Source);
-    const inr::Layout layout(this->Source->description);
+    const inr::Layout layout = inr::CheckedLayout(*this->Source);
     const inr::AlignedVector<float>& parameters = this->Source->parameters;
     this->Features.assign(parameters.begin() + static_cast<std::ptrdiff_t>(layout.gridOffset),
                           parameters.end());

@@ -159,7 +159,7 @@ DepictedScene FramePainter::depicted(const Frame& scene, vtkRenderer* renderer,
                                      vtkVolume* volume) const
 {
   // A group's processes have to agree, and do not tell each other when something changed.
-  return {scene, this->Caster->majorantBuilds(),
+  return {scene, this->Caster->colorsVersion(),
           this->Group.isAlone() ? TimeOfChange(renderer, volume) : 0};
 }
 
@@ -304,7 +304,7 @@ bool FramePainter::render(const Job& job, const Surroundings& around, int reduct
   const std::vector<float>& depth = ownDepth.empty() ? around.depth : ownDepth;
   frame.opaqueDepth = depth.empty() ? nullptr : depth.data();
   frame.layers = around.layers;
-  if (job.picture.showAgain(frame, this->CountSamples, this->Caster->majorantBuilds())) {
+  if (job.picture.showAgain(frame, this->CountSamples, this->Caster->colorsVersion())) {
     return true;
   }
   PaintedFrame& last = job.picture.last();
@@ -329,7 +329,7 @@ bool FramePainter::render(const Job& job, const Surroundings& around, int reduct
   this->resolution(frame.mode)
       .record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
   if (IsFinal(last.statistics)) {
-    job.picture.finish(frame, this->CountSamples, this->Caster->majorantBuilds());
+    job.picture.finish(frame, this->CountSamples, this->Caster->colorsVersion());
   }
   return true;
 }

@@ -11,7 +11,7 @@ namespace inr {
 class PictureKey
 {
 public:
-  /// `colors`: Renderer::majorantBuilds(), which rises whenever they change.
+  /// `colors`: Renderer::colorsVersion(), which rises whenever they change.
   PictureKey(const Frame& frame, bool countsSamples, std::int64_t colors);
   PictureKey(const PictureKey&) = delete;
   PictureKey& operator=(const PictureKey&) = delete;

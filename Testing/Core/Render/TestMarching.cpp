@@ -140,9 +140,9 @@ TEST(Marching, MajorantsAreRebuiltOnceForAChange)
   renderer.setTransferFunction(OpacityRamp(0.5f));
   renderer.setTransferFunction(OpacityRamp(0.5f));
   Render(renderer, Diagonal(8));
-  EXPECT_EQ(renderer.majorantBuilds(), 1);
+  EXPECT_EQ(renderer.colorsVersion(), 1);
   renderer.setTransferFunction(OpacityRamp(0.6f));
-  EXPECT_EQ(renderer.majorantBuilds(), 2);
+  EXPECT_EQ(renderer.colorsVersion(), 2);
 }
 
 TEST(Marching, DepthIsWhereOpacityReachesOneHalf)

@@ -282,11 +282,11 @@ TEST(Projection, RebuildsRangesForAnotherModeOnly)
   const BlendScene scene;
   inr::Renderer renderer = scene.renderer(true, true);
   Render(renderer, FrameOf(scene, BlendMode::Composite));
-  EXPECT_EQ(renderer.majorantBuilds(), 1);
+  EXPECT_EQ(renderer.colorsVersion(), 1);
   const inr::Image before = Render(renderer, FrameOf(scene, BlendMode::Composite));
   Render(renderer, FrameOf(scene, BlendMode::MaximumIntensity));
   Render(renderer, FrameOf(scene, BlendMode::MaximumIntensity));
-  EXPECT_EQ(renderer.majorantBuilds(), 2);
+  EXPECT_EQ(renderer.colorsVersion(), 2);
   EXPECT_EQ(Render(renderer, FrameOf(scene, BlendMode::Composite)).pixels, before.pixels);
 }
 
