@@ -54,36 +54,19 @@ int ReasonToRefuse(const std::string& target)
   return access(target.c_str(), W_OK) == 0 ? 0 : errno;
 }
 
-// What names of temporary files for a target of this name begin with: so much of it that they are
-// not too long where it is not. In folders of very long names, several may have it in common.
-std::string TemporaryBegin(const std::string& name)
-{
-  constexpr std::size_t longest = 255 - sizeof(".2147483647.999.tmp") + 1; // NAME_MAX on Linux
-  if (name.size() <= longest) {
-    return name;
-  }
-  std::size_t end = longest;
-  while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) { // inside a character
-    --end;
-  }
-  return name.substr(0, end);
-}
-
 std::string TemporaryStem(const std::string& target, pid_t process)
 {
-  const fs::path path(target);
-  const std::string begin = TemporaryBegin(path.filename().string());
-  return (path.parent_path() / begin).string() + "." + std::to_string(process) + ".";
+  return target + "." + std::to_string(process) + ".";
 }
 
-// Whose temporary file `name` is, of those that begin with `begin`; 0 = it is none.
-pid_t WriterOf(const std::string& name, const std::string& begin)
+// Whose temporary file for `target` has this name; 0 = it is none.
+pid_t WriterOf(const std::string& name, const std::string& target)
 {
   long process = 0;
   int attempt = 0;
   const std::string tail =
-      name.size() > begin.size() + 1 && name.compare(0, begin.size(), begin) == 0
-          ? name.substr(begin.size())
+      name.size() > target.size() + 1 && name.compare(0, target.size(), target) == 0
+          ? name.substr(target.size())
           : "";
   const int read = std::sscanf(tail.c_str(), ".%ld.%d.tmp", &process, &attempt);
   const bool whole = read == 2 && process > 0 &&
@@ -194,12 +177,11 @@ void RemoveAbandonedFiles(const std::string& path)
 {
   const fs::path target = FollowLinks(path);
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const std::string begin = TemporaryBegin(target.filename().string());
   std::error_code ignored;
   std::vector<fs::path> abandoned; // what is removed while a folder is read may end the reading
   for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
-    const pid_t process = WriterOf(entry->path().filename().string(), begin);
+    const pid_t process = WriterOf(entry->path().filename().string(), target.filename().string());
     if (process != 0 && (process == getpid() || IsGone(process))) {
       abandoned.push_back(entry->path());
     }

@@ -135,44 +135,6 @@ TEST_F(AtomicFileTest, LinksToWhatIsNotThereYetAreFollowed)
   ExpectRefused(this->path("circle"), "Too many levels of symbolic links");
 }
 
-/// Nor need the temporary file's be longer.
-TEST_F(AtomicFileTest, NamesMayBeAsLongAsTheFileSystemHasThem)
-{
-  const std::string plain(255, 'n');
-  std::string accents = "a";
-  for (int k = 0; k < 127; ++k) {
-    accents += "\xc3\xa9"; // one character
-  }
-  for (const std::string& name : {plain, accents}) {
-    const std::string path = this->path(name.c_str());
-    Write(path, "old");
-    inr::AtomicFile file(path);
-    EXPECT_LE(fs::path(file.temporaryPath()).filename().string().size(), 255u);
-    file.write("new", 3);
-    file.commit();
-    EXPECT_EQ(Read(path), "new");
-  }
-  EXPECT_EQ(this->entries(), 2);
-  ExpectRefused(this->path((plain + "n").c_str()), "File name too long");
-}
-
-/// What a process that is gone has left is found by its name, shortened or not.
-TEST_F(AtomicFileTest, LeftoversOfLongNamesAreRemoved)
-{
-  for (const std::string& name : {std::string("short"), std::string(255, 'n')}) {
-    const std::string path = this->path(name.c_str());
-    std::string left;
-    {
-      inr::AtomicFile file(path);
-      left = file.temporaryPath();
-    }
-    std::ofstream(left) << "half";
-    inr::RemoveAbandonedFiles(path);
-    EXPECT_FALSE(fs::exists(left)) << left;
-  }
-  EXPECT_EQ(this->entries(), 0);
-}
-
 TEST_F(AtomicFileTest, RefusalsNamePathAndReason)
 {
   ExpectRefused(this->path("no/such/folder"), "No such file or directory");
