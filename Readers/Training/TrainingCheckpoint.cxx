@@ -79,8 +79,8 @@ void TrainingCheckpoint::remove(int rank)
 inr::Error TrainingCheckpoint::complete(const inr::Error& error)
 {
   const std::string text = error.what();
-  std::error_code ignored;
-  const bool isThere = std::filesystem::exists(this->Path, ignored); // and not taken away
+  std::error_code unknown; // then it is taken to be there
+  const bool isThere = std::filesystem::exists(this->Path, unknown) || unknown;
   // After a divergence the same would come again.
   if (!this->Ours || !isThere || error.code() == inr::ErrorCode::InvalidModel ||
       text.find(this->Path) != std::string::npos) {

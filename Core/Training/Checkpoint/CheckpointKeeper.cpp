@@ -116,7 +116,7 @@ bool CheckpointKeeper::isDue() const
 }
 
 /// Whether the checkpoint of before is there still, which somebody may have taken away.
-bool CheckpointKeeper::isKept() const { return this->HasWritten && IsFile(this->Options.path); }
+bool CheckpointKeeper::isKept() const { return this->HasWritten && Exists(this->Options.path); }
 
 /// Replaces the checkpoint; says why it cannot, and otherwise nothing.
 std::string CheckpointKeeper::replace(const TrainingState& state, const StateArrays& arrays)
