@@ -9,7 +9,6 @@
 #include "Core/Random.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace inr {

@@ -119,7 +119,7 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-std::int64_t Renderer::colorsVersion() const { return this->Self->MajorantBuilds; }
+std::int64_t Renderer::colorsVersion() const { return this->Self->ColorsVersion; }
 
 std::int64_t Renderer::cacheBytes() const
 {
@@ -200,7 +200,7 @@ void Renderer::Implementation::build()
   if (this->Drawn) {
     this->Drawn->setColors(this->Cells, this->Colors->lookup());
   }
-  ++this->MajorantBuilds;
+  ++this->ColorsVersion;
   this->Built = true;
 }
 

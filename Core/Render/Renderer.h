@@ -119,9 +119,10 @@ public:
   /// `samples`, when given, receives two channels: the samples that each pixel took and the mean of
   /// the levels of the cache that they came from, -1 where there were none; it is left empty when
   /// paths are traced or there is no cache; where more bricks are at hand, rays look further ahead,
-  /// and take samples that come to nothing. `keepGoing` is asked between tiles, by several
-  /// threads at once; returning false throws Error(Cancelled). Throws Error(InvalidArgument) for a
-  /// frame outside its documented ranges, singular matrices or a missing transfer function.
+  /// and take samples that come to nothing. `keepGoing` is asked between tiles, possibly by
+  /// several threads at once; returning false throws Error(Cancelled). Throws
+  /// Error(InvalidArgument) for a frame outside its documented ranges, singular matrices or a
+  /// missing transfer function.
   FrameStatistics render(const Frame& frame, Image& rgba, Image* depth = nullptr,
                          const std::function<bool()>& keepGoing = {}, Image* samples = nullptr);
 

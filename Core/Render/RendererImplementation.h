@@ -145,7 +145,7 @@ struct Renderer::Implementation
   PerView<PathPicture> Paths;             ///< while paths are traced: 64 bytes a pixel
                                           ///< each, and 20 for each translucent layer
   std::optional<LevelChooser> Levels;     ///< once a frame had a tolerance
-  std::int64_t MajorantBuilds = 0;
+  std::int64_t ColorsVersion = 0;
 };
 
 } // namespace inr

@@ -5,7 +5,8 @@
 
 namespace inr {
 
-/// Wall time since construction, in seconds, and what a training that goes on had taken before.
+/// Wall time since construction, in seconds, and what had passed before: until the checkpoint that
+/// a training goes on from, or in the survey of its data.
 class TrainingClock
 {
 public:

@@ -280,10 +280,9 @@ void TransferFunctionChange(const inr::ModelPointer& model, const Look& look)
       changed->macroCells.ranges[k] = {low, std::min(1.0f, low + 0.2f)};
     }
     inr::Renderer renderer(changed, Cached());
-    const auto start = std::chrono::steady_clock::now();
+    const inr::Timer timer;
     renderer.setTransferFunction(look.function);
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = timer.seconds();
     const auto cells = static_cast<double>(changed->macroCells.ranges.size());
     Report("majorants of " + std::to_string(changed->macroCells.ranges.size()) + " cells",
            1000 * seconds, "ms", "lower", Target(100));

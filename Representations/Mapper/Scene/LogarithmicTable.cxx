@@ -52,11 +52,11 @@ vtkSmartPointer<vtkColorTransferFunction> OverLogarithms(vtkColorTransferFunctio
   result->RemoveAllPoints();
   result->SetScaleToLinear();
   // Which VTK does not copy.
-  result->SetAllowDuplicateScalars(function->GetAllowDuplicateScalars()); // colours that leap
   result->SetUseBelowRangeColor(function->GetUseBelowRangeColor());
   result->SetBelowRangeColor(function->GetBelowRangeColor());
   result->SetUseAboveRangeColor(function->GetUseAboveRangeColor());
   result->SetAboveRangeColor(function->GetAboveRangeColor());
+  result->AllowDuplicateScalarsOn(); // whatever the function allows now: none of its nodes is lost
   for (int k = 0; k < function->GetSize(); ++k) {
     double node[6]; // place, red, green, blue, midpoint, sharpness
     function->GetNodeValue(k, node);

@@ -356,6 +356,11 @@ TEST_F(Resume, DoesNotSayThatWhatIsGoneIsKept)
   };
   EXPECT_EQ(this->train(options)->training->steps, 300u);
   EXPECT_NE(said.find("the training goes on, without a checkpoint"), std::string::npos) << said;
+
+  std::filesystem::create_directory(folder);
+  const std::string told = this->stopAfter(200, options);
+  EXPECT_FALSE(std::filesystem::exists(folder)) << "there was no checkpoint";
+  EXPECT_NE(told.find("; nothing was kept"), std::string::npos) << told;
 }
 
 TEST_F(Resume, ClearsAwayWhatAKilledProcessLeft)

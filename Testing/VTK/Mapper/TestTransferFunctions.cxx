@@ -188,13 +188,16 @@ TEST_F(TransferFunctions, OfALogScaleLeapWhereTheFunctionDoes)
   this->colour->SetScaleToLog10();
   this->opacity->AddPoint(1, 0.5);
   this->opacity->AddPoint(240, 0.5);
-  const auto table = inr::BuildTransferFunction(this->property);
-  for (const double value : {2.0, 30.0, 59.0, 61.0, 120.0}) {
-    double rgb[3];
-    this->colour->GetColor(value, rgb);
-    ExpectColour(LookUp(table, value), rgb[0], rgb[1], rgb[2], 0.005);
+  for (const bool allowed : {true, false}) { // what is there stays
+    this->colour->SetAllowDuplicateScalars(allowed);
+    const auto table = inr::BuildTransferFunction(this->property);
+    for (const double value : {2.0, 30.0, 59.0, 61.0, 120.0}) {
+      double rgb[3];
+      this->colour->GetColor(value, rgb);
+      ExpectColour(LookUp(table, value), rgb[0], rgb[1], rgb[2], 0.005);
+    }
+    EXPECT_GT(LookUp(table, 59).r, 0.99);
   }
-  EXPECT_GT(LookUp(table, 59).r, 0.99);
 }
 
 /// Which takes time for nodes and for entries, not for each node at each entry.

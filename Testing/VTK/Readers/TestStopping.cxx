@@ -198,3 +198,43 @@ TEST_F(Writer, StopsOnASignalAndHandsItOn)
   EXPECT_EQ(SignalsSeen, 2);
   sigaction(SIGTERM, &before, nullptr);
 }
+
+namespace {
+
+/// Takes a folder away as soon as there is a checkpoint in it.
+struct Remover
+{
+  std::filesystem::path folder;
+  std::filesystem::path checkpoint;
+
+  static void Watch(vtkObject*, unsigned long, void* data, void*)
+  {
+    const auto* self = static_cast<Remover*>(data);
+    if (std::filesystem::exists(self->checkpoint)) {
+      std::filesystem::remove_all(self->folder);
+    }
+  }
+};
+
+} // namespace
+
+TEST_F(Writer, DoesNotPointToACheckpointThatIsGone)
+{
+  const std::filesystem::path folder(this->Folder / "folder");
+  const std::string model = (folder / "saved.inr").string();
+  std::filesystem::create_directory(folder);
+  Remover remover{folder, model + ".checkpoint"};
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(&remover);
+  command->SetCallback(Remover::Watch);
+  this->Algorithm->AddObserver(vtkCommand::ProgressEvent, command);
+  this->Algorithm->SetFileName(model.c_str());
+  this->Algorithm->SetCheckpointInterval(0.01);
+  this->Algorithm->SetMaximumSteps(1000);
+
+  const MessageCapture messages;
+  this->write(MakeImage({20, 20, 20}, VTK_FLOAT, 0, 1));
+  EXPECT_FALSE(std::filesystem::exists(folder)) << "there was no checkpoint";
+  EXPECT_TRUE(messages.onlyError("No such file or directory")) << messages.text();
+  EXPECT_EQ(messages.text().find("is kept"), std::string::npos) << messages.text();
+}
