@@ -194,7 +194,8 @@ TEST_P(PathsOfTwoViews, ShowNothingOfEachOther)
       EXPECT_EQ(PixelsOfBoth(this->shown[0], this->shown[1]), 0) << call;
     }
   }
-  int asked = 0; // once without a limit, but stopped, when the paths of some tiles have ended
+  std::atomic<int> asked{
+      0}; // once without a limit, but stopped, when the paths of some tiles have ended
   EXPECT_THROW(
       renderer.render(this->frames[0], this->shown[0], nullptr, [&] { return ++asked < 4; }),
       inr::Error);
@@ -246,7 +247,7 @@ TEST_P(OverfullDrawing, GoesOnWhenItWasStopped)
     inr::Image image;
     for (int call = 0; call < 3; ++call) {
       renderer.render(Hurried(frame), image);
-      int asked = 0;
+      std::atomic<int> asked{0};
       const auto stopAfterOne = [&] { return asked++ < 1; };
       EXPECT_THROW(renderer.render(frame, image, nullptr, stopAfterOne), inr::Error) << call;
     }
@@ -264,7 +265,7 @@ TEST_P(OverfullDrawing, GoesOnInTimeWithWhatWasStopped)
   for (int most = 1; most < 100; most += 13) {
     inr::Renderer renderer = RendererOf(RoomFor(GetParam(), 20));
     inr::Image image;
-    int asked = 0;
+    std::atomic<int> asked{0};
     const auto stopAfterSome = [&] { return asked++ < most; };
     EXPECT_THROW(renderer.render(frame, image, nullptr, stopAfterSome), inr::Error) << most;
     End(renderer, Hurried(frame), image);

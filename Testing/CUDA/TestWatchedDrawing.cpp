@@ -8,6 +8,7 @@
 #include "Testing/CUDA/OverfullFrames.h"
 
 #include <algorithm>
+#include <atomic>
 #include <vector>
 
 namespace test::watched_drawing {
@@ -186,7 +187,7 @@ TEST(WatchedDrawing, IsProvenByItsOwnPictures)
   for (int most = 0; most < 20; ++most) {
     inr::Renderer renderer = RendererOf(Watched(std::make_shared<FailingOrders>()));
     inr::Image image;
-    int asked = 0;
+    std::atomic<int> asked{0};
     const auto stopAfterSome = [&] { return asked++ < most; };
     EXPECT_THROW(renderer.render(frame, image, nullptr, stopAfterSome), inr::Error) << most;
     EXPECT_TRUE(renderer.render(other, image).accelerated) << most;
