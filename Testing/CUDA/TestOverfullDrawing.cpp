@@ -194,8 +194,8 @@ TEST_P(PathsOfTwoViews, ShowNothingOfEachOther)
       EXPECT_EQ(PixelsOfBoth(this->shown[0], this->shown[1]), 0) << call;
     }
   }
-  std::atomic<int> asked{
-      0}; // once without a limit, but stopped, when the paths of some tiles have ended
+  // Once without a limit, but stopped, when the paths of some tiles have ended.
+  std::atomic<int> asked{0};
   EXPECT_THROW(
       renderer.render(this->frames[0], this->shown[0], nullptr, [&] { return ++asked < 4; }),
       inr::Error);
