@@ -3,7 +3,7 @@
 
 #include "CUDA/Device/Device.h"
 #include "CUDA/Inference/Precision.h"
-#include "Core/Cache/Accelerator.h"
+#include "Core/Render/Acceleration/Accelerator.h"
 
 #include <memory>
 #include <string>

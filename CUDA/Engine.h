@@ -4,7 +4,7 @@
 #include "CUDA/Device/Device.h"
 #include "CUDA/Inference/Precision.h"
 #include "Core/Cache/BrickSource.h"
-#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Acceleration/AcceleratedRenderer.h"
 #include "Core/Render/CachedRenderer.h"
 
 #include <memory>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "CUDA/Render/MarchedPicture.h"
-#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Acceleration/AcceleratedRenderer.h"
 #include "Core/Render/Marching/StepTable.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/KeptFrame.h"

@@ -8,7 +8,7 @@
 #include "CUDA/Render/PathTiles.h"
 #include "CUDA/Render/WindowedRays.h"
 #include "Core/Cache/CacheOptions.h"
-#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Acceleration/AcceleratedRenderer.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/KeptFrame.h"
 #include "Core/Render/Tiles/WorkLimit.h"

@@ -5,7 +5,7 @@
 
 #include "CUDA/Render/DeviceColors.h"
 #include "CUDA/Render/Kernels/RenderScene.h"
-#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Acceleration/AcceleratedRenderer.h"
 #include "Core/Render/Marching/PreIntegratedColors.h"
 
 #include <cstdint>

@@ -8,7 +8,7 @@
 #include "CUDA/Render/Kernels/MarchWave.h"
 #include "CUDA/Render/Kernels/PathWave.h"
 #include "CUDA/Render/PathTiles.h"
-#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Acceleration/AcceleratedRenderer.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Timer.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/CachedRenderer.h"
 
-#include "Core/Cache/AcceleratedField.h"
 #include "Core/Error.h"
+#include "Core/Render/Acceleration/AcceleratedField.h"
 #include "Core/Render/Tiles/TileLoop.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 

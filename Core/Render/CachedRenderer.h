@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Cache/Accelerator.h"
 #include "Core/Cache/BrickStore.h"
 #include "Core/Cache/CacheOptions.h"
 #include "Core/Parallel.h"
+#include "Core/Render/Acceleration/Accelerator.h"
 #include "Core/Render/Bricks/SufficientBricks.h"
 #include "Core/Render/KeptPicture.h"
 #include "Core/Render/Marching/StepTable.h"

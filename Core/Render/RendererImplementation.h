@@ -3,7 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
-#include "Core/Render/AcceleratedFrames.h"
+#include "Core/Render/Acceleration/AcceleratedFrames.h"
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Marching/PreIntegratedColors.h"
 #include "Core/Render/Paths/PathPicture.h"

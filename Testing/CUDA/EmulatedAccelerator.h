@@ -4,7 +4,7 @@
 #pragma once
 
 #include "CUDA/Cache/CacheShares.h"
-#include "Core/Cache/Accelerator.h"
+#include "Core/Render/Acceleration/Accelerator.h"
 #include "Testing/CUDA/Emulated.h"
 #include "Testing/CUDA/EmulatedInference.h"
 #include "Testing/CUDA/HostMachine.h"

@@ -4,8 +4,8 @@
 // and fails when it is told to.
 #pragma once
 
-#include "Core/Cache/Accelerator.h"
 #include "Core/Error.h"
+#include "Core/Render/Acceleration/Accelerator.h"
 
 #include <algorithm>
 #include <atomic>

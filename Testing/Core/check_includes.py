@@ -17,7 +17,8 @@ offenders = [f"{path}:{number}: {line.strip()}" for path in files
 
 # See Core/Render/README.md; what lies in none of these folders may include all.
 LAYERS = [f"Core/Render/{name}" for name in
-          ("Scene", "Rays", "Tiles", "MacroCells", "Marching", "Bricks", "Tolerance", "Paths")]
+          ("Scene", "Rays", "Tiles", "MacroCells", "Marching", "Bricks", "Tolerance", "Paths",
+           "Acceleration")]
 BELOW = ["Core", "Core/Model", "Core/Inference", "Core/Cache", "Core/Image"]
 INCLUDE = re.compile(r'^\s*#\s*include\s*"((?:Core|CUDA)(?:/\w+)*)/\w+\.\w+"')
 

@@ -8,12 +8,6 @@
 
 namespace inr {
 
-namespace {
-
-constexpr std::int64_t CellsPerTask = 4096;
-
-} // namespace
-
 LevelChooser::LevelChooser(std::shared_ptr<const Evaluator> field, const glm::i64vec3& dims,
                            const Majorants& cells, int levels, const LineKernel& kernel)
     : Dims(dims), Coarsest(std::min(levels - 1, LevelErrors::Coarsest)),
@@ -92,7 +86,8 @@ bool LevelChooser::measure(const std::vector<std::int64_t>& blocks, const Arena&
 void LevelChooser::chooseSamples(const Arena& arena)
 {
   const auto count = static_cast<std::int64_t>(this->Sampling.size());
-  arena.forEachBlock(count, CellsPerTask, [&](std::int64_t begin, std::int64_t end) {
+  constexpr std::int64_t cellsPerTask = 4096;
+  arena.forEachBlock(count, cellsPerTask, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t cell = begin; cell < end; ++cell) {
       this->Sampling[static_cast<std::size_t>(cell)] =
           this->Rays.meets(cell)

@@ -11,7 +11,6 @@ namespace inr {
 
 namespace {
 
-constexpr std::int64_t CellsPerTask = 4096;
 static_assert(LevelErrors::Coarsest >= LargestCellPower, "what cells ask for is measured");
 
 double LargestOf(const glm::dvec3& edges) { return std::max(edges.x, std::max(edges.y, edges.z)); }
@@ -47,7 +46,8 @@ void PixelErrors::set(const ColorLookup& colors, double step, double stepLength,
   }
   const ColorSensitivity sensitivity(colors, stepLength);
   const auto count = static_cast<std::int64_t>(this->Slopes.size());
-  arena.forEachBlock(count, CellsPerTask, [&](std::int64_t begin, std::int64_t end) {
+  constexpr std::int64_t cellsPerTask = 4096;
+  arena.forEachBlock(count, cellsPerTask, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t cell = begin; cell < end; ++cell) {
       const auto at = static_cast<std::size_t>(cell);
       this->Slopes[at] = sensitivity.slopes(this->Cells.range(cell));

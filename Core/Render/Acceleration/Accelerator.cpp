@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Cache/Accelerator.h"
+#include "Core/Render/Acceleration/Accelerator.h"
 
-#include "Core/Cache/AcceleratedField.h"
+#include "Core/Render/Acceleration/AcceleratedField.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/AcceleratedFrames.h"
+#include "Core/Render/Acceleration/AcceleratedFrames.h"
 
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Cache/Accelerator.h"
 #include "Core/Error.h"
+#include "Core/Render/Acceleration/Accelerator.h"
 
 #include <optional>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Cache/AcceleratedField.h"
+#include "Core/Render/Acceleration/AcceleratedField.h"
 
 #include "Core/Random.h"
 

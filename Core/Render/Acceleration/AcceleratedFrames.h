@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Cache/AcceleratedField.h"
-#include "Core/Render/AcceleratedRenderer.h"
+#include "Core/Render/Acceleration/AcceleratedField.h"
+#include "Core/Render/Acceleration/AcceleratedRenderer.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 
 #include <cstdint>
