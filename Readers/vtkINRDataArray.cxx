@@ -11,9 +11,9 @@
 
 namespace {
 
-GridPart PartOf(const int presentedDims[3], const int extent[6])
+inr::GridBox PartOf(const int presentedDims[3], const int extent[6])
 {
-  GridPart part;
+  inr::GridBox part;
   for (int axis = 0; axis < 3; ++axis) {
     const int first = extent[2 * axis];
     const int last = extent[2 * axis + 1];
@@ -67,7 +67,7 @@ vtkSmartPointer<vtkDataArray> vtkINRDataArray::Create(inr::ModelPointer model,
   if (!keepsake) {
     keepsake = std::make_shared<Keepsake>();
   }
-  const GridPart part = PartOf(presentedDims, extent);
+  const inr::GridBox part = PartOf(presentedDims, extent);
   const auto decoder = std::make_shared<const GridDecoder>(
       std::move(model), glm::ivec3(presentedDims[0], presentedDims[1], presentedDims[2]));
   const inr::VolumeInfo& volume = decoder->GetModel()->volume;

@@ -40,7 +40,7 @@ public:
   /// GetVoidPointer hands out a decoded copy of at most this many values.
   static constexpr vtkIdType MaximumCopiedValues = LargestPresentedGrid;
 
-  void Initialize(std::shared_ptr<const GridDecoder> decoder, const GridPart& part,
+  void Initialize(std::shared_ptr<const GridDecoder> decoder, const inr::GridBox& part,
                   std::shared_ptr<Keepsake> keepsake)
   {
     this->Values = std::make_shared<Shared>(std::move(decoder), part);
@@ -58,7 +58,7 @@ public:
   }
   void GetPresentedExtent(int extent[6]) const override
   {
-    const GridPart& part = this->Values->Bricks.GetPart();
+    const inr::GridBox& part = this->Values->Bricks.GetPart();
     for (int axis = 0; axis < 3; ++axis) {
       extent[2 * axis] = static_cast<int>(part.first[axis]);
       extent[2 * axis + 1] = static_cast<int>(part.first[axis] + part.size[axis] - 1);
@@ -195,7 +195,7 @@ private:
   /// What copies of one array share.
   struct Shared
   {
-    Shared(std::shared_ptr<const GridDecoder> decoder, const GridPart& part)
+    Shared(std::shared_ptr<const GridDecoder> decoder, const inr::GridBox& part)
         : Bricks(std::move(decoder), part)
     {}
     std::size_t CopyBytes() const

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/GridBox.h"
+
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -22,10 +24,7 @@ struct BlockLattice
   glm::ivec3 count;     ///< of blocks per axis
   glm::ivec3 lastVoxel; ///< of the brick
 
-  std::int64_t blocks() const
-  {
-    return std::int64_t{1} * this->count.x * this->count.y * this->count.z;
-  }
+  std::int64_t blocks() const { return GridCount(glm::i64vec3(this->count)); }
 
   /// Of blocks or of voxels, both ends included.
   struct Span

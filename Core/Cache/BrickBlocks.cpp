@@ -3,6 +3,7 @@
 
 #include "Core/Cache/Hierarchy.h"
 #include "Core/Cache/RangeOfValues.h"
+#include "Core/GridBox.h"
 
 #include <glm/common.hpp>
 
@@ -138,7 +139,7 @@ template <typename Stored>
 void BrickBlocks::findCodes(const BrickView& brick, const ValueRange& within, std::int32_t slot)
 {
   const auto* voxels = static_cast<const Stored*>(brick.voxels);
-  const std::int64_t count = std::int64_t{1} * this->Dims.x * this->Dims.y * this->Dims.z;
+  const std::int64_t count = GridCount(glm::i64vec3(this->Dims));
   const Coding<Stored> code(brick, within, count);
   this->Scales[slot] = {code.low, code.step};
   Codes* to = this->codes(slot);

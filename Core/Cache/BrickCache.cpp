@@ -2,6 +2,7 @@
 #include "Core/Cache/BrickCache.h"
 
 #include "Core/Error.h"
+#include "Core/GridBox.h"
 #include "Core/Random.h"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ std::int64_t BrickCache::capacityFor(const Hierarchy& hierarchy, CachePrecision 
   constexpr std::int64_t enough = (std::int64_t{1} << SlotBits) - 1;
   for (int level = 0; level < hierarchy.levels() && most < enough; ++level) {
     const glm::i64vec3& bricks = hierarchy.bricks(level);
-    most += bricks.x * bricks.y * bricks.z;
+    most += GridCount(bricks);
   }
   const std::int64_t each = bytesPerBrick(hierarchy, precision) + Word;
   const std::int64_t capacity = (bytes - PageTable::bytesFor(0)) / each;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "Core/Cache/HierarchyView.h"
+#include "Core/GridBox.h"
 #include "Core/HostDevice.h"
 #include "Core/Model/MacroCells.h"
 
@@ -26,27 +27,12 @@ struct CellTable
   INR_HOST_DEVICE bool empty() const { return this->ranges == nullptr; }
   INR_HOST_DEVICE const ValueRange& at(const glm::i64vec3& cell) const
   {
-    return this->ranges[cell.x + this->dims.x * (cell.y + this->dims.y * cell.z)];
-  }
-};
-
-/// A box of macro-cells.
-struct CellBox
-{
-  glm::i64vec3 first;
-  glm::i64vec3 dims;
-
-  INR_HOST_DEVICE std::int64_t count() const { return this->dims.x * this->dims.y * this->dims.z; }
-  /// The k-th of them, x fastest.
-  INR_HOST_DEVICE glm::i64vec3 at(std::int64_t k) const
-  {
-    const std::int64_t row = k / this->dims.x;
-    return this->first + glm::i64vec3(k % this->dims.x, row % this->dims.y, row / this->dims.y);
+    return this->ranges[GridNumber(cell, this->dims)];
   }
 };
 
 /// All cells that a brick's voxels reach into. `cells`: not empty.
-INR_HOST_DEVICE inline CellBox CellsOfBrick(const CellTable& cells, const HierarchyView& hierarchy,
+INR_HOST_DEVICE inline GridBox CellsOfBrick(const CellTable& cells, const HierarchyView& hierarchy,
                                             const BrickId& id)
 {
   const glm::i64vec3& size = hierarchy.level(id.level).size;

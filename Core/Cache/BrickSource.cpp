@@ -2,6 +2,7 @@
 #include "Core/Cache/BrickSource.h"
 
 #include "Core/Cache/BrickCells.h"
+#include "Core/GridBox.h"
 #include "Core/Model/Model.h"
 
 #include <glm/common.hpp>
@@ -17,13 +18,7 @@ namespace inr {
 namespace {
 
 /// The part of a brick that lies inside its level.
-struct BrickBox
-{
-  glm::i64vec3 first;
-  glm::i64vec3 count;
-};
-
-BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
+GridBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
 {
   const glm::i64vec3 first = hierarchy.firstVoxel(id);
   return {first, glm::min(glm::i64vec3(hierarchy.brickDims()), hierarchy.size(id.level) - first)};
@@ -33,8 +28,8 @@ BrickBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
 ValueRange RangeWithin(const MacroCells& cells, const Hierarchy& hierarchy, BrickKey key)
 {
   const CellTable ranges{cells.dims, cells.spacing, cells.ranges.data()};
-  const CellBox box = CellsOfBrick(ranges, hierarchy.view(), IdOf(key));
-  const glm::i64vec3 end = box.first + box.dims;
+  const GridBox box = CellsOfBrick(ranges, hierarchy.view(), IdOf(key));
+  const glm::i64vec3 end = box.end();
   ValueRange range;
   for (std::int64_t z = box.first.z; z < end.z; ++z) {
     for (std::int64_t y = box.first.y; y < end.y; ++y) {
@@ -89,11 +84,11 @@ private:
                       float* values) const
   {
     const BrickId id = IdOf(key);
-    const BrickBox box = BoxOf(this->hierarchy(), id);
+    const GridBox box = BoxOf(this->hierarchy(), id);
     // Voxels beyond the last one are as that.
-    const glm::i64vec3 first(x.first, y.first, glm::min(z, box.count.z - 1));
-    const glm::i64vec3 end(glm::min<std::int64_t>(x.last, box.count.x - 1),
-                           glm::min<std::int64_t>(y.last, box.count.y - 1), first.z);
+    const glm::i64vec3 first(x.first, y.first, glm::min(z, box.size.z - 1));
+    const glm::i64vec3 end(glm::min<std::int64_t>(x.last, box.size.x - 1),
+                           glm::min<std::int64_t>(y.last, box.size.y - 1), first.z);
     const glm::i64vec3 count = end - first + std::int64_t{1};
     const std::vector<float> inside = this->valuesIn(id.level, box.first + first, count);
     const std::int64_t width = this->hierarchy().brickDims().x;
@@ -161,7 +156,7 @@ private:
 BlockRows BrickSource::rowsOf(const BrickPart& part) const
 {
   // Of a brick beyond its level, which nobody looks at, one voxel.
-  const glm::i64vec3 count = glm::max(BoxOf(this->Levels, IdOf(part.key)).count, std::int64_t{1});
+  const glm::i64vec3 count = glm::max(BoxOf(this->Levels, IdOf(part.key)).size, std::int64_t{1});
   return {part.blocks, this->Lattice, glm::ivec3(count) - 1};
 }
 
@@ -218,7 +213,7 @@ void BrickSource::inferLayers(const BrickPart* parts, std::int64_t count, float*
 
 std::int64_t BrickSource::layersInside(BrickKey key) const
 {
-  return BoxOf(this->Levels, IdOf(key)).count.z;
+  return BoxOf(this->Levels, IdOf(key)).size.z;
 }
 
 void BrickSource::repeatLastLayer(BrickKey key, float* values) const

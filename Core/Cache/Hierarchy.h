@@ -3,6 +3,7 @@
 
 #include "Core/Cache/BrickKey.h"
 #include "Core/Cache/HierarchyView.h"
+#include "Core/GridBox.h"
 
 #include <glm/gtc/type_precision.hpp>
 #include <glm/vec3.hpp>
@@ -41,10 +42,7 @@ public:
 
   /// Voxels stored per brick and axis: the brick size, or less where the volume is thinner.
   const glm::ivec3& brickDims() const { return this->BrickDims; }
-  std::int64_t voxelsPerBrick() const
-  {
-    return std::int64_t{1} * this->BrickDims.x * this->BrickDims.y * this->BrickDims.z;
-  }
+  std::int64_t voxelsPerBrick() const { return GridCount(glm::i64vec3(this->BrickDims)); }
   glm::i64vec3 firstVoxel(const BrickId& id) const { return this->view().firstVoxel(id); }
   /// The brick of the next coarser level, which must exist, that shows most of the same.
   BrickId coarser(const BrickId& id) const

@@ -2,6 +2,7 @@
 #include "Core/Inference/Evaluator.h"
 
 #include "Core/Error.h"
+#include "Core/GridBox.h"
 #include "Core/Inference/HugePages.h"
 #include "Core/Inference/InferenceKernels.h"
 #include "Core/Inference/OverflowWatch.h"
@@ -65,13 +66,13 @@ void EvaluatePart(const Evaluator& evaluator, const Lattice& lattice, const glm:
   const std::vector<float> axes[3] = {CoordinatesOf(lattice, 0, begin.x, end.x),
                                       CoordinatesOf(lattice, 1, begin.y, end.y),
                                       CoordinatesOf(lattice, 2, begin.z, end.z)};
-  std::vector<float> part(static_cast<std::size_t>(size.x * size.y * size.z));
+  std::vector<float> part(static_cast<std::size_t>(GridCount(size)));
   evaluator.evaluateGrid(axes, part.data());
   for (std::int64_t row = 0; row < size.y * size.z; ++row) {
     const std::int64_t y = begin.y + row % size.y;
     const std::int64_t z = begin.z + row / size.y;
     std::copy_n(part.data() + row * size.x, size.x,
-                values + (z * lattice.points.y + y) * lattice.points.x + begin.x);
+                values + GridNumber({begin.x, y, z}, lattice.points));
   }
 }
 
@@ -240,7 +241,7 @@ void EvaluateLattice(const Evaluator& evaluator, const Arena& arena, const Latti
 {
   constexpr std::int64_t longest = 512; // of a row: some more beside it share its corners
   const glm::i64vec3 points = lattice.points;
-  if (points.x * points.y * points.z == 0) {
+  if (GridCount(points) == 0) {
     return;
   }
   glm::i64vec3 size;
@@ -248,7 +249,7 @@ void EvaluateLattice(const Evaluator& evaluator, const Arena& arena, const Latti
   size.y = std::clamp<std::int64_t>(TaskSize / size.x, 1, points.y);
   size.z = std::clamp<std::int64_t>(TaskSize / (size.x * size.y), 1, points.z);
   const glm::i64vec3 parts = (points + size - std::int64_t{1}) / size;
-  arena.forEachBlock(parts.x * parts.y * parts.z, 1, [&](std::int64_t task, std::int64_t) {
+  arena.forEachBlock(GridCount(parts), 1, [&](std::int64_t task, std::int64_t) {
     const glm::i64vec3 part(task % parts.x, task / parts.x % parts.y, task / (parts.x * parts.y));
     const glm::i64vec3 begin = part * size;
     EvaluatePart(evaluator, lattice, begin, glm::min(begin + size, points), values);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Error.h"
+#include "Core/GridBox.h"
 #include "Core/HostDevice.h"
 
 #include <glm/gtc/type_precision.hpp>
@@ -68,7 +69,7 @@ struct MacroCells
   bool rangesHold() const { return this->empty() || this->provenance != MacroCellProvenance::File; }
   std::int64_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
   {
-    return x + this->dims.x * (y + this->dims.y * z);
+    return GridNumber({x, y, z}, this->dims);
   }
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
+#include "Core/GridBox.h"
 #include "Core/Model/BsonScanner.h"
 #include "Core/Model/BsonTypes.h"
 #include "Core/Model/CompactBlobs.h"
@@ -97,7 +98,7 @@ Model LoadBlobs(const InputFile& file, ModelHeader header)
   if (header.ranges != nullptr) {
     const glm::i64vec3& dims = model.macroCells.dims;
     model.macroCells.ranges =
-        compact ? DecodeCompactRanges(file, *header.ranges, dims.x * dims.y * dims.z, checksum)
+        compact ? DecodeCompactRanges(file, *header.ranges, GridCount(dims), checksum)
                 : DecodeRanges(file, *header.ranges, header.encoding, checksum);
   }
   RequireChecksum(header, checksum);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
+#include "Core/GridBox.h"
 #include "Core/Model/BsonObject.h"
 #include "Core/Model/CompactBlobs.h"
 #include "Core/Model/DescriptionJson.h"
@@ -213,7 +214,7 @@ void RequireStorable(const Model& model)
   const auto cellCount = static_cast<std::int64_t>(cells.ranges.size());
   if (!cells.empty()) {
     RequireValidGeometry(cells, ErrorCode::InvalidModel);
-    if (cells.dims.x * cells.dims.y * cells.dims.z != cellCount) {
+    if (GridCount(cells.dims) != cellCount) {
       throw Error(ErrorCode::InvalidModel,
                   "the number of macro-cell ranges does not fit their dims");
     }

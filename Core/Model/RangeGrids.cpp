@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Model/RangeGrids.h"
 
+#include "Core/GridBox.h"
 #include "Core/Parallel.h"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ MacroCells LikeWith(const MacroCells& cells, const glm::i64vec3& dims, const glm
   like.spacing = spacing;
   like.apron = cells.apron;
   like.provenance = cells.provenance;
-  like.ranges.resize(static_cast<std::size_t>(dims.x * dims.y * dims.z));
+  like.ranges.resize(static_cast<std::size_t>(GridCount(dims)));
   return like;
 }
 

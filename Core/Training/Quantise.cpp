@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/Quantise.h"
 
+#include "Core/GridBox.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
 #include "Core/Training/ModelSize.h"
@@ -205,7 +206,7 @@ QuantiseLimits LimitsForRatio(const Model& model, double ratio)
   if (ratio > 0) {
     const glm::dvec3 dims(model.volume.dims);
     const double bytes =
-        dims.x * dims.y * dims.z * static_cast<double>(ScalarSize(model.volume.type)) / ratio;
+        GridCount(dims) * static_cast<double>(ScalarSize(model.volume.type)) / ratio;
     const auto cells = static_cast<std::int64_t>(model.macroCells.ranges.size());
     const double edge = model.macroCells.spacing.x * dims.x;
     const double others = ExpectedRangeBytes(edge, cells) + qualityBytes;

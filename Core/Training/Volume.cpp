@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/Volume.h"
 
+#include "Core/GridBox.h"
 #include "Core/Training/Scalars.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ void VolumeStatistics::add(const VolumeStatistics& other)
   this->underHigh = std::max(this->underHigh, other.underHigh);
 }
 
-VolumeStatistics MeasureBox(const VolumePiece& piece, const VoxelBox& box, const Arena& arena)
+VolumeStatistics MeasureBox(const VolumePiece& piece, const GridBox& box, const Arena& arena)
 {
   constexpr std::int64_t rowsAtATime = 64;
   const glm::i64vec3 size = piece.data.dims;
@@ -59,7 +60,7 @@ VolumeStatistics MeasureBox(const VolumePiece& piece, const VoxelBox& box, const
       for (std::int64_t row = begin; row < end; ++row) {
         const std::int64_t y = offset.y + row % box.size.y;
         const std::int64_t z = offset.z + row / box.size.y;
-        const std::int64_t first = offset.x + size.x * (y + size.y * z);
+        const std::int64_t first = GridNumber({offset.x, y, z}, size);
         MeasureRow(values + first * piece.data.stride, piece.data.stride, box.size.x,
                    parts[static_cast<std::size_t>(begin / rowsAtATime)]);
       }

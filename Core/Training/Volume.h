@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/GridBox.h"
 #include "Core/Model/Model.h"
 #include "Core/Parallel.h"
 
@@ -20,17 +21,7 @@ struct VolumeData
   glm::i64vec3 dims{0};
   std::int64_t stride = 1;
 
-  std::int64_t voxels() const { return this->dims.x * this->dims.y * this->dims.z; }
-};
-
-/// Voxels of a volume: `size` of them per axis from voxel `first` on.
-struct VoxelBox
-{
-  glm::i64vec3 first{0};
-  glm::i64vec3 size{0};
-
-  glm::i64vec3 end() const { return this->first + this->size; }
-  std::int64_t voxels() const { return this->size.x * this->size.y * this->size.z; }
+  std::int64_t voxels() const { return GridCount(this->dims); }
 };
 
 /// Part of a volume that is in memory: the box of `data.dims` voxels from voxel `first` on.
@@ -66,6 +57,6 @@ struct VolumeStatistics
 VolumeStatistics MeasureVolume(const VolumeData& volume, const Arena& arena);
 
 /// The same of a box within a piece.
-VolumeStatistics MeasureBox(const VolumePiece& piece, const VoxelBox& box, const Arena& arena);
+VolumeStatistics MeasureBox(const VolumePiece& piece, const GridBox& box, const Arena& arena);
 
 } // namespace inr

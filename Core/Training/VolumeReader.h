@@ -27,7 +27,7 @@ public:
 
   /// The voxels of a box within the volume, good until the next call. Called by one thread, the
   /// one that asked for the training. Throws what the application has to say when it fails.
-  virtual VolumePiece read(const VoxelBox& box) = 0;
+  virtual VolumePiece read(const GridBox& box) = 0;
 };
 
 } // namespace inr

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Contour/BrickContour.h"
 
+#include "Core/GridBox.h"
 #include "Readers/VTKCompat.h"
 
 #include <glm/common.hpp>
@@ -27,7 +28,7 @@ glm::i64vec3 CornerOf(const glm::i64vec3& cell, int corner)
 
 } // namespace
 
-BrickContour::BrickContour(const ContourBricks::Box& brick, const glm::i64vec3& size, double unit)
+BrickContour::BrickContour(const inr::GridBox& brick, const glm::i64vec3& size, double unit)
     : Brick(brick), Box(brick), Size(size), Unit(unit)
 {
   if (unit > 0) {
@@ -123,8 +124,8 @@ void BrickContour::FindReached(SurfacePatch& patch, double value) const
     size[axis] = 1;
     bool below = false;
     bool above = false;
-    for (std::int64_t k = 0; k < size.x * size.y * size.z; ++k) {
-      glm::i64vec3 local(k % size.x, k / size.x % size.y, k / (size.x * size.y));
+    for (std::int64_t k = 0; k < inr::GridCount(size); ++k) {
+      glm::i64vec3 local = inr::GridPlace(k, size);
       local[axis] = layer;
       const bool inside = this->At(this->Brick.first + local) >= value;
       below = below || !inside;

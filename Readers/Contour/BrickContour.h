@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/GridBox.h"
 #include "Readers/Contour/ContourBricks.h"
 
 #include <glm/vec3.hpp>
@@ -31,10 +32,10 @@ class BrickContour
 public:
   /// `brick` of a level of `size` voxels. Gradients are wanted in parts of `unit`, for which single
   /// precision has to suffice: 0 = not at all.
-  BrickContour(const ContourBricks::Box& brick, const glm::i64vec3& size, double unit);
+  BrickContour(const inr::GridBox& brick, const glm::i64vec3& size, double unit);
 
   /// The voxels to set `values` to, x fastest.
-  const ContourBricks::Box& GetBox() const { return this->Box; }
+  const inr::GridBox& GetBox() const { return this->Box; }
   std::vector<double> values;
 
   /// Marching cubes (Lorensen and Cline, SIGGRAPH 1987) with VTK's cases: a vertex on every edge of
@@ -49,13 +50,12 @@ private:
 
   double At(const glm::i64vec3& voxel) const
   {
-    const glm::i64vec3 local = voxel - this->Box.first;
     return this->values[static_cast<std::size_t>(
-        local.x + this->Box.size.x * (local.y + this->Box.size.y * local.z))];
+        inr::GridNumber(voxel - this->Box.first, this->Box.size))];
   }
 
-  ContourBricks::Box Brick;
-  ContourBricks::Box Box;
+  inr::GridBox Brick;
+  inr::GridBox Box;
   glm::i64vec3 Size;
   double Unit;
   std::vector<std::int32_t> VertexOfEdge; ///< -1 where there is none yet

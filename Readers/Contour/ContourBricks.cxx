@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Contour/ContourBricks.h"
 
+#include "Core/GridBox.h"
 #include "Readers/Grid/LevelSampler.h"
 
 #include <glm/common.hpp>
@@ -74,7 +75,7 @@ CrossedCells::CrossedCells(const inr::Model& model, const std::vector<double>& v
     arena.forEachBlock(this->Source.empty() ? 0 : dims.y * dims.z, 64, [&](auto begin, auto end) {
       for (std::int64_t k = begin * dims.x; k < end * dims.x; ++k) {
         const auto cell = static_cast<std::size_t>(k);
-        const glm::i64vec3 at(k % dims.x, k / dims.x % dims.y, k / (dims.x * dims.y));
+        const glm::i64vec3 at = inr::GridPlace(k, dims);
         if (sides[cell] == Both ||
             (sides[cell] != Nowhere && MeetsOtherSide(sides, this->Source, at, sides[cell]))) {
           this->Crossed[cell] = 1;
@@ -105,7 +106,7 @@ ContourBricks::ContourBricks(const inr::Model& model, int level)
              inr::ResolutionOf(model))
 {}
 
-ContourBricks::Box ContourBricks::BoxOf(inr::BrickKey key) const
+inr::GridBox ContourBricks::BoxOf(inr::BrickKey key) const
 {
   const glm::i64vec3 first = this->Levels.firstVoxel(inr::IdOf(key));
   return {first, glm::min(glm::i64vec3(this->Levels.brickDims()), this->Size() - first)};

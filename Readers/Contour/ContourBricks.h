@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Core/Cache/Hierarchy.h"
+#include "Core/GridBox.h"
 #include "Core/Model/Model.h"
 #include "Core/Parallel.h"
 
@@ -49,12 +50,7 @@ public:
   glm::i64vec3 Bricks() const { return this->Levels.bricks(this->Level); }
 
   /// A brick's voxels; those of the last layer are the next brick's, too.
-  struct Box
-  {
-    glm::i64vec3 first;
-    glm::i64vec3 size;
-  };
-  Box BoxOf(inr::BrickKey key) const;
+  inr::GridBox BoxOf(inr::BrickKey key) const;
 
   /// What deciding on a brick costs: evaluations of the network, with the voxels around it.
   double SamplesPerBrick() const;

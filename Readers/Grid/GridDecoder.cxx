@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Grid/GridDecoder.h"
 
+#include "Core/GridBox.h"
+
 #include <algorithm>
 
 GridDecoder::GridDecoder(inr::ModelPointer model, const glm::ivec3& presentedDims)
@@ -24,6 +26,6 @@ void GridDecoder::Decode(const glm::i64vec3& first, const glm::i64vec3& size, fl
   lattice.step = this->Step;
   lattice.points = size;
   inr::EvaluateLattice(*this->Evaluator, this->Arena, lattice, values);
-  std::transform(values, values + size.x * size.y * size.z, values, inr::NormalisedOutput);
-  this->Evaluations += size.x * size.y * size.z;
+  std::transform(values, values + inr::GridCount(size), values, inr::NormalisedOutput);
+  this->Evaluations += inr::GridCount(size);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/GridBox.h"
 #include "Readers/Grid/GridDecoder.h"
 #include "Readers/Grid/Scalars.h"
 
@@ -12,13 +13,6 @@
 #include <mutex>
 #include <unordered_map>
 #include <vector>
-
-/// Points of a presented grid that some array holds: the first one, and how many along each axis.
-struct GridPart
-{
-  glm::i64vec3 first{0};
-  glm::i64vec3 size{1};
-};
 
 /// Values of part of a presented grid in the type of the source, decoded in bricks when they are
 /// first asked for; the bricks used last are kept. Any number of threads may use one at once.
@@ -33,22 +27,23 @@ public:
   static constexpr std::size_t Shards = 64;
   static constexpr std::size_t BricksPerShard = 64;
 
-  PresentedBricks(std::shared_ptr<const GridDecoder> decoder, const GridPart& part)
+  PresentedBricks(std::shared_ptr<const GridDecoder> decoder, const inr::GridBox& part)
       : Decoder(std::move(decoder)), Part(part), Bricks((part.size + (Edge - 1)) / Edge)
   {}
 
   const GridDecoder& GetDecoder() const { return *this->Decoder; }
-  const GridPart& GetPart() const { return this->Part; }
+  const inr::GridBox& GetPart() const { return this->Part; }
 
   /// Value number `index` of the part, x fastest.
   T Get(std::int64_t index)
   {
-    const glm::i64vec3 point = this->PointOf(index);
+    const glm::i64vec3 point = inr::GridPlace(index, this->Part.size);
     const glm::i64vec3 brick = point / Edge;
-    const std::int64_t key = brick.x + this->Bricks.x * (brick.y + this->Bricks.y * brick.z);
+    const std::int64_t key = inr::GridNumber(brick, this->Bricks);
     Shard& shard = this->ShardTable[static_cast<std::size_t>(key) % Shards];
     const std::lock_guard<std::mutex> lock(shard.Mutex);
-    return this->Find(shard, key, brick)[LocalIndex(point, brick * Edge, this->SizeOf(brick))];
+    return this->Find(shard, key, brick)[static_cast<std::size_t>(
+        inr::GridNumber(point - brick * Edge, this->SizeOf(brick)))];
   }
 
   /// All values of the part into `values`, past the cache.
@@ -100,23 +95,10 @@ private:
     std::unordered_map<std::int64_t, typename std::list<Entry>::iterator> Index;
   };
 
-  glm::i64vec3 PointOf(std::int64_t index) const
-  {
-    const std::int64_t row = index / this->Part.size.x;
-    return {index % this->Part.size.x, row % this->Part.size.y, row / this->Part.size.y};
-  }
-
   /// Bricks at the far faces are smaller.
   glm::i64vec3 SizeOf(const glm::i64vec3& brick) const
   {
     return glm::min(glm::i64vec3(Edge), this->Part.size - brick * Edge);
-  }
-
-  static std::size_t LocalIndex(const glm::i64vec3& point, const glm::i64vec3& corner,
-                                const glm::i64vec3& size)
-  {
-    const glm::i64vec3 local = point - corner;
-    return static_cast<std::size_t>(local.x + size.x * (local.y + size.y * local.z));
   }
 
   const std::vector<T>& Find(Shard& shard, std::int64_t key, const glm::i64vec3& brick)
@@ -135,7 +117,7 @@ private:
   const std::vector<T>& Insert(Shard& shard, std::int64_t key, const glm::i64vec3& brick)
   {
     const glm::i64vec3 size = this->SizeOf(brick);
-    std::vector<T> values(static_cast<std::size_t>(size.x * size.y * size.z));
+    std::vector<T> values(static_cast<std::size_t>(inr::GridCount(size)));
     this->Decode(brick * Edge, size, values.data());
     if (shard.Recent.size() == BricksPerShard) {
       shard.Index.erase(shard.Recent.back().key);
@@ -148,14 +130,14 @@ private:
 
   void Decode(const glm::i64vec3& first, const glm::i64vec3& size, T* values) const
   {
-    std::vector<float> normalised(static_cast<std::size_t>(size.x * size.y * size.z));
+    std::vector<float> normalised(static_cast<std::size_t>(inr::GridCount(size)));
     this->Decoder->Decode(this->Part.first + first, size, normalised.data());
     std::transform(normalised.begin(), normalised.end(), values,
                    [this](float y) { return ToScalar<T>(this->Decoder->Denormalise(y)); });
   }
 
   std::shared_ptr<const GridDecoder> Decoder;
-  GridPart Part;
+  inr::GridBox Part;
   glm::i64vec3 Bricks; ///< per axis
   std::array<Shard, Shards> ShardTable;
 };

@@ -31,7 +31,7 @@ using Extent = std::array<int, 6>;
 /// Neighbours that a chain of filters looks at; of longer ones that do so hardly any are.
 constexpr int MostMargin = 3;
 
-Extent ExtentOf(const inr::VoxelBox& box, const int* whole)
+Extent ExtentOf(const inr::GridBox& box, const int* whole)
 {
   Extent extent{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -214,7 +214,7 @@ PipelineReader::PipelineReader(vtkAlgorithm& consumer, const WholeImage& whole, 
   this->ArrayName = input.info.arrayName;
 }
 
-vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) const
+vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::GridBox& box) const
 {
   const Extent extent = ExtentOf(box, this->Whole.extent);
   const Extent wanted = Grown(extent, this->Margin, this->Whole.extent);
@@ -238,7 +238,7 @@ vtkSmartPointer<vtkImageData> PipelineReader::request(const inr::VoxelBox& box) 
   return piece;
 }
 
-inr::VolumePiece PipelineReader::read(const inr::VoxelBox& box)
+inr::VolumePiece PipelineReader::read(const inr::GridBox& box)
 {
   this->Piece = TrainingInput(); // two pieces need not be in memory
   const vtkSmartPointer<vtkImageData> image = this->request(box);

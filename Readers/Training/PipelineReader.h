@@ -66,10 +66,10 @@ public:
   int margin() const override { return this->Margin; }
 
   /// Throws inr::Error(CannotRead) when the pipeline fails, or gives another array than at first.
-  inr::VolumePiece read(const inr::VoxelBox& box) override;
+  inr::VolumePiece read(const inr::GridBox& box) override;
 
 private:
-  vtkSmartPointer<vtkImageData> request(const inr::VoxelBox& box) const;
+  vtkSmartPointer<vtkImageData> request(const inr::GridBox& box) const;
 
   vtkAlgorithm& Consumer;
   WholeImage Whole;

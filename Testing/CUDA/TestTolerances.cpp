@@ -14,7 +14,7 @@ std::vector<float> Voxels(const inr::ModelPointer& model)
   const glm::i64vec3 dims = model->volume.dims;
   std::vector<glm::vec3> places;
   for (std::int64_t k = 0; k < dims.x * dims.y * dims.z; ++k) {
-    const glm::i64vec3 at(k % dims.x, k / dims.x % dims.y, k / (dims.x * dims.y));
+    const glm::i64vec3 at = inr::GridPlace(k, dims);
     places.push_back((glm::dvec3(at) + 0.5) / glm::dvec3(dims));
   }
   std::vector<float> values(places.size());

@@ -3,6 +3,7 @@
 
 #include "CUDA/Cache/Kernels/CacheRanking.h"
 #include "CUDA/Inference/Kernels/BrickGeometry.h"
+#include "Core/GridBox.h"
 
 #include <cstdint>
 
@@ -58,7 +59,7 @@ private:
   INR_HOST_DEVICE std::int64_t voxels() const ///< of a brick
   {
     const glm::ivec3& dims = this->levels.brickDims();
-    return std::int64_t{1} * dims.x * dims.y * dims.z;
+    return GridCount(glm::i64vec3(dims));
   }
   INR_HOST_DEVICE BrickJob job(std::int64_t k, std::int64_t firstItem) const
   {

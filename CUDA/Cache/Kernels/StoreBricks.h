@@ -115,7 +115,7 @@ private:
       return range;
     }
     const BrickId id = IdOf(WantedBricks::KeyOf(this->bricks[k]));
-    const CellBox box = CellsOfBrick(this->cells, this->cache.hierarchy, id);
+    const GridBox box = CellsOfBrick(this->cells, this->cache.hierarchy, id);
     for (std::int64_t at = thread; at < box.count(); at += Threads) {
       range.extend(this->cells.at(box.at(at)));
     }

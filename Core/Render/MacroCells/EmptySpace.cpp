@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/MacroCells/EmptySpace.h"
 
+#include "Core/GridBox.h"
 #include "Core/Parallel.h"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ EmptySpace::EmptySpace(const glm::i64vec3& dims)
 {
   const auto add = [this](const glm::i64vec3& size) {
     this->Grids.push_back(
-        {size, std::vector<std::uint8_t>(static_cast<std::size_t>(size.x * size.y * size.z))});
+        {size, std::vector<std::uint8_t>(static_cast<std::size_t>(GridCount(size)))});
   };
   add(dims);
   while (this->Grids.back().nodes.size() > 1) {
@@ -61,11 +62,11 @@ void EmptySpace::join(std::size_t level, const Arena& arena)
   const Grid& fine = this->Grids[level - 1];
   Grid& coarse = this->Grids[level];
   ForEachRow(coarse.dims, arena, [&](std::int64_t y, std::int64_t z) {
-    std::uint8_t* row = coarse.nodes.data() + coarse.dims.x * (y + coarse.dims.y * z);
+    std::uint8_t* row = coarse.nodes.data() + GridNumber({0, y, z}, coarse.dims);
     std::fill_n(row, coarse.dims.x, static_cast<std::uint8_t>(level + 1));
     for (std::int64_t k = 2 * z; k < std::min(2 * z + 2, fine.dims.z); ++k) {
       for (std::int64_t j = 2 * y; j < std::min(2 * y + 2, fine.dims.y); ++j) {
-        const std::uint8_t* children = fine.nodes.data() + fine.dims.x * (j + fine.dims.y * k);
+        const std::uint8_t* children = fine.nodes.data() + GridNumber({0, j, k}, fine.dims);
         for (std::int64_t i = 0; i < fine.dims.x; ++i) {
           row[i / 2] = children[i] == 0 ? 0 : row[i / 2];
         }
@@ -80,9 +81,8 @@ void EmptySpace::spread(std::size_t level, const Arena& arena)
   const Grid& coarse = this->Grids[level];
   Grid& fine = this->Grids[level - 1];
   ForEachRow(fine.dims, arena, [&](std::int64_t y, std::int64_t z) {
-    const std::uint8_t* parents =
-        coarse.nodes.data() + coarse.dims.x * (y / 2 + coarse.dims.y * (z / 2));
-    std::uint8_t* row = fine.nodes.data() + fine.dims.x * (y + fine.dims.y * z);
+    const std::uint8_t* parents = coarse.nodes.data() + GridNumber({0, y / 2, z / 2}, coarse.dims);
+    std::uint8_t* row = fine.nodes.data() + GridNumber({0, y, z}, fine.dims);
     for (std::int64_t i = 0; i < fine.dims.x; ++i) {
       row[i] = std::max(row[i], parents[i / 2]); // a full child has a full parent
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/GridBox.h"
 #include "Core/HostDevice.h"
 #include "Core/Model/MacroCells.h"
 
@@ -25,11 +26,11 @@ public:
 
   INR_HOST_DEVICE const glm::i64vec3& dims() const { return this->Dims; }
   INR_HOST_DEVICE const glm::dvec3& spacing() const { return this->Spacing; }
-  INR_HOST_DEVICE std::int64_t count() const { return this->Dims.x * this->Dims.y * this->Dims.z; }
+  INR_HOST_DEVICE std::int64_t count() const { return GridCount(this->Dims); }
   /// Cells are numbered x fastest.
   INR_HOST_DEVICE std::int64_t index(const glm::i64vec3& at) const
   {
-    return at.x + this->Dims.x * (at.y + this->Dims.y * at.z);
+    return GridNumber(at, this->Dims);
   }
   INR_HOST_DEVICE const ValueRange& range(std::int64_t cell) const { return this->Ranges[cell]; }
   /// Where opacity decides, -ln(1 - a) for the largest opacity a (per unit distance) of any value

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Scene/Cropping.h"
 
+#include "Core/GridBox.h"
+
 #include <glm/common.hpp>
 
 #include <limits>
@@ -32,7 +34,7 @@ CroppedBox BoxOf(const Cropping& cropping)
     box.high[axis] = upperEnds[last[axis]];
   }
   const glm::ivec3 size = last - first + 1;
-  box.full = shown == size.x * size.y * size.z;
+  box.full = shown == GridCount(size);
   return box;
 }
 

@@ -2,6 +2,7 @@
 #include "Core/Render/Tolerance/LevelErrors.h"
 
 #include "Core/Cache/LevelPoints.h"
+#include "Core/GridBox.h"
 #include "Core/Render/Tolerance/FieldWindow.h"
 #include "Core/Render/Tolerance/LevelResampling.h"
 #include "Core/Render/Tolerance/LongLines.h"
@@ -23,11 +24,6 @@ static_assert(LevelErrors::Coarsest <= 3, "LineKernel compares samples with up t
 /// around them, so that of 64 it is 3.4 times the voxels at worst. A picture in a limited time
 /// waits for one block.
 constexpr double BlockEdge = 64;
-
-glm::i64vec3 PlaceOf(std::int64_t number, const glm::i64vec3& dims)
-{
-  return {number % dims.x, number / dims.x % dims.y, number / (dims.x * dims.y)};
-}
 
 /// What can be seen of voxels in cells `begin` to `end` - 1: those inside and one more on either
 /// side, as rays go between voxels.
@@ -116,10 +112,7 @@ LevelErrors::LevelErrors(const glm::i64vec3& dims, const glm::i64vec3& cells,
   this->Measured.resize(static_cast<std::size_t>(this->blocks()));
 }
 
-std::int64_t LevelErrors::cellsPerBlock() const
-{
-  return this->CellsPerBlock.x * this->CellsPerBlock.y * this->CellsPerBlock.z;
-}
+std::int64_t LevelErrors::cellsPerBlock() const { return GridCount(this->CellsPerBlock); }
 
 std::int64_t LevelErrors::blockCost() const
 {
@@ -138,22 +131,21 @@ std::int64_t LevelErrors::blockCost() const
 
 std::int64_t LevelErrors::blockOf(std::int64_t cell) const
 {
-  const glm::i64vec3 at = PlaceOf(cell, this->CellDims) / this->CellsPerBlock;
-  return at.x + this->BlockDims.x * (at.y + this->BlockDims.y * at.z);
+  return GridNumber(GridPlace(cell, this->CellDims) / this->CellsPerBlock, this->BlockDims);
 }
 
 std::size_t LevelErrors::numberOf(const glm::i64vec3& within) const
 {
-  return static_cast<std::size_t>(within.x + this->CellsPerBlock.x *
-                                                 (within.y + this->CellsPerBlock.y * within.z));
+  return static_cast<std::size_t>(GridNumber(within, this->CellsPerBlock));
 }
 
 const LevelErrors::Cell& LevelErrors::of(std::int64_t cell) const
 {
   static const Cell unknown;
   const std::vector<Cell>& cells = this->Measured[static_cast<std::size_t>(this->blockOf(cell))];
-  return cells.empty() ? unknown
-                       : cells[this->numberOf(PlaceOf(cell, this->CellDims) % this->CellsPerBlock)];
+  return cells.empty()
+             ? unknown
+             : cells[this->numberOf(GridPlace(cell, this->CellDims) % this->CellsPerBlock)];
 }
 
 bool LevelErrors::knows(std::int64_t cell, const Question& question) const
@@ -171,14 +163,14 @@ std::int64_t LevelErrors::measuredBlocks() const
 
 std::vector<LevelErrors::Part> LevelErrors::partsOf(std::int64_t block) const
 {
-  const glm::i64vec3 begin = PlaceOf(block, this->BlockDims) * this->CellsPerBlock;
+  const glm::i64vec3 begin = GridPlace(block, this->BlockDims) * this->CellsPerBlock;
   const glm::i64vec3 count = glm::min(this->CellsPerBlock, this->CellDims - begin);
   std::vector<Part> parts;
-  for (std::int64_t k = 0; k < count.x * count.y * count.z; ++k) {
-    const glm::i64vec3 within = PlaceOf(k, count);
+  for (std::int64_t k = 0; k < GridCount(count); ++k) {
+    const glm::i64vec3 within = GridPlace(k, count);
     const glm::i64vec3 at = begin + within;
     Part part{};
-    part.cell = at.x + this->CellDims.x * (at.y + this->CellDims.y * at.z);
+    part.cell = GridNumber(at, this->CellDims);
     part.number = this->numberOf(within);
     for (int axis = 0; axis < 3; ++axis) {
       part.seen[axis] = VoxelsOf(at[axis], at[axis] + 1, this->Edge[axis], this->Dims[axis]);

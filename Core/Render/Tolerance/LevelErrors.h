@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/GridBox.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Render/Tolerance/LineErrors.h"
 
@@ -33,7 +34,7 @@ public:
 
   const glm::dvec3& cellEdge() const { return this->Edge; } ///< in voxels
 
-  std::int64_t blocks() const { return this->BlockDims.x * this->BlockDims.y * this->BlockDims.z; }
+  std::int64_t blocks() const { return GridCount(this->BlockDims); }
   std::int64_t cellsPerBlock() const;
   /// Voxels that measuring a block asks the field for, and those that it then looks at, at most.
   std::int64_t blockCost() const;

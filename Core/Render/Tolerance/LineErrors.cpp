@@ -75,7 +75,7 @@ private:
 class LineSweep
 {
 public:
-  LineSweep(const ValueBox& fine, const ValueBox& taken, const BoxPart& part, int axis,
+  LineSweep(const ValueBox& fine, const ValueBox& taken, const GridBox& part, int axis,
             const LineKernel& kernel)
       : Kernel(kernel), Fine(fine), Taken(taken), Part(part), Main(axis), Outer(3 - axis),
         Across(part.size.x), Down(part.size[this->Outer]), Errors(this->Across, this->Down),
@@ -179,7 +179,7 @@ private:
   const LineKernel& Kernel;
   const ValueBox& Fine;
   const ValueBox& Taken;
-  BoxPart Part;
+  GridBox Part;
   int Main;  ///< axis of the slices; rows in them go along x
   int Outer; ///< of the rows
   std::int64_t Across;
@@ -198,11 +198,11 @@ private:
 /// rows.
 struct Turned
 {
-  Turned(const ValueBox& fine, const ValueBox& taken, const BoxPart& part, int power)
+  Turned(const ValueBox& fine, const ValueBox& taken, const GridBox& part, int power)
       : fine(glm::i64vec3(0)), taken(this->fine)
   {
     const std::int64_t reach = (std::int64_t{1} << power) / 2;
-    BoxPart around = part;
+    GridBox around = part;
     around.first.x = std::max<std::int64_t>(part.first.x - reach, 0);
     around.size.x = std::min(part.first.x + part.size.x + reach, fine.size.x) - around.first.x;
     this->part = {{0, part.first.x - around.first.x, 0}, {part.size.y, part.size.x, part.size.z}};
@@ -210,7 +210,7 @@ struct Turned
     this->taken = turn(taken, around);
   }
 
-  static ValueBox turn(const ValueBox& box, const BoxPart& part)
+  static ValueBox turn(const ValueBox& box, const GridBox& part)
   {
     ValueBox turned({part.size.y, part.size.x, part.size.z});
     for (std::int64_t z = 0; z < part.size.z; ++z) {
@@ -226,7 +226,7 @@ struct Turned
 
   ValueBox fine;
   ValueBox taken;
-  BoxPart part;
+  GridBox part;
 };
 
 /// On voxels and between them.
@@ -243,7 +243,7 @@ void SweepBoth(LineSweep& sweep, const glm::i64vec3& way, int power, LineErrors&
 
 const LineKernel& LineKernelFor(InstructionSet set) { return INR_KERNEL_FOR(set, Lines); }
 
-LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const BoxPart& part,
+LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const GridBox& part,
                           int power, const LineKernel& kernel, const IsTooLarge& isTooLarge)
 {
   LineErrors errors;

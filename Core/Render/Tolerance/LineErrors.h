@@ -26,7 +26,7 @@ using IsTooLarge = std::function<bool(const LineErrors&)>;
 /// between two, wherever the first may be. `fine`: values of level 0; `taken`: what samples have in
 /// the same places. What samples near the box's ends are taken for has to be in it. Ends early,
 /// with less than what it would have found, when that is too large.
-LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const BoxPart& part,
+LineErrors FindLineErrors(const ValueBox& fine, const ValueBox& taken, const GridBox& part,
                           int power, const LineKernel& kernel, const IsTooLarge& isTooLarge);
 
 } // namespace inr

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Tolerance/LongLines.h"
 
+#include "Core/GridBox.h"
+
 #include <algorithm>
 
 namespace inr {
@@ -53,15 +55,15 @@ float LargestAlongLines(const std::vector<float>& numbers, const glm::i64vec3& c
   return largest;
 }
 
-LineErrors FindLongLineErrors(const ValueBox& fine, const ValueBox& taken, const BoxPart& whole,
+LineErrors FindLongLineErrors(const ValueBox& fine, const ValueBox& taken, const GridBox& whole,
                               int power, const LineKernel& kernel, const IsTooLarge& isTooLarge)
 {
   const glm::i64vec3 count = (whole.size + LongestPart - std::int64_t{1}) / LongestPart;
   std::vector<float> sums;
   std::vector<float> magnitudes;
   LineErrors errors;
-  for (std::int64_t k = 0; k < count.x * count.y * count.z; ++k) {
-    const glm::i64vec3 at(k % count.x, k / count.x % count.y, k / (count.x * count.y));
+  for (std::int64_t k = 0; k < GridCount(count); ++k) {
+    const glm::i64vec3 at = GridPlace(k, count);
     const glm::i64vec3 begin = at * whole.size / count;
     const glm::i64vec3 end = (at + std::int64_t{1}) * whole.size / count;
     const LineErrors found =

@@ -11,7 +11,7 @@ namespace inr {
 /// between the directions that are looked at are too far from any of these. Sums are the largest
 /// that a straight line may meet part after part. Ends early, with less than what it would have
 /// found, when that is too large.
-LineErrors FindLongLineErrors(const ValueBox& fine, const ValueBox& taken, const BoxPart& whole,
+LineErrors FindLongLineErrors(const ValueBox& fine, const ValueBox& taken, const GridBox& whole,
                               int power, const LineKernel& kernel, const IsTooLarge& isTooLarge);
 
 /// The largest sum of numbers, none of them negative, of `count` boxes, x fastest, that a straight

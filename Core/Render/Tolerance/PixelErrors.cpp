@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Tolerance/PixelErrors.h"
 
+#include "Core/GridBox.h"
 #include "Core/Parallel.h"
 
 #include <algorithm>
@@ -32,8 +33,7 @@ PixelErrors::PixelErrors(const LevelErrors& measured, const Majorants& cells, in
 
 const ValueRange& PixelErrors::shown(std::int64_t cell) const
 {
-  const glm::i64vec3& dims = this->Cells.dims();
-  const glm::i64vec3 at(cell % dims.x, cell / dims.x % dims.y, cell / (dims.x * dims.y));
+  const glm::i64vec3 at = GridPlace(cell, this->Cells.dims());
   return this->Around.range(this->Around.index(at / this->Together));
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/GridBox.h"
+
 #include <glm/gtc/type_precision.hpp>
 
 #include <cstdint>
@@ -30,29 +32,22 @@ inline glm::i64vec3 SizeOf(const VoxelSpan (&spans)[3])
 struct ValueBox
 {
   explicit ValueBox(const glm::i64vec3& size)
-      : size(size), values(static_cast<std::size_t>(size.x * size.y * size.z))
+      : size(size), values(static_cast<std::size_t>(GridCount(size)))
   {}
 
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
   {
-    return static_cast<std::size_t>(x + this->size.x * (y + this->size.y * z));
+    return static_cast<std::size_t>(GridNumber({x, y, z}, this->size));
   }
   std::int64_t stride(int axis) const
   {
     return axis == 0 ? 1 : axis == 1 ? this->size.x : this->size.x * this->size.y;
   }
 
-  std::int64_t count() const { return this->size.x * this->size.y * this->size.z; }
+  std::int64_t count() const { return GridCount(this->size); }
 
   glm::i64vec3 size;
   std::vector<float> values;
-};
-
-/// Part of a box.
-struct BoxPart
-{
-  glm::i64vec3 first{0};
-  glm::i64vec3 size{0};
 };
 
 } // namespace inr

@@ -14,8 +14,8 @@ namespace {
 VolumeStatistics Measure(const VolumePart& part, const TrainingGroup& group, const Arena& arena)
 {
   VolumeStatistics own;
-  const VoxelBox voxels = part.voxels();
-  if (voxels.voxels() > 0) {
+  const GridBox voxels = part.voxels();
+  if (voxels.count() > 0) {
     own = MeasureBox(part.piece(), voxels, arena);
   }
   VolumeStatistics all;
@@ -33,8 +33,8 @@ DecodedReport MeasureParts(const Evaluator& evaluator, const VolumePart& part,
   QualityMeter meter(evaluator, info, arena, bandSize);
   CellRanges cells(info.dims, macroCellSize);
   group.together([&] {
-    const VoxelBox voxels = part.voxels();
-    if (voxels.voxels() > 0) {
+    const GridBox voxels = part.voxels();
+    if (voxels.count() > 0) {
       meter.add(part.piece(), voxels, &cells, check);
     } else { // it may stop the others, too
       check(0);

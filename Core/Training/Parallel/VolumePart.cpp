@@ -19,38 +19,38 @@ glm::i64vec3 CellsOf(const glm::i64vec3& dims)
 }
 
 /// The cells between the voxels of a piece; none where it is a mere layer of a thick volume.
-VoxelBox CellsOf(const VolumePiece& piece, const glm::i64vec3& dims)
+GridBox CellsOf(const VolumePiece& piece, const glm::i64vec3& dims)
 {
-  VoxelBox cells{piece.first, glm::i64vec3(0)};
+  GridBox cells{piece.first, glm::i64vec3(0)};
   for (int axis = 0; axis < 3; ++axis) {
     cells.size[axis] = dims[axis] == 1 ? std::min<std::int64_t>(piece.data.dims[axis], 1)
                                        : std::max<std::int64_t>(piece.data.dims[axis] - 1, 0);
   }
-  return cells.voxels() > 0 ? cells : VoxelBox();
+  return cells.count() > 0 ? cells : GridBox();
 }
 
-bool Overlap(const VoxelBox& a, const VoxelBox& b)
+bool Overlap(const GridBox& a, const GridBox& b)
 {
   return glm::all(glm::lessThan(glm::max(a.first, b.first), glm::min(a.end(), b.end())));
 }
 
-bool Same(const VoxelBox& a, const VoxelBox& b) { return a.first == b.first && a.size == b.size; }
+bool Same(const GridBox& a, const GridBox& b) { return a.first == b.first && a.size == b.size; }
 
 /// Leaves every cell to the first who has it.
-void RequirePartition(std::vector<VoxelBox>& boxes, const VoxelBox& whole)
+void RequirePartition(std::vector<GridBox>& boxes, const GridBox& whole)
 {
   std::int64_t cells = 0;
   bool apart = true;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     for (std::size_t before = 0; before < k; ++before) {
-      if (boxes[k].voxels() > 0 && Same(boxes[k], boxes[before])) {
-        boxes[k] = VoxelBox();
+      if (boxes[k].count() > 0 && Same(boxes[k], boxes[before])) {
+        boxes[k] = GridBox();
       }
       apart = apart && !Overlap(boxes[k], boxes[before]);
     }
-    cells += boxes[k].voxels();
+    cells += boxes[k].count();
   }
-  if (!apart || cells != whole.voxels()) {
+  if (!apart || cells != whole.count()) {
     throw Error(ErrorCode::InvalidArgument,
                 apart ? "the pieces of the processes leave gaps in the volume"
                       : "the pieces of the processes overlap by more than a layer of points");
@@ -63,17 +63,17 @@ VolumePart::VolumePart(const VolumePiece& piece, const glm::i64vec3& dims,
                        const TrainingGroup& group)
     : Piece(piece), Dims(dims), Cells(CellsOf(piece, dims))
 {
-  std::vector<VoxelBox> boxes = group.valuesOfAll(this->Cells);
+  std::vector<GridBox> boxes = group.valuesOfAll(this->Cells);
   RequirePartition(boxes, {glm::i64vec3(0), CellsOf(dims)});
   this->Cells = boxes[static_cast<std::size_t>(group.rank())];
 }
 
-VoxelBox VolumePart::voxels() const
+GridBox VolumePart::voxels() const
 {
-  VoxelBox voxels = this->Cells;
+  GridBox voxels = this->Cells;
   for (int axis = 0; axis < 3; ++axis) { // the last layer of the volume begins no cell
     const bool last = voxels.end()[axis] == this->Dims[axis] - 1;
-    voxels.size[axis] += this->Cells.voxels() > 0 && last ? 1 : 0;
+    voxels.size[axis] += this->Cells.count() > 0 && last ? 1 : 0;
   }
   return voxels;
 }

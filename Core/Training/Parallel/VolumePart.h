@@ -25,7 +25,7 @@ public:
   const glm::i64vec3& dims() const { return this->Dims; }
 
   /// Every voxel of the volume is one of exactly one process.
-  VoxelBox voxels() const;
+  GridBox voxels() const;
 
   /// Whether a position in the unit cube lies in a cell of this process; it does in exactly one's.
   bool holds(const glm::vec3& position) const;
@@ -41,7 +41,7 @@ public:
 private:
   VolumePiece Piece;
   glm::i64vec3 Dims;
-  VoxelBox Cells;
+  GridBox Cells;
 };
 
 /// A volume that is asked by all processes at once: each answers for its part, and all know all

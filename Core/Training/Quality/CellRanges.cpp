@@ -45,7 +45,7 @@ ValueRange Rounded(double low, double high)
 } // namespace
 
 template <class T>
-void CellRanges::addRows(const VolumePiece& piece, const T* values, const VoxelBox& box,
+void CellRanges::addRows(const VolumePiece& piece, const T* values, const GridBox& box,
                          const Arena& arena)
 {
   const glm::i64vec3 size = piece.data.dims;
@@ -74,7 +74,7 @@ void CellRanges::addRows(const VolumePiece& piece, const T* values, const VoxelB
   });
 }
 
-void CellRanges::add(const VolumePiece& piece, const VoxelBox& box, const Arena& arena)
+void CellRanges::add(const VolumePiece& piece, const GridBox& box, const Arena& arena)
 {
   VisitScalars(piece.data, [&](const auto* values) { this->addRows(piece, values, box, arena); });
 }

@@ -44,7 +44,7 @@ public:
 
   /// Takes in the voxels of a box within a piece. A value that is not finite says that anything may
   /// be there.
-  void add(const VolumePiece& piece, const VoxelBox& box, const Arena& arena);
+  void add(const VolumePiece& piece, const GridBox& box, const Arena& arena);
 
   /// Where the ranges lie in memory.
   StateArray state()
@@ -68,7 +68,7 @@ private:
   };
 
   template <class T>
-  void addRows(const VolumePiece& piece, const T* values, const VoxelBox& box, const Arena& arena);
+  void addRows(const VolumePiece& piece, const T* values, const GridBox& box, const Arena& arena);
 
   /// Of an axis: the voxels in [begin, end) that cell `cell` and its apron hold, from the first.
   Span voxelsOf(std::int64_t cell, std::int64_t begin, std::int64_t end) const

@@ -2,6 +2,7 @@
 #include "Core/Training/Quality/Quality.h"
 
 #include "Core/Error.h"
+#include "Core/GridBox.h"
 #include "Core/Training/Quality/Ssim.h"
 #include "Core/Training/Scalars.h"
 
@@ -20,9 +21,9 @@ constexpr std::int64_t LargestTile = 384;
 std::int64_t TilesAlong(std::int64_t voxels) { return (voxels + LargestTile - 1) / LargestTile; }
 
 /// One of `count` parts of a box, side by side along an axis.
-VoxelBox Cut(const VoxelBox& box, int axis, std::int64_t part, std::int64_t count)
+GridBox Cut(const GridBox& box, int axis, std::int64_t part, std::int64_t count)
 {
-  VoxelBox cut = box;
+  GridBox cut = box;
   const std::int64_t begin = box.size[axis] * part / count;
   cut.first[axis] += begin;
   cut.size[axis] = box.size[axis] * (part + 1) / count - begin;
@@ -30,7 +31,7 @@ VoxelBox Cut(const VoxelBox& box, int axis, std::int64_t part, std::int64_t coun
 }
 
 /// A part of a box with what the SSIM windows that begin in it reach beyond it.
-VoxelBox WithWindows(const VoxelBox& part, const VoxelBox& box)
+GridBox WithWindows(const GridBox& part, const GridBox& box)
 {
   if (!SliceSsim::HasWindows(box.size)) {
     return part;
@@ -43,7 +44,7 @@ VoxelBox WithWindows(const VoxelBox& part, const VoxelBox& box)
 class SliceComparison
 {
 public:
-  SliceComparison(const Evaluator& evaluator, const VolumePiece& piece, const VoxelBox& box,
+  SliceComparison(const Evaluator& evaluator, const VolumePiece& piece, const GridBox& box,
                   const VolumeInfo& info, const Arena& arena, std::int64_t bandSize)
       : BandSize(bandSize), Source(evaluator), Piece(piece), Box(box), Info(info), Threads(arena),
         SliceSize(static_cast<std::size_t>(box.size.x * box.size.y)), Raw(this->SliceSize),
@@ -101,7 +102,7 @@ private:
     const glm::i64vec3 size = this->Piece.data.dims;
     const glm::i64vec3 at = this->Box.first - this->Piece.first + glm::i64vec3(0, y, z);
     const std::int64_t stride = this->Piece.data.stride;
-    const T* const row = values + stride * (at.x + size.x * (at.y + size.y * at.z));
+    const T* const row = values + stride * GridNumber(at, size);
     const double range = this->Info.high - this->Info.low; // its inverse may be infinite
     for (std::int64_t x = 0; x < this->Box.size.x; ++x) {
       this->Reference[static_cast<std::size_t>(y * this->Box.size.x + x)] =
@@ -112,7 +113,7 @@ private:
   std::int64_t BandSize;
   const Evaluator& Source;
   const VolumePiece& Piece;
-  VoxelBox Box;
+  GridBox Box;
   const VolumeInfo& Info;
   const Arena& Threads;
   std::size_t SliceSize;
@@ -149,14 +150,14 @@ void QualityMeter::gather(const TrainingGroup& group)
   }
 }
 
-void QualityMeter::add(const VolumePiece& piece, const VoxelBox& box, CellRanges* decoded,
+void QualityMeter::add(const VolumePiece& piece, const GridBox& box, CellRanges* decoded,
                        const std::function<void(double)>& check)
 {
   const std::int64_t columns = TilesAlong(box.size.x);
   const std::int64_t tiles = columns * TilesAlong(box.size.y);
   for (std::int64_t tile = 0; tile < tiles; ++tile) {
-    const VoxelBox column = Cut(box, 0, tile % columns, columns);
-    const VoxelBox own = Cut(column, 1, tile / columns, tiles / columns);
+    const GridBox column = Cut(box, 0, tile % columns, columns);
+    const GridBox own = Cut(column, 1, tile / columns, tiles / columns);
     this->addTile(piece, own, WithWindows(own, box), decoded, [&](double part) {
       check((static_cast<double>(tile) + part) / static_cast<double>(tiles));
     });
@@ -164,7 +165,7 @@ void QualityMeter::add(const VolumePiece& piece, const VoxelBox& box, CellRanges
 }
 
 /// Of the voxels of `box`, those of `own` count, and all windows.
-void QualityMeter::addTile(const VolumePiece& piece, const VoxelBox& own, const VoxelBox& box,
+void QualityMeter::addTile(const VolumePiece& piece, const GridBox& own, const GridBox& box,
                            CellRanges* decoded, const std::function<void(double)>& check)
 {
   SliceComparison slice(this->Source, piece, box, this->Info, this->Threads, this->BandSize);

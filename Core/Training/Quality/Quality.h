@@ -30,7 +30,7 @@ public:
     this->add(piece, {piece.first, piece.data.dims}, decoded, check);
   }
   /// The same of a box within a piece.
-  void add(const VolumePiece& piece, const VoxelBox& box, CellRanges* decoded,
+  void add(const VolumePiece& piece, const GridBox& box, CellRanges* decoded,
            const std::function<void(double)>& check);
 
   /// Of all finite voxels, and of the SSIM windows that lie within one piece; see MeasureQuality.
@@ -51,7 +51,7 @@ public:
   const Errors& errors() const { return this->All; }
 
 private:
-  void addTile(const VolumePiece& piece, const VoxelBox& own, const VoxelBox& box,
+  void addTile(const VolumePiece& piece, const GridBox& own, const GridBox& box,
                CellRanges* decoded, const std::function<void(double)>& check);
 
   const Evaluator& Source;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/Samples/BlockGrid.h"
 
+#include "Core/GridBox.h"
+
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -74,10 +76,10 @@ std::pair<glm::dvec3, glm::dvec3> BlockGrid::edges(std::int64_t block) const
   return {low, low + glm::dvec3(this->extent()) * size};
 }
 
-VoxelBox BlockGrid::ownVoxels(std::int64_t block) const
+GridBox BlockGrid::ownVoxels(std::int64_t block) const
 {
   const auto [low, high] = this->edges(block);
-  VoxelBox box;
+  GridBox box;
   for (int axis = 0; axis < 3; ++axis) {
     box.first[axis] = static_cast<std::int64_t>(std::ceil(low[axis]));
     box.size[axis] = static_cast<std::int64_t>(std::ceil(high[axis])) - box.first[axis];
@@ -85,10 +87,10 @@ VoxelBox BlockGrid::ownVoxels(std::int64_t block) const
   return box;
 }
 
-VoxelBox BlockGrid::voxels(std::int64_t block) const
+GridBox BlockGrid::voxels(std::int64_t block) const
 {
   const auto [low, high] = this->edges(block);
-  VoxelBox box;
+  GridBox box;
   for (int axis = 0; axis < 3; ++axis) {
     const auto first = static_cast<std::int64_t>(std::floor(low[axis]));
     const auto last = static_cast<std::int64_t>(std::floor(high[axis])) + 1;
@@ -102,14 +104,14 @@ double BlockGrid::readShare() const
 {
   double voxels = 0;
   for (std::int64_t block = 0; block < this->count(); ++block) {
-    const VoxelBox box = this->voxels(block);
+    const GridBox box = this->voxels(block);
     const glm::i64vec3 low = glm::max(box.first - std::int64_t{this->Margin}, glm::i64vec3(0));
     const glm::i64vec3 high = glm::min(box.end() + std::int64_t{this->Margin}, this->Dims);
     const glm::dvec3 read(high - low);
-    voxels += read.x * read.y * read.z;
+    voxels += GridCount(read);
   }
   const glm::dvec3 size(this->Dims);
-  return voxels / (size.x * size.y * size.z);
+  return voxels / GridCount(size);
 }
 
 } // namespace inr

@@ -18,7 +18,7 @@ class BlockGrid
 public:
   static constexpr std::int64_t ThinnestBlock = 8;
 
-  /// Blocks of at most `mostVoxels` voxels() with a `margin` around them, see VolumeReader, or as
+  /// Blocks of at most `mostVoxels` voxels with a `margin` around them, see VolumeReader, or as
   /// near to that as blocks of a voxel are.
   BlockGrid(const glm::i64vec3& dims, std::int64_t mostVoxels, int margin = 0);
 
@@ -37,12 +37,13 @@ public:
 
   /// The voxels whose centres lie in a block: of all blocks together, every voxel once. May be
   /// none.
-  VoxelBox ownVoxels(std::int64_t block) const;
+  GridBox ownVoxels(std::int64_t block) const;
 
   /// The voxels that positions in a block are interpolated from: its own and those next to them.
-  VoxelBox voxels(std::int64_t block) const;
+  GridBox voxels(std::int64_t block) const;
 
-  /// voxels() of all blocks, with the margin, over the voxels of the volume: 1 and somewhat.
+  /// What voxels() of all blocks hold, with the margin, over the voxels of the volume: 1 and
+  /// somewhat.
   double readShare() const;
 
 private:

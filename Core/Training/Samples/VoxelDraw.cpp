@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/Samples/VoxelDraw.h"
 
+#include "Core/GridBox.h"
 #include "Core/Random.h"
 #include "Core/Training/Samples/Trilinear.h"
 #include "Core/Training/Scalars.h"
@@ -21,12 +22,10 @@ glm::i64vec3 BlocksOf(const glm::i64vec3& dims, std::int64_t edge)
   return (dims + (edge - 1)) / edge;
 }
 
-std::int64_t Product(const glm::i64vec3& counts) { return counts.x * counts.y * counts.z; }
-
 std::int64_t EdgeFor(const glm::i64vec3& dims)
 {
   std::int64_t edge = SmallestEdge;
-  while (Product(BlocksOf(dims, edge)) > MostBlocks) {
+  while (GridCount(BlocksOf(dims, edge)) > MostBlocks) {
     edge *= 2;
   }
   return edge;
@@ -43,7 +42,7 @@ double SpreadShare(std::uint64_t stream, std::uint64_t k)
 
 /// Calls `visit(voxel, value above low)` for the finite voxels of a box until it returns false.
 template <class Visit>
-void VisitFinite(const NormalisedVolume& normalised, const VoxelBox& box, const Visit& visit)
+void VisitFinite(const NormalisedVolume& normalised, const GridBox& box, const Visit& visit)
 {
   const VolumeData& volume = normalised.data;
   VisitScalars(volume, [&](const auto* values) {
@@ -67,8 +66,8 @@ VoxelDraw::VoxelDraw(const NormalisedVolume& volume, const Arena& arena)
     : Volume(volume), Edge(EdgeFor(volume.data.dims)),
       Counts(BlocksOf(volume.data.dims, this->Edge))
 {
-  std::vector<Block> blocks(static_cast<std::size_t>(Product(this->Counts)));
-  arena.forEachBlock(Product(this->Counts), BlocksOfTask,
+  std::vector<Block> blocks(static_cast<std::size_t>(GridCount(this->Counts)));
+  arena.forEachBlock(GridCount(this->Counts), BlocksOfTask,
                      [&](std::int64_t begin, std::int64_t end) {
                        for (std::int64_t k = begin; k < end; ++k) {
                          blocks[static_cast<std::size_t>(k)] = this->look(k);
@@ -91,7 +90,7 @@ double VoxelDraw::density(const Block& block) const
   return this->Contrast > 0 ? 0.5 + 0.5 * block.contrast * this->Finite / this->Contrast : 1.0;
 }
 
-VoxelBox VoxelDraw::box(std::int64_t block) const
+GridBox VoxelDraw::box(std::int64_t block) const
 {
   const glm::i64vec3 first =
       this->Edge * glm::i64vec3(block % this->Counts.x, block / this->Counts.x % this->Counts.y,
@@ -125,7 +124,7 @@ VoxelDraw::Voxel VoxelDraw::voxel(std::uint64_t stream, std::uint64_t k) const
   const double within = (share - begin) / (*found - begin);
   const Block block = this->look(number);
   auto before = static_cast<std::int64_t>(within * static_cast<double>(block.finite));
-  const VoxelBox box = this->box(number);
+  const GridBox box = this->box(number);
   Voxel drawn{box.first, static_cast<float>(1.0 / this->density(block))};
   VisitFinite(this->Volume, box, [&](const glm::i64vec3& at, double) {
     drawn.at = at;

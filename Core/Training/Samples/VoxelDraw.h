@@ -40,7 +40,7 @@ private:
     double contrast = 0;
   };
 
-  VoxelBox box(std::int64_t block) const;
+  GridBox box(std::int64_t block) const;
   Block look(std::int64_t block) const;
   double density(const Block& block) const;
 

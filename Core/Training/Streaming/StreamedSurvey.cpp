@@ -77,7 +77,7 @@ void StreamedVolume::fixOrigin(const VolumePiece& piece)
 
 void StreamedVolume::survey(std::int64_t block, const VolumePiece& piece)
 {
-  const VoxelBox own = this->Blocks.ownVoxels(block);
+  const GridBox own = this->Blocks.ownVoxels(block);
   this->Statistics.add(MeasureBox(piece, own, this->Threads));
   if (!this->measuresAll()) {
     this->Ranges.add(piece, own, this->Threads);

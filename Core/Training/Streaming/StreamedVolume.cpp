@@ -2,6 +2,7 @@
 #include "Core/Training/Streaming/StreamedVolume.h"
 
 #include "Core/Error.h"
+#include "Core/GridBox.h"
 #include "Core/Training/Samples/RandomStream.h"
 #include "Core/Training/TrainingRun.h"
 
@@ -24,8 +25,6 @@ constexpr double MostReadings = 3.0;
 
 /// Share of the range by which a value may differ when it is computed again.
 constexpr double SameValue = 1e-6;
-
-std::int64_t Voxels(const glm::i64vec3& dims) { return dims.x * dims.y * dims.z; }
 
 /// Blocks of at most so many voxels, and enough of them for each process to have about as many.
 BlockGrid BlocksFor(const VolumeReader& reader, std::int64_t mostVoxels, int processes)
@@ -59,7 +58,7 @@ std::string ToText(double value)
   return text.str();
 }
 
-std::string ToText(const VoxelBox& box)
+std::string ToText(const GridBox& box)
 {
   const auto axis = [&](int a) {
     return std::to_string(box.first[a]) + " to " + std::to_string(box.end()[a] - 1);
@@ -78,7 +77,7 @@ StreamedVolume::StreamedVolume(VolumeReader& reader, const StreamBudget& budget,
       Share(this->Blocks.count(), group.rank(), group.size()),
       Pool(this->Blocks,
            std::min(budget.poolSamples * this->Blocks.count() / this->Share.mostBlocks,
-                    2 * Voxels(reader.dims())),
+                    2 * GridCount(reader.dims())),
            options.seed, this->Share),
       Ranges(reader.dims(), macroCellSize),
       EstimatePositions(
@@ -94,11 +93,11 @@ StreamedVolume::StreamedVolume(VolumeReader& reader, const StreamBudget& budget,
 
 bool StreamedVolume::measuresAll() const
 {
-  return Voxels(this->Reader.dims()) <= 4 * this->MeasuredVoxels;
+  return GridCount(this->Reader.dims()) <= 4 * this->MeasuredVoxels;
 }
 
 /// Whatever a reader does, what it gives has to be the box.
-VolumePiece StreamedVolume::read(const VoxelBox& box)
+VolumePiece StreamedVolume::read(const GridBox& box)
 {
   const VolumePiece piece = this->Reader.read(box);
   if (piece.data.values == nullptr || piece.data.dims != box.size || piece.first != box.first ||
@@ -139,11 +138,11 @@ double StreamedVolume::mostRereads() const
   const double measured = this->measuresAll()
                               ? all
                               : static_cast<double>(this->MeasuredVoxels + VoxelsOfBar) /
-                                    static_cast<double>(Voxels(this->Reader.dims()));
+                                    static_cast<double>(GridCount(this->Reader.dims()));
   return std::clamp((MostReadings - measured - once) / once, 0.0, 1.0);
 }
 
-void StreamedVolume::requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const
+void StreamedVolume::requireKnownRange(const VolumePiece& piece, const GridBox& box) const
 {
   const VolumeStatistics now = MeasureBox(piece, box, this->Threads);
   const double low = this->Statistics.low - this->tolerance();
@@ -167,7 +166,7 @@ void StreamedVolume::requireKnownRange(const VolumePiece& piece, const VoxelBox&
 /// Of a volume all of whose voxels were measured.
 void StreamedVolume::requireKnownFinite(std::int64_t finite) const
 {
-  const std::int64_t before = Voxels(this->Reader.dims()) - this->Statistics.nonFinite;
+  const std::int64_t before = GridCount(this->Reader.dims()) - this->Statistics.nonFinite;
   if (finite != before) {
     throw Error(ErrorCode::InvalidArgument,
                 "the data changed while they were read: " + std::to_string(finite) +
@@ -178,7 +177,7 @@ void StreamedVolume::requireKnownFinite(std::int64_t finite) const
 
 /// Those of the estimate's voxels that a piece of just this box tells as one does that holds more:
 /// not at its faces, where rounding may put a voxel's centre towards the voxel beyond.
-std::vector<std::size_t> StreamedVolume::estimatesWithin(const VoxelBox& box) const
+std::vector<std::size_t> StreamedVolume::estimatesWithin(const GridBox& box) const
 {
   const glm::i64vec3 dims = this->Reader.dims();
   const auto isWithin = [&](const glm::vec3& position) {
@@ -204,7 +203,7 @@ std::vector<std::size_t> StreamedVolume::estimatesWithin(const VoxelBox& box) co
 
 /// Looks at those of PsnrEstimate: within the range they may have changed, too, the more easily
 /// since the first reading was in another process.
-void StreamedVolume::requireKnownValues(const VolumePiece& piece, const VoxelBox& box,
+void StreamedVolume::requireKnownValues(const VolumePiece& piece, const GridBox& box,
                                         const std::vector<std::size_t>& estimates) const
 {
   std::int64_t differing = 0;
@@ -238,7 +237,7 @@ void StreamedVolume::readAgain()
 void StreamedVolume::readAgain(std::int64_t block)
 {
   const VolumePiece piece = this->read(this->Blocks.voxels(block));
-  const VoxelBox own = this->Blocks.ownVoxels(block);
+  const GridBox own = this->Blocks.ownVoxels(block);
   this->requireKnownRange(piece, own);
   this->requireKnownValues(piece, own, this->EstimatesOfBlocks[static_cast<std::size_t>(block)]);
   this->Pool.offer(block, this->Pool.sample(block, 1, piece, this->Threads));
@@ -279,13 +278,13 @@ void StreamedVolume::measureShare(const BlockGrid& boxes, const std::vector<std:
   const auto size = static_cast<std::size_t>(this->Group.size());
   for (std::size_t first = 0; first < chosen.size(); first += size) {
     const std::size_t k = first + static_cast<std::size_t>(this->Group.rank());
-    const VoxelBox own = k < chosen.size() ? boxes.ownVoxels(chosen[k]) : VoxelBox();
+    const GridBox own = k < chosen.size() ? boxes.ownVoxels(chosen[k]) : GridBox();
     const auto done = [&](double part) {
       progress((static_cast<double>(first) + part * static_cast<double>(size)) /
                static_cast<double>(chosen.size()));
     };
     this->Group.together([&] {
-      if (own.voxels() == 0) {
+      if (own.count() == 0) {
         size > 1 ? this->readNothing() : void();
         done(0); // who has nothing to do may stop the others, too
         return;
@@ -309,8 +308,8 @@ DecodedReport StreamedVolume::measure(const Evaluator& evaluator, const Model& m
 {
   const bool all = this->measuresAll();
   const BlockGrid boxes = this->measuredBoxes();
-  const double share =
-      static_cast<double>(this->MeasuredVoxels) / static_cast<double>(Voxels(this->Reader.dims()));
+  const double share = static_cast<double>(this->MeasuredVoxels) /
+                       static_cast<double>(GridCount(this->Reader.dims()));
   const std::int64_t count =
       all ? boxes.count() : std::llround(std::ceil(share * static_cast<double>(boxes.count())));
   QualityMeter meter(evaluator, model.volume, this->Threads, BandSize(model.description));

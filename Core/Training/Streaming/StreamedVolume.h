@@ -71,8 +71,8 @@ public:
 private:
   bool measuresAll() const;
   BlockGrid measuredBoxes() const;
-  VolumePiece read(const VoxelBox& box);
-  void requireKnownRange(const VolumePiece& piece, const VoxelBox& box) const;
+  VolumePiece read(const GridBox& box);
+  void requireKnownRange(const VolumePiece& piece, const GridBox& box) const;
   void readNothing();
   VolumePiece readFirst(std::int64_t block);
   bool needsOrigin() const;
@@ -81,8 +81,8 @@ private:
   bool isAsBefore(std::uint64_t stream, std::int64_t k);
   void sampleEstimate(std::int64_t block, const VolumePiece& piece);
   void requireKnownFinite(std::int64_t finite) const;
-  std::vector<std::size_t> estimatesWithin(const VoxelBox& box) const;
-  void requireKnownValues(const VolumePiece& piece, const VoxelBox& box,
+  std::vector<std::size_t> estimatesWithin(const GridBox& box) const;
+  void requireKnownValues(const VolumePiece& piece, const GridBox& box,
                           const std::vector<std::size_t>& estimates) const;
   double tolerance() const;
   bool allGoOn(const StopCheck& check) const;

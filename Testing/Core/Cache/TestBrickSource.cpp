@@ -30,7 +30,7 @@ void ForEachVoxel(const inr::Hierarchy& levels, const inr::BrickId& id,
   const glm::i64vec3 dims(levels.brickDims());
   for (std::size_t k = 0; k < values.size(); ++k) {
     const auto index = static_cast<std::int64_t>(k);
-    const glm::i64vec3 within(index % dims.x, index / dims.x % dims.y, index / (dims.x * dims.y));
+    const glm::i64vec3 within = inr::GridPlace(index, dims);
     check(levels.firstVoxel(id) + within, values[k]);
   }
 }

@@ -92,8 +92,7 @@ private:
     cells.apron = 1.0 / glm::dvec3(this->dims);
     for (std::size_t k = 0; k < cells.ranges.size(); ++k) {
       const auto cell = static_cast<std::int64_t>(k);
-      const glm::i64vec3 at(cell % cells.dims.x, cell / cells.dims.x % cells.dims.y,
-                            cell / (cells.dims.x * cells.dims.y));
+      const glm::i64vec3 at = inr::GridPlace(cell, cells.dims);
       cells.ranges[k] = this->rangeAround(at * std::int64_t{CellEdge});
     }
     return cells;

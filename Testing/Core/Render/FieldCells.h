@@ -11,8 +11,7 @@ inline inr::MacroCells CellsOf(const FieldEvaluator::Function& field, const glm:
   inr::MacroCells cells = inr::MakeMacroCells(dims, edge);
   const int across = edge + 2;
   for (std::int64_t k = 0; k < static_cast<std::int64_t>(cells.ranges.size()); ++k) {
-    const glm::i64vec3 cell(k % cells.dims.x, k / cells.dims.x % cells.dims.y,
-                            k / (cells.dims.x * cells.dims.y));
+    const glm::i64vec3 cell = inr::GridPlace(k, cells.dims);
     for (int voxel = 0; voxel < across * across * across; ++voxel) {
       const glm::i64vec3 within(voxel % across, voxel / across % across, voxel / (across * across));
       const glm::i64vec3 at = glm::clamp(cell * std::int64_t{edge} + within - std::int64_t{1},

@@ -28,7 +28,7 @@ struct Lines
 {
   const inr::ValueBox& fine;
   const inr::ValueBox& taken;
-  inr::BoxPart part;
+  inr::GridBox part;
   int power;
 
   static bool isIn(const glm::i64vec3& at, const glm::i64vec3& size)
@@ -99,7 +99,7 @@ inr::LineErrors LineByLine(const Lines& lines)
     const std::int64_t last = other.z != 0 ? other.z : other.y != 0 ? other.y : other.x;
     const glm::i64vec3 way = last * other; // slices are counted upwards
     for (std::int64_t k = 0; k < size.x * size.y * size.z; ++k) {
-      const glm::i64vec3 within(k % size.x, k / size.x % size.y, k / (size.x * size.y));
+      const glm::i64vec3 within = inr::GridPlace(k, size);
       lines.addTo(errors, lines.part.first + within, way, false);
       if (lines.together(way) > 1) {
         lines.addTo(errors, lines.part.first + within, way, true);
@@ -114,10 +114,10 @@ TEST(LineErrors, AreTheLargestOfAllLines)
   const glm::i64vec3 size(14, 13, 12);
   const inr::ValueBox fine = RandomBox(size, 1);
   const inr::ValueBox taken = RandomBox(size, 2);
-  const inr::BoxPart parts[] = {
+  const inr::GridBox parts[] = {
       {{2, 1, 3}, {9, 10, 7}}, {{0, 0, 0}, size}, {{5, 0, 11}, {3, 13, 1}}};
   const inr::LineKernel& kernel = inr::LineKernelFor(inr::InstructionSet::Baseline);
-  for (const inr::BoxPart& part : parts) {
+  for (const inr::GridBox& part : parts) {
     for (const int power : {1, 2, 3}) {
       const Lines lines{fine, taken, part, power};
       const inr::LineErrors expected = LineByLine(lines);

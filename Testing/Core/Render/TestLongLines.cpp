@@ -84,7 +84,7 @@ TEST(LongLines, AreCutAndPutTogether)
   }
   taken.values[taken.index(30, 0, 0)] = 1.0f;
   const inr::LineKernel& kernel = inr::LineKernelFor(inr::InstructionSet::Baseline);
-  const inr::BoxPart all{{0, 0, 0}, size};
+  const inr::GridBox all{{0, 0, 0}, size};
   const inr::LineErrors whole = inr::FindLineErrors(fine, taken, all, 1, kernel, Never);
   const inr::LineErrors parts = inr::FindLongLineErrors(fine, taken, all, 1, kernel, Never);
   EXPECT_GE(parts.sum, whole.sum * (1 - 1e-6));
@@ -102,14 +102,14 @@ TEST(LongLines, SeeMoreOfWhatIsBetweenTheirDirections)
   inr::ValueBox taken(size);
   const glm::dvec3 way = glm::normalize(glm::dvec3(3, 2, 1));
   for (std::int64_t k = 0; k < taken.count(); ++k) {
-    const glm::i64vec3 at(k % size.x, k / size.x % size.y, k / (size.x * size.y));
+    const glm::i64vec3 at = inr::GridPlace(k, size);
     const double distance = glm::length(glm::cross(way, glm::dvec3(at)));
     taken.values[static_cast<std::size_t>(k)] =
         static_cast<float>(std::exp(-distance * distance / 1.44));
   }
   const double along = glm::length(glm::dvec3(size)); // the sum on the fibre's axis
   const inr::LineKernel& kernel = inr::LineKernelFor(inr::ChooseInstructionSet({}));
-  const inr::BoxPart all{{0, 0, 0}, size};
+  const inr::GridBox all{{0, 0, 0}, size};
   EXPECT_LT(inr::FindLineErrors(fine, taken, all, 1, kernel, Never).sum, 0.15 * along);
   EXPECT_GE(inr::FindLongLineErrors(fine, taken, all, 1, kernel, Never).sum, 0.4 * along);
 }

@@ -80,7 +80,7 @@ void CheckBlocks(const inr::MajorantGrid& majorants)
 {
   const glm::i64vec3& dims = majorants.dims();
   for (std::int64_t k = 0; k < dims.x * dims.y * dims.z; ++k) {
-    const glm::i64vec3 at(k % dims.x, k / dims.x % dims.y, k / (dims.x * dims.y));
+    const glm::i64vec3 at = inr::GridPlace(k, dims);
     int block = -1;
     const auto largest = std::max({dims.x, dims.y, dims.z});
     while ((block < 0 || (std::int64_t{1} << block) < largest) &&

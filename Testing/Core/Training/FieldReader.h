@@ -17,13 +17,13 @@ public:
   const glm::i64vec3& dims() const override { return this->Source.dims; }
   inr::ScalarType type() const override { return this->Source.type; }
 
-  inr::VolumePiece read(const inr::VoxelBox& box) override
+  inr::VolumePiece read(const inr::GridBox& box) override
   {
     if (this->before) {
       this->before(++this->reads);
     }
-    this->voxelsRead += box.voxels();
-    this->largest = std::max(this->largest, box.voxels());
+    this->voxelsRead += box.count();
+    this->largest = std::max(this->largest, box.count());
     this->Values.clear();
     for (std::int64_t z = box.first.z; z < box.end().z; ++z) {
       for (std::int64_t y = box.first.y; y < box.end().y; ++y) {

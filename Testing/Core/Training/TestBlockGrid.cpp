@@ -31,8 +31,8 @@ TEST_P(Blocks, OwnEveryVoxelOnce)
   const glm::i64vec3 dims = GetParam().dims;
   std::vector<int> owners(static_cast<std::size_t>(dims.x * dims.y * dims.z));
   for (std::int64_t block = 0; block < this->Grid.count(); ++block) {
-    const inr::VoxelBox box = this->Grid.ownVoxels(block);
-    for (std::int64_t k = 0; k < box.voxels(); ++k) {
+    const inr::GridBox box = this->Grid.ownVoxels(block);
+    for (std::int64_t k = 0; k < box.count(); ++k) {
       const glm::i64vec3 at = box.first + glm::i64vec3(k % box.size.x, k / box.size.x % box.size.y,
                                                        k / (box.size.x * box.size.y));
       ++owners.at(static_cast<std::size_t>(at.x + dims.x * (at.y + dims.y * at.z)));
@@ -45,8 +45,8 @@ TEST_P(Blocks, AreSmallEnoughAndHoldWhatInterpolationNeeds)
 {
   const glm::dvec3 size(GetParam().dims);
   for (std::int64_t block = 0; block < this->Grid.count(); ++block) {
-    const inr::VoxelBox box = this->Grid.voxels(block);
-    EXPECT_LE(box.voxels(), GetParam().mostVoxels);
+    const inr::GridBox box = this->Grid.voxels(block);
+    EXPECT_LE(box.count(), GetParam().mostVoxels);
     for (const float share : {0.0f, 0.3f, 0.999f}) {
       const glm::vec3 position = this->Grid.corner(block) + share * this->Grid.extent();
       EXPECT_EQ(this->Grid.blockAt(position), block);
@@ -73,7 +73,7 @@ TEST(BlockGrid, LeavesRoomForAMargin)
   const inr::BlockGrid grid(dims, 1 << 20, 3);
   double read = 0;
   for (std::int64_t block = 0; block < grid.count(); ++block) {
-    const inr::VoxelBox box = grid.voxels(block);
+    const inr::GridBox box = grid.voxels(block);
     std::int64_t voxels = 1;
     for (int axis = 0; axis < 3; ++axis) {
       voxels *= std::min(box.end()[axis] + 3, dims[axis]) -

@@ -165,7 +165,7 @@ TEST(PieceBatches, AreTogetherTheSamplesOfOneProcess)
       source.sample(positions.data(), batches.count(), truth.data());
       EXPECT_EQ(targets, truth);
       // In proportion to its share of the voxels.
-      const double share = static_cast<double>(part.voxels().voxels()) / (26 * 21 * 17);
+      const double share = static_cast<double>(part.voxels().count()) / (26 * 21 * 17);
       EXPECT_NEAR(static_cast<double>(batches.count()) / (count * inr::BatchSize), share, 0.05);
       const std::lock_guard<std::mutex> lock(mutex);
       found.insert(found.end(), positions.begin(), positions.end());

@@ -144,8 +144,7 @@ void ExpectDirectRanges(const Comparison& c)
   EXPECT_EQ(cells.provenance, inr::MacroCellProvenance::Decoded);
   EXPECT_EQ(cells.apron * glm::dvec3(c.Info.dims), glm::dvec3(inr::MacroCellApron));
   for (std::int64_t cell = 0; cell < cells.dims.x * cells.dims.y * cells.dims.z; ++cell) {
-    const glm::i64vec3 at(cell % cells.dims.x, cell / cells.dims.x % cells.dims.y,
-                          cell / (cells.dims.x * cells.dims.y));
+    const glm::i64vec3 at = inr::GridPlace(cell, cells.dims);
     const glm::i64vec3 begin =
         glm::max(at * std::int64_t{8} - inr::MacroCellApron, glm::i64vec3(0));
     const glm::i64vec3 end =

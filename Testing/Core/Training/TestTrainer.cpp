@@ -149,8 +149,7 @@ TEST(Trainer, LearnsVoxelsAmongNaNs)
 {
   Field<float> field = WaveField();
   for (std::int64_t k = 0; k < field.data().voxels(); ++k) {
-    const glm::i64vec3 at(k % field.dims.x, k / field.dims.x % field.dims.y,
-                          k / (field.dims.x * field.dims.y));
+    const glm::i64vec3 at = inr::GridPlace(k, field.dims);
     if ((at.x + at.y + at.z) % 2 != 0) {
       field.values[static_cast<std::size_t>(k)] = NAN;
     }

@@ -72,7 +72,7 @@ inr::MacroCells MeasureCells(const glm::i64vec3& dims, const std::vector<float>&
   inr::MacroCells cells = inr::MakeMacroCells(dims, CellEdge);
   cells.provenance = inr::MacroCellProvenance::Decoded;
   for (std::int64_t i = 0; i < dims.x * dims.y * dims.z; ++i) {
-    const glm::i64vec3 v(i % dims.x, i / dims.x % dims.y, i / (dims.x * dims.y));
+    const glm::i64vec3 v = inr::GridPlace(i, dims);
     const glm::i64vec3 first =
         glm::max(v - std::int64_t{1}, std::int64_t{0}) / std::int64_t{CellEdge};
     const glm::i64vec3 last =
