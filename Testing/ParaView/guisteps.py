@@ -102,10 +102,16 @@ class Refinement:
         """Of a picture that is never done: a selection does not wait for it."""
         x, y = (size // 2 for size in self.view.GetRenderWindow().GetSize())
         simple.SelectSurfaceCells(Rectangle=[x - 9, y - 9, x + 9, y + 9], View=self.view)
-        source = self.display.Input
-        check(source.SMProxy.GetSelectionInput(source.Port) is not None, "nothing is selected")
+        check(self.is_selected(), "nothing is selected")
         check(not self.is_converged(), "a picture that cannot be done has converged")
-        simple.ClearSelection(source)
+        self.clear_selection()
+
+    def is_selected(self):
+        source = self.display.Input
+        return source.SMProxy.GetSelectionInput(source.Port) is not None
+
+    def clear_selection(self):
+        simple.ClearSelection(self.display.Input)
 
     def pauses_while_an_animation_plays(self):
         scene = simple.GetAnimationScene()

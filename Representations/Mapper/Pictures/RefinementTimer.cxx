@@ -6,6 +6,7 @@
 #include <vtkCommand.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
+#include <vtkSmartPointer.h>
 
 #include <memory>
 #include <utility>
@@ -16,6 +17,19 @@ namespace {
 constexpr double Patience = 0.2; ///< seconds until a busy application is asked again
 /// Before the application's observers: a timer that fires must not be destroyed by what these do.
 constexpr float First = 1000;
+constexpr vtkCommand::EventIds Observed[] = {
+    vtkCommand::TimerEvent,
+    vtkCommand::StartInteractionEvent,
+    vtkCommand::EndInteractionEvent,
+    vtkCommand::LeftButtonReleaseEvent,
+    vtkCommand::MiddleButtonReleaseEvent,
+    vtkCommand::RightButtonReleaseEvent,
+};
+
+bool ShowsInteraction(vtkRenderWindow* window)
+{
+  return window && window->GetDesiredUpdateRate() >= ImageReduction::StillRate;
+}
 } // namespace
 
 RefinementTimer::RefinementTimer(std::function<bool()> mayRefine, std::function<void()> begin)
@@ -71,8 +85,7 @@ void RefinementTimer::start(vtkRenderWindowInteractor* interactor, double pause)
     this->cancel();
     this->Interactor = interactor;
     this->Interacting = false;
-    for (const auto event : {vtkCommand::TimerEvent, vtkCommand::StartInteractionEvent,
-                             vtkCommand::EndInteractionEvent}) {
+    for (const auto event : Observed) {
       interactor->AddObserver(event, this->Command, First);
     }
   }
@@ -93,29 +106,54 @@ bool RefinementTimer::isBusy() const
   // VTK's styles have the rate of interactive pictures as long as a button is down; ParaView says
   // so by events.
   vtkRenderWindow* window = this->Interactor->GetRenderWindow();
-  return this->Interacting || !window ||
-         window->GetDesiredUpdateRate() >= ImageReduction::StillRate || !this->MayRefine();
+  return this->Interacting || !window || ShowsInteraction(window);
+}
+
+// ParaView 5.11's selections by mouse begin as an interaction and end without a word: to the view,
+// all pictures that its interactor asks for are interactive ones from then on.
+bool RefinementTimer::endForgottenInteraction(vtkRenderWindowInteractor* interactor)
+{
+  const bool forgotten = this->Interacting && this->Released;
+  if (forgotten) {
+    interactor->InvokeEvent(vtkCommand::EndInteractionEvent);
+  }
+  return forgotten;
 }
 
 void RefinementTimer::OnEvent(vtkObject*, unsigned long event, void* self, void* data)
 {
   auto* refinement = static_cast<RefinementTimer*>(self);
-  if (event != vtkCommand::TimerEvent) {
-    refinement->Interacting = event == vtkCommand::StartInteractionEvent;
-  } else if (data && refinement->Timer != 0 && *static_cast<int*>(data) == refinement->Timer) {
-    refinement->fire();
+  switch (event) {
+  case vtkCommand::TimerEvent:
+    if (data && refinement->Timer != 0 && *static_cast<int*>(data) == refinement->Timer) {
+      refinement->fire();
+    }
+    break;
+  case vtkCommand::StartInteractionEvent:
+    refinement->Interacting = true;
+    refinement->Released = false;
+    break;
+  case vtkCommand::EndInteractionEvent:
+    refinement->Interacting = false;
+    break;
+  default:
+    refinement->Released = true;
   }
 }
 
 void RefinementTimer::fire()
 {
   // VTK's interactor for X is going through its timers: the one that fires must stay until then.
-  vtkRenderWindowInteractor* interactor = this->Interactor;
+  const vtkSmartPointer<vtkRenderWindowInteractor> interactor = this->Interactor.GetPointer();
   interactor->DestroyTimer(this->Fired);
   this->Fired = std::exchange(this->Timer, 0);
   const std::weak_ptr<const bool> life = this->Life;
-  const bool busy = this->isBusy();
-  if (life.expired()) { // the application has answered by deleting the mapper
+  const bool forgotten = this->endForgottenInteraction(interactor);
+  if (life.expired() || !this->Pending || this->Timer != 0) { // the application has seen to it
+    return;
+  }
+  const bool busy = (this->isBusy() && !forgotten) || !this->MayRefine();
+  if (life.expired()) {
     return;
   }
   if (busy) {
@@ -123,8 +161,12 @@ void RefinementTimer::fire()
     return;
   }
   this->Begin();
-  // Nothing of this from here on: rendering may delete the mapper.
-  interactor->Render();
+  interactor->Render(); // which may delete the mapper, and this
+  if (!life.expired() && !this->Interacting && ShowsInteraction(interactor->GetRenderWindow())) {
+    // The view believes in an interaction that was forgotten before this observed any.
+    interactor->InvokeEvent(vtkCommand::EndInteractionEvent);
+    interactor->Render();
+  }
 }
 
 } // namespace inr

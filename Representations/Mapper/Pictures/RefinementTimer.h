@@ -42,6 +42,8 @@ private:
   static void OnEvent(vtkObject* caller, unsigned long event, void* self, void* data);
   void fire();
   bool isBusy() const;
+  /// Whether there was one. May destroy this, as it is the application that hears of it.
+  bool endForgottenInteraction(vtkRenderWindowInteractor* interactor);
   void start(vtkRenderWindowInteractor* interactor, double pause);
   void stop();
 
@@ -51,6 +53,7 @@ private:
   vtkNew<vtkCallbackCommand> Command;
   bool Pending = false;     ///< a picture is asked for, or being made because it was
   bool Interacting = false; ///< a mouse button is down, whether the mouse moves or not
+  bool Released = false;    ///< a button, since that began
   int Timer = 0;
   int Fired = 0;                                                   ///< the timer before
   std::shared_ptr<const bool> Life = std::make_shared<bool>(true); ///< ends with this

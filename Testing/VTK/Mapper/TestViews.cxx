@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One volume in several views at once: viewports of a window, and the eyes of one in stereo.
 #include "OneVolume.h"
+#include "Representations/Mapper/Pictures/ImageReduction.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
@@ -206,6 +207,12 @@ struct IdleWindow
            this->watch.allConverged();
   }
 
+  /// Whether the latest picture was none in haste.
+  bool isStill() const
+  {
+    return this->one.scene.window->GetDesiredUpdateRate() < inr::ImageReduction::StillRate;
+  }
+
   OneVolume one;
   Watch watch;
   vtkNew<vtkRenderWindowInteractor> interactor;
@@ -369,6 +376,74 @@ TEST(Views, MayBeTakenAwayWhenAskedWhetherTheyMayClearUp)
   EXPECT_FALSE(idle.one.mapper->GetConverged());
   EXPECT_TRUE(RunUntilIdle(idle.one.scene.window, idle.interactor, [] {}));
   EXPECT_EQ(idle.one.mapper, nullptr);
+}
+
+/// Renders what the interactor asks for as ParaView's views do: from the beginning of an
+/// interaction to its end in haste.
+class HastyView
+{
+public:
+  explicit HastyView(IdleWindow& idle) : Idle(idle)
+  {
+    idle.interactor->SetInteractorStyle(nullptr); // which would render for itself
+    idle.one.volume->VisibilityOff();
+    idle.one.scene.window->Render();
+    idle.interactor->ProcessEvents(); // of a window that has just come up, for which it renders
+    idle.one.volume->VisibilityOn();
+    idle.interactor->EnableRenderOff();
+    this->Command->SetClientData(this);
+    this->Command->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
+      static_cast<HastyView*>(data)->on(event);
+    });
+    for (const auto event : {vtkCommand::StartInteractionEvent, vtkCommand::EndInteractionEvent,
+                             vtkCommand::RenderEvent}) {
+      idle.interactor->AddObserver(event, this->Command);
+    }
+  }
+  ~HastyView() { this->Idle.interactor->RemoveObserver(this->Command); }
+  HastyView(const HastyView&) = delete;
+  HastyView& operator=(const HastyView&) = delete;
+
+  /// As ParaView's selections do.
+  void interactWithoutEnd() const
+  {
+    this->Idle.interactor->InvokeEvent(vtkCommand::LeftButtonPressEvent);
+    this->Idle.interactor->InvokeEvent(vtkCommand::StartInteractionEvent);
+    this->Idle.interactor->InvokeEvent(vtkCommand::LeftButtonReleaseEvent);
+  }
+
+private:
+  void on(unsigned long event)
+  {
+    if (event != vtkCommand::RenderEvent) {
+      this->Interacts = event == vtkCommand::StartInteractionEvent;
+      return;
+    }
+    vtkRenderWindow* window = this->Idle.one.scene.window;
+    window->SetDesiredUpdateRate(this->Interacts ? 5 : 0.002);
+    window->Render();
+  }
+
+  IdleWindow& Idle;
+  vtkNew<vtkCallbackCommand> Command;
+  bool Interacts = false;
+};
+
+TEST(Views, ClearUpAfterInteractionsThatNobodyEnds)
+{
+  IdleWindow meanwhile;
+  meanwhile.watch.watch(meanwhile.one.renderer);
+  const HastyView view(meanwhile);
+  meanwhile.one.scene.window->Render(); // not complete, so there is more to come
+  view.interactWithoutEnd();
+  EXPECT_TRUE(meanwhile.clearsUp());
+  EXPECT_TRUE(meanwhile.isStill());
+  IdleWindow before;
+  before.watch.watch(before.one.renderer);
+  const HastyView other(before);
+  other.interactWithoutEnd();
+  EXPECT_TRUE(before.clearsUp());
+  EXPECT_TRUE(before.isStill());
 }
 
 } // namespace
