@@ -5,6 +5,7 @@
 #include "Core/Random.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace inr {
@@ -34,7 +35,7 @@ void PathPicture::start(const Frame& frame)
   const Tiling tiling(frame.width, frame.height);
   this->Pending.resize(static_cast<std::size_t>(tiling.count()));
   std::iota(this->Pending.begin(), this->Pending.end(), std::int64_t{0});
-  this->Traced = false;
+  this->Reached.assign(this->Pending.size(), 0);
   this->Finished = {};
   this->Latest = {};
   this->Begun = true;
@@ -51,6 +52,8 @@ void PathPicture::finishTiles(const TracedTiles& traced)
     const bool isHere = traced.reached.empty() || traced.reached[k] != 0;
     const bool finished = isHere && (traced.final || traced.tiles[k].missed == 0);
     (finished ? this->Finished : unfinished).add(traced.tiles[k]);
+    char& everReached = this->Reached[static_cast<std::size_t>(this->Pending[k])];
+    everReached = isHere ? 1 : everReached;
     this->Work.add(traced.tiles[k].work);
     reached += isHere ? 1 : 0;
     if (!finished) {
@@ -58,6 +61,10 @@ void PathPicture::finishTiles(const TracedTiles& traced)
     }
   }
   this->Pending.resize(pending);
+  // Something everywhere comes before the best anywhere.
+  std::stable_partition(this->Pending.begin(), this->Pending.end(), [this](std::int64_t tile) {
+    return this->Reached[static_cast<std::size_t>(tile)] == 0;
+  });
   if (whole) { // what is missing may take as long as the others
     this->Latest.marchSeconds = traced.seconds * static_cast<double>(traced.tiles.size()) /
                                 static_cast<double>(std::max<std::size_t>(reached, 1));
@@ -78,8 +85,9 @@ void PathPicture::traceRound(const PathMedium& medium, const TraceTiles& trace)
   const Tiling tiling(sample.width, sample.height);
   const bool whole = static_cast<std::int64_t>(this->Pending.size()) == tiling.count();
   const PassOutput output{this->Sample, &this->SampleDepth};
-  this->finishTiles(trace({tracer, this->Pending, output, whole, !this->Traced}));
-  this->Traced = true;
+  const bool first =
+      std::find(this->Reached.begin(), this->Reached.end(), 1) == this->Reached.end();
+  this->finishTiles(trace({tracer, this->Pending, output, whole, first}));
   if (this->Pending.empty()) {
     this->Colors.add(this->Sample);
     this->Depths.add(this->SampleDepth);
@@ -121,6 +129,8 @@ FrameStatistics PathPicture::advance(const Frame& frame, const PathMedium& mediu
   this->show(output);
   FrameStatistics statistics = this->Latest;
   statistics.paths = this->Colors.samples();
+  statistics.blank =
+      std::find(this->Reached.begin(), this->Reached.end(), 0) != this->Reached.end();
   statistics.complete = this->Colors.samples() == frame.samplesPerPixel;
   statistics.work = this->Work;
   return statistics;

@@ -81,7 +81,7 @@ private:
   Image Sample; ///< in the making
   Image SampleDepth;
   std::vector<std::int64_t> Pending; ///< tiles of it
-  bool Traced = false;               ///< any tile of the picture
+  std::vector<char> Reached;         ///< tiles that show something of the picture
   FrameStatistics Finished;          ///< of the sample's other tiles
   FrameStatistics Latest;            ///< of the latest sample, as far as it is traced
   WorkDone Work;                     ///< of the present call

@@ -112,9 +112,9 @@ struct Frame
   /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones
   /// are not there yet; what is missing is loaded in the time that is left. Paths through a medium
   /// that is far too dense for its size may take longer: through the CPU's cache, a picture that
-  /// has none through some pixels yet lets everything through there, after four times the limit,
-  /// and a quarter of a second at least. 0: as long as it takes to be complete. Without a
-  /// cache rays take no notice of it, and paths end between two rounds.
+  /// has none through some pixels yet (FrameStatistics::blank) lets everything through there, after
+  /// four times the limit, and a quarter of a second at least. 0: as long as it takes to be
+  /// complete. Without a cache rays take no notice of it, and paths end between two rounds.
   double timeLimit = 0;
 
   /// Offsets of the samples along their rays, but for preIntegration, and paths are random in

@@ -12,11 +12,12 @@ namespace inr {
 template <class T> class PerView
 {
 public:
-  /// Views that are drawn by turns and all go on: some viewports, in stereo.
+  /// Views that are drawn by turns and all go on: some viewports, in stereo. Beside them there may
+  /// be one that is nobody's.
   static constexpr std::size_t Most = 8;
 
   /// That of a view (Frame::view), from now on the latest one, as T makes it at first; of more than
-  /// Most, that of the view that was not drawn for longest makes room. Valid until the next call.
+  /// these, that of the view that was not drawn for longest makes room. Valid until the next call.
   T& of(int view)
   {
     const auto found = std::find_if(this->Views.begin(), this->Views.end(),
@@ -24,7 +25,7 @@ public:
     if (found != this->Views.end()) {
       this->Views.splice(this->Views.begin(), this->Views, found);
     } else {
-      if (this->Views.size() == Most) { // before there is one more
+      if (this->Views.size() > Most) { // before there is one more
         this->Views.pop_back();
       }
       this->Views.emplace_front(view);

@@ -77,7 +77,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
     constexpr double piece = 0.1;
     frame.timeLimit = std::min(frame.timeLimit, piece);
   }
-  const Job job{frame, renderer, picture};
+  const Job job{frame, renderer, volume, picture};
   if (!this->draw(job)) {
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
               "float textures.";
@@ -134,7 +134,7 @@ const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer,
   if (!this->Selected.depicts(this->depicted(rays, renderer, volume))) {
     this->Selected.begin();
     // In a group, not all may be asked; what was drawn has a part of each.
-    if (this->Group.isAlone() && this->drawUnseen({rays, renderer, this->Selected})) {
+    if (this->Group.isAlone() && this->drawUnseen({rays, renderer, volume, this->Selected})) {
       this->Selected.depict(this->depicted(rays, renderer, volume));
     }
   }
@@ -200,6 +200,7 @@ void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOpti
   }
   this->Pictures.outdate();
   this->Selected.outdate();
+  this->Coarser.outdate();
   const bool measures = !options.deterministic;
   if (measures != measured) {
     this->Rays = ImageReduction(measures);
@@ -233,6 +234,13 @@ bool FramePainter::draw(const Job& job)
     here = this->reduced(around, viewport, reduction);
     deadline = this->deadline(rate, reduction);
   }
+  if (!this->Group.all(!job.picture.last().statistics.blank)) {
+    std::optional<Surroundings> coarser = this->drawCoarser(job, around, viewport);
+    if (!coarser) {
+      return true;
+    }
+    here = std::move(*coarser);
+  }
   if (!this->blend(job, here)) {
     return false;
   }
@@ -261,6 +269,37 @@ bool FramePainter::renderTogether(const Job& job, const Surroundings& around, in
   bool done = false;
   this->Group.together([&] { done = this->render(job, around, reduction, keepGoing); });
   return this->Group.all(done);
+}
+
+std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surroundings& around,
+                                                      const Viewport& viewport)
+{
+  constexpr double patience = 0.25; // seconds, beyond what the finer one took
+  PaintedFrame& fine = job.picture.last();
+  const PaintedFrame& coarse = this->Coarser.last();
+  Frame scene = job.scene;
+  scene.view = this->Coarser.number();
+  const std::int64_t pixels = std::int64_t{viewport.width} * viewport.height;
+  const int enough = this->Group.largest(this->resolution(scene.mode).factor(1 / patience, pixels));
+  int reduction = std::min(std::max(enough, 2 * fine.reduction), ImageReduction::Largest);
+  const DepictedScene depicted = this->depicted(scene, job.renderer, job.volume);
+  // A group's processes do not tell each other when something changed.
+  const bool isThere = this->Group.isAlone() && this->Coarser.depicts(depicted) &&
+                       coarse.reduction <= reduction && !coarse.statistics.blank;
+  reduction = isThere ? coarse.reduction : reduction;
+  Surroundings here = this->reduced(around, viewport, reduction);
+  if (!isThere) {
+    this->Coarser.begin();
+    const Job coarser{scene, job.renderer, job.volume, this->Coarser};
+    if (!this->renderTogether(coarser, here, reduction, Timer(Unlimited))) {
+      return std::nullopt;
+    }
+    this->Coarser.depict(depicted);
+  }
+  fine.rgba = coarse.rgba;
+  fine.depth = coarse.depth;
+  fine.reduction = reduction;
+  return here;
 }
 
 bool FramePainter::blend(const Job& job, const Surroundings& around)

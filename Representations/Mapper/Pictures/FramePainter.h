@@ -72,6 +72,7 @@ private:
   {
     const Frame& scene;
     vtkRenderer* renderer;
+    vtkVolume* volume;
     ViewPicture& picture;
   };
 
@@ -92,6 +93,10 @@ private:
   /// The same of all processes, each with its part.
   bool renderTogether(const Job& job, const Surroundings& around, int reduction,
                       const Timer& deadline);
+  /// In place of a picture of which some pixels show nothing yet, one with fewer pixels; what is
+  /// around these. Nothing where it was stopped.
+  std::optional<Surroundings> drawCoarser(const Job& job, const Surroundings& around,
+                                          const Viewport& viewport);
   bool blend(const Job& job, const Surroundings& around);
   /// The picture for a selection.
   const ViewPicture& look(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume);
@@ -111,6 +116,7 @@ private:
   PictureStore Pictures;
   StillPictures Stills;     ///< of these
   ViewPicture Selected{-1}; ///< for the latest selection, where no view shows what it is of
+  ViewPicture Coarser{-1};  ///< shown until there is something for all pixels of a finer one
 };
 
 } // namespace inr

@@ -166,7 +166,7 @@ TEST(PathsInParts, GoOnWhenRaysWereMarchedForAnotherView)
 TEST(PerView, KeepsThoseOfTheViewsThatWereDrawnLast)
 {
   inr::PerView<inr::PathPicture> pictures;
-  const int most = inr::PerView<inr::PathPicture>::Most;
+  const int most = inr::PerView<inr::PathPicture>::Most + 1; // with nobody's
   std::vector<const inr::PathPicture*> first;
   for (int view = 0; view < most; ++view) {
     first.push_back(&pictures.of(view));
@@ -194,8 +194,14 @@ TEST(PathsInParts, LoseNothingWhenTheyAreStopped)
   EXPECT_EQ(Render(renderer, frame).pixels, Render(fresh, frame).pixels);
 }
 
-// A round whose tiles take far longer than there is time for: here, as each look at the field
-// waits.
+/// Has each look at the field wait.
+bool Slowly()
+{
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  return true;
+}
+
+// A round whose tiles take far longer than there is time for.
 TEST(PathsInParts, EndInTheMidstOfARoundThatTakesFarTooLong)
 {
   inr::Frame frame = LitFrame(96);
@@ -208,10 +214,6 @@ TEST(PathsInParts, EndInTheMidstOfARoundThatTakesFarTooLong)
     return unlimited;
   }());
   frame.view = 1;
-  const auto slowly = [] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    return true;
-  };
   const auto holes = [](const inr::Image& image) {
     std::size_t count = 0;
     for (std::size_t k = 3; k < image.pixels.size(); k += 4) {
@@ -220,17 +222,36 @@ TEST(PathsInParts, EndInTheMidstOfARoundThatTakesFarTooLong)
     return count;
   };
   inr::Image image;
-  const inr::FrameStatistics first = renderer.render(frame, image, nullptr, slowly);
+  const inr::FrameStatistics first = renderer.render(frame, image, nullptr, Slowly);
   EXPECT_FALSE(first.complete);
   EXPECT_EQ(first.paths, 0);
+  EXPECT_TRUE(first.blank);
   EXPECT_GT(first.marchSeconds, 0.25); // for all, by those that were reached
   EXPECT_GT(holes(image), holes(whole));
   EXPECT_LT(holes(image), whole.pixels.size() / 4);
   int frames = 1;
-  while (!renderer.render(frame, image, nullptr, slowly).complete) {
+  inr::FrameStatistics last = first;
+  while (!last.complete) {
+    last = renderer.render(frame, image, nullptr, Slowly);
     ASSERT_LT(++frames, 100);
   }
+  EXPECT_FALSE(last.blank);
   EXPECT_EQ(image.pixels, whole.pixels);
+}
+
+TEST(PathsInParts, ShowSomethingEverywhereBeforeTheyAreCompleteAnywhere)
+{
+  inr::CacheOptions options = SmallBricks();
+  options.maximumRequests = 1; // so that the first tiles lack bricks for long
+  inr::Renderer renderer = MakeRenderer(true, 2, options);
+  inr::Frame frame = LitFrame(96);
+  frame.timeLimit = 1e-3;
+  inr::Image image;
+  int calls = 1;
+  while (renderer.render(frame, image, nullptr, Slowly).blank) {
+    ASSERT_LE(++calls, 20);
+  }
+  EXPECT_GT(calls, 1);
 }
 
 } // namespace test::paths_in_parts
