@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace inr {
@@ -48,9 +49,13 @@ bool Lists(const std::string& controllers, const std::string& controller)
 
 std::int64_t UsableMemory()
 {
-  const std::int64_t physical =
+  std::int64_t memory =
       std::int64_t{sysconf(_SC_PHYS_PAGES)} * std::int64_t{sysconf(_SC_PAGE_SIZE)};
-  return std::min(physical, ControlGroupMemory().value_or(physical));
+  memory = std::min(memory, ControlGroupMemory().value_or(memory));
+  rlimit addresses{};
+  const bool isLimited =
+      getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur < static_cast<rlim_t>(memory);
+  return isLimited ? static_cast<std::int64_t>(addresses.rlim_cur) : memory;
 }
 
 std::optional<std::int64_t> ControlGroupMemory(const fs::path& root)

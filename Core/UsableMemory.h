@@ -7,7 +7,8 @@
 
 namespace inr {
 
-/// Bytes of memory that this machine has or, where that is less, that it lets this process have.
+/// Bytes of memory that this machine has or, where that is less, that it lets this process have: by
+/// control groups, or by a limit of its addresses (RLIMIT_AS, as `ulimit -v` sets it).
 std::int64_t UsableMemory();
 
 /// Bytes that the control groups of this process allow it, as batch systems and containers set

@@ -2,16 +2,32 @@
 #include "Readers/MemoryCheck.h"
 
 #include "Core/Error.h"
+#include "Core/Mebibytes.h"
 #include "Core/UsableMemory.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
 
 void RequireMemory(double bytes, const std::string& what, const std::string& advice)
 {
   const auto memory = static_cast<double>(inr::UsableMemory());
   if (bytes > memory) {
-    constexpr double mib = 1024.0 * 1024.0;
+    const auto most = static_cast<double>(std::int64_t{1} << 62);
     throw inr::Error(inr::ErrorCode::TooLarge,
-                     what + " take " + std::to_string(static_cast<long long>(bytes / mib)) +
-                         " MiB and this process may have " +
-                         std::to_string(static_cast<long long>(memory / mib)) + "; " + advice);
+                     what + " take " +
+                         inr::InMebibytes(static_cast<std::int64_t>(std::min(bytes, most))) +
+                         " and this process may have " + std::to_string(inr::UsableMemory() >> 20) +
+                         "; " + advice);
   }
+}
+
+void RequireRoom(std::size_t bytes)
+{
+  void* volatile room = std::malloc(bytes); // volatile: else the compiler does without
+  if (room == nullptr && bytes > 0) {
+    throw std::bad_alloc();
+  }
+  std::free(room);
 }

@@ -179,6 +179,9 @@ void vtkINRContour::Contour(const NativeGrid& grid, vtkInformation* outInfo,
   const inr::Model& model = *grid.model;
   RequireDepth(model.volume.dims);
   RequireNumbers(this->Values);
+  if (this->Values.empty()) {
+    return;
+  }
   const CrossedCells crossed(model, this->Values, inr::Arena());
   this->NumberOfCells = static_cast<vtkIdType>(model.macroCells.ranges.size());
   this->SkippedCells = this->NumberOfCells - crossed.Count();

@@ -176,6 +176,8 @@ void vtkINRDecode::Decode(const NativeGrid& grid, vtkImageData* output, const St
   CheckMemory(extent, type);
   auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
   values->SetName(grid.arrayName.c_str());
+  RequireRoom(static_cast<std::size_t>(output->GetNumberOfPoints()) *
+              static_cast<std::size_t>(values->GetDataTypeSize()));
   values->SetNumberOfTuples(output->GetNumberOfPoints());
   const auto stop = [&] { return signals.Received() || IsAborted(*this); };
   bool finished = false;

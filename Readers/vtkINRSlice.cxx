@@ -65,6 +65,7 @@ vtkSmartPointer<vtkDoubleArray> Coordinates(const PlaneGrid& plane, const PlaneM
 {
   auto coordinates = vtkSmartPointer<vtkDoubleArray>::New();
   coordinates->SetNumberOfComponents(3);
+  RequireRoom(mesh.points.size() * 3 * sizeof(double));
   coordinates->SetNumberOfTuples(static_cast<vtkIdType>(mesh.points.size()));
   double* out = coordinates->GetPointer(0);
   for (const glm::dvec2& point : mesh.points) {
@@ -77,6 +78,7 @@ vtkSmartPointer<vtkDoubleArray> Coordinates(const PlaneGrid& plane, const PlaneM
 vtkSmartPointer<vtkIdTypeArray> Numbers(const std::vector<std::int64_t>& values)
 {
   auto array = vtkSmartPointer<vtkIdTypeArray>::New();
+  RequireRoom(values.size() * sizeof(vtkIdType));
   array->SetNumberOfValues(static_cast<vtkIdType>(values.size()));
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   return array;
@@ -126,6 +128,7 @@ vtkSmartPointer<vtkDataArray> ComputeValues(vtkAlgorithm& filter, const StopSign
                                             SliceValues& source, std::int64_t count)
 {
   auto values = vtkSmartPointer<Array>::New();
+  RequireRoom(static_cast<std::size_t>(count) * sizeof(typename Array::ValueType));
   values->SetNumberOfValues(count);
   for (std::int64_t first = 0; first < count; first += PositionsPerLook) {
     const std::int64_t batch = std::min(PositionsPerLook, count - first);

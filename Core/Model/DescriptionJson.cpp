@@ -147,9 +147,9 @@ void CheckKeys(const json& model)
   const JsonSection config(model, "");
   config.allowOnly({"encoding", "network", "loss", "optimizer"});
   config.section("encoding")
-      .allowOnly({"otype", "type", "n_levels", "n_features", "n_features_per_level",
-                  "log2_hashmap_size", "base_resolution", "per_level_scale", "interpolation",
-                  "hash"});
+      .allowOnly({"otype", "type", "n_levels", "n_features", "n_grid_features",
+                  "n_features_per_level", "log2_hashmap_size", "base_resolution", "per_level_scale",
+                  "interpolation", "hash"});
   config.section("network").allowOnly(
       {"otype", "n_neurons", "n_hidden_layers", "activation", "output_activation"});
   for (const char* section : {"encoding", "network"}) {

@@ -225,6 +225,9 @@ void ApplyOverrides(const ModelOverrides& overrides, bool isOwn, Model& model)
                   "Dimensions are " + std::to_string(dims.x) + " x " + std::to_string(dims.y) +
                       " x " + std::to_string(dims.z) + "; give the voxels along all three axes");
     }
+    if (dims != volume.dims) { // at whose voxels nobody has measured
+      model.macroCells.provenance = MacroCellProvenance::File;
+    }
     volume.dims = dims;
   }
   if (overrides.dataRange) {

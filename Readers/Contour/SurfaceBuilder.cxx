@@ -2,6 +2,7 @@
 #include "Readers/Contour/SurfaceBuilder.h"
 
 #include "Readers/Grid/LevelSampler.h"
+#include "Readers/MemoryCheck.h"
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
@@ -27,6 +28,11 @@ constexpr double BytesPerShared = 56;
 /// Room for `count` more values at the end; VTK grows by doubling.
 template <class Array> auto* Grow(Array* array, vtkIdType count)
 {
+  const vtkIdType needed = array->GetNumberOfValues() + count;
+  if (needed > array->GetSize()) {
+    RequireRoom(static_cast<std::size_t>(array->GetSize() + needed) *
+                sizeof(typename Array::ValueType));
+  }
   auto* room = array->WritePointer(array->GetNumberOfValues(), count);
   if (!room) {
     throw std::bad_alloc();
@@ -165,6 +171,7 @@ vtkIdType SurfaceBuilder::GetNumberOfTriangles() const
 void SurfaceBuilder::Finish(vtkPolyData* output)
 {
   vtkNew<vtkIdTypeArray> offsets;
+  RequireRoom(static_cast<std::size_t>(this->GetNumberOfTriangles() + 1) * sizeof(vtkIdType));
   offsets->SetNumberOfValues(this->GetNumberOfTriangles() + 1);
   for (vtkIdType k = 0; k < offsets->GetNumberOfValues(); ++k) {
     *offsets->GetPointer(k) = 3 * k;

@@ -6,9 +6,7 @@
 #include <algorithm>
 
 GridDecoder::GridDecoder(inr::ModelPointer model, const glm::ivec3& presentedDims)
-    : Model(std::move(model)), Dims(presentedDims), Low(this->Model->volume.low),
-      Extent(this->Model->volume.high - this->Model->volume.low),
-      Evaluator(inr::MakeEvaluator(this->Model))
+    : Model(std::move(model)), Dims(presentedDims), Evaluator(inr::MakeEvaluator(this->Model))
 {
   const glm::dvec3 native(this->Model->volume.dims);
   this->FirstPoint = 0.5 / native;

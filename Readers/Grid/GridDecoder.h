@@ -27,16 +27,11 @@ public:
   /// Normalised values, in [0, 1], at the points [first, first + size), x fastest.
   void Decode(const glm::i64vec3& first, const glm::i64vec3& size, float* values) const;
 
-  /// Normalised to data values.
-  double Denormalise(float y) const { return this->Low + this->Extent * static_cast<double>(y); }
-
 private:
   inr::ModelPointer Model;
   glm::ivec3 Dims;
   glm::dvec3 FirstPoint; ///< of the grid, in the unit cube
   glm::dvec3 Step;
-  double Low;
-  double Extent;
   std::shared_ptr<const inr::Evaluator> Evaluator;
   inr::Arena Arena;
   mutable std::atomic<std::int64_t> Evaluations{0};

@@ -132,8 +132,9 @@ private:
   {
     std::vector<float> normalised(static_cast<std::size_t>(inr::GridCount(size)));
     this->Decoder->Decode(this->Part.first + first, size, normalised.data());
-    std::transform(normalised.begin(), normalised.end(), values,
-                   [this](float y) { return ToScalar<T>(this->Decoder->Denormalise(y)); });
+    std::transform(normalised.begin(), normalised.end(), values, [this](float y) {
+      return ToScalar<T>(inr::ValueOf(this->Decoder->GetModel()->volume, y));
+    });
   }
 
   std::shared_ptr<const GridDecoder> Decoder;

@@ -121,8 +121,8 @@ bool MayOutshineWhite(vtkVolumeProperty* property, vtkRenderer* renderer)
   lights->InitTraversal(place);
   while (vtkLight* light = lights->GetNextLight(place)) {
     const double* color = light->GetDiffuseColor();
-    const bool fades = !light->GetPositional() || light->GetAttenuationValues()[0] >= 1;
-    const double most = fades ? light->GetIntensity() : HUGE_VAL;
+    const bool hasMost = !light->GetPositional() || light->GetAttenuationValues()[0] >= 1;
+    const double most = hasMost ? std::max(light->GetIntensity(), 0.0) : HUGE_VAL;
     sum += light->GetSwitch() ? perLight * most * *std::max_element(color, color + 3) : 0.0;
   }
   return !(sum <= 1.0);

@@ -37,6 +37,7 @@ std::string Difference(const TrainingIdentity& there, const TrainingIdentity& he
   return "";
 }
 
+/// Or cannot be seen.
 bool Exists(const std::string& path)
 {
   std::error_code unknown;
@@ -55,11 +56,12 @@ void SetAside(const std::string& path)
   if (!IsFile(path)) {
     return;
   }
-  std::string name = path + ".other";
-  for (int number = 2; Exists(name); ++number) {
-    name = path + ".other" + std::to_string(number);
-  }
+  const std::string first = path + ".other";
+  std::string name = first;
   std::error_code error;
+  for (int number = 2; std::filesystem::exists(name, error) && !error; ++number) {
+    name = first + std::to_string(number);
+  }
   std::filesystem::rename(path, name, error);
   if (error && Exists(path)) {
     throw Error(ErrorCode::CannotWrite,

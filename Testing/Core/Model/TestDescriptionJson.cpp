@@ -80,6 +80,15 @@ TEST(DescriptionJson, NamesIgnoreCaseAndHaveSynonyms)
   EXPECT_EQ(description.network.outputActivation, inr::Activation::Squareplus);
 }
 
+TEST(DescriptionJson, TakesTheTotalOfFeaturesByEitherName)
+{
+  for (const std::string name : {"n_features", "n_grid_features"}) {
+    const Description description =
+        ParseModelConfig(R"({"encoding": {")" + name + R"(": 8}, "network": {}})");
+    EXPECT_EQ(description.grid.levels * description.grid.features, 8) << name;
+  }
+}
+
 TEST(DescriptionJson, WholeNumbersMayBeDoubles)
 {
   const Description description =

@@ -254,6 +254,11 @@ TEST_F(ModelFile, OverridesWin)
   EXPECT_EQ(read->volume.dims, glm::i64vec3(8, 9, 10));
   EXPECT_EQ(read->volume.low, -2.0);
   EXPECT_EQ(read->nativeDims, FullModel()->volume.dims); // which are true
+  EXPECT_EQ(FullModel()->macroCells.provenance, inr::MacroCellProvenance::Decoded);
+  EXPECT_EQ(read->macroCells.provenance, inr::MacroCellProvenance::File); // of other voxels
+  overrides.dims = FullModel()->volume.dims;
+  EXPECT_EQ(inr::ReadModel(Folder.file("model.inr"), overrides)->macroCells.provenance,
+            inr::MacroCellProvenance::Decoded);
   EXPECT_FALSE(inr::ReadModel(Folder.file("model.inr"))->nativeDims);
 }
 

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 #include <optional>
+#include <sys/resource.h>
 
 namespace test::usable_memory {
 
@@ -72,6 +73,20 @@ TEST(UsableMemory, IsNoMoreThanTheGroupAllows)
   EXPECT_GT(inr::UsableMemory(), 1 << 26);
   EXPECT_LE(inr::UsableMemory(),
             inr::ControlGroupMemory().value_or(std::numeric_limits<std::int64_t>::max()));
+}
+
+TEST(UsableMemory, IsNoMoreThanTheAddressesAllow)
+{
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = 64 << 20; // fewer than are in use, so nothing may ask for any meanwhile
+  const std::int64_t all = inr::UsableMemory();
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &few), 0);
+  const std::int64_t some = inr::UsableMemory();
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  EXPECT_GT(all, 64 << 20);
+  EXPECT_EQ(some, 64 << 20);
 }
 
 } // namespace test::usable_memory

@@ -298,6 +298,18 @@ TEST_F(Resume, KeepsWhatItCannotReadUnderAnotherName)
   }
 }
 
+TEST_F(Resume, GoesOnWithoutCheckpointsWhereThereIsNoOtherName)
+{
+  this->Path = Folder.file(std::string(250, 'n')); // ".other" at its end is too much for a name
+  WriteBytes(this->Path, "notes of a year");
+  inr::TrainingOptions options = this->options(3);
+  options.checkpoint.interval = 0;
+  EXPECT_EQ(this->train(options)->parameters,
+            this->withoutCheckpoint(this->options(3))->parameters);
+  EXPECT_EQ(this->count(CheckpointEvent::Failed), 1);
+  EXPECT_EQ(ReadBytes(this->Path), "notes of a year");
+}
+
 TEST_F(Resume, KeepsTheCheckpointOfAnotherTrainingUnderAnotherName)
 {
   inr::TrainingOptions other = this->options(6);

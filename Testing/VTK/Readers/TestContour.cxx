@@ -269,6 +269,9 @@ TEST_F(Contour, LooksEverywhereWithoutMacroCells)
   this->Filter->SetValue(0, 57.0);
   this->expectSame(this->update(), this->reference(0, {57.0}));
   EXPECT_EQ(this->Filter->GetDecodedBricks(), this->Filter->GetNumberOfBricks());
+  this->Filter->SetNumberOfContours(0);
+  EXPECT_EQ(this->update()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(this->Filter->GetDecodedBricks(), 0);
 }
 
 TEST_F(Contour, FollowsASurfaceWhereTheRangesDoNotKnowOfIt)

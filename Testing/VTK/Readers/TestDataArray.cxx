@@ -63,6 +63,23 @@ std::string TypeName(const testing::TestParamInfo<TypeCase>& info)
 
 } // namespace
 
+// The width of this range is rounded up.
+TEST(DataArray, HasNoValueBeyondItsRange)
+{
+  const auto model = MakeModel({9, 8, 7}, inr::ScalarType::Float64);
+  model->volume.low = -9.49;
+  model->volume.high = 1.06;
+  for (float& parameter : model->parameters) {
+    parameter *= 8; // so that some of the network's outputs are beyond 1
+  }
+  const auto array = WholeArray(model);
+  double most = model->volume.low;
+  for (vtkIdType k = 0; k < array->GetNumberOfTuples(); ++k) {
+    most = std::max(most, array->GetTuple1(k));
+  }
+  EXPECT_EQ(most, 1.06);
+}
+
 TEST_P(DataArrayOfType, HasTheTypeOfTheSource)
 {
   const TypeCase& given = this->GetParam();
