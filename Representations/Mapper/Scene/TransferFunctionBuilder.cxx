@@ -45,13 +45,31 @@ struct Functions
   glm::vec4 at(double value) const
   {
     double rgb[3];
-    if (this->Rgb) {
-      this->Rgb->GetTable(value, value, 1, rgb); // GetColor would be the banded one in ParaView
-    } else {
-      rgb[0] = rgb[1] = rgb[2] = this->Gray->GetValue(value);
-    }
+    this->colourAt(value, rgb);
     const double alpha = std::clamp(this->Opacity->GetValue(value), 0.0, 1.0);
     return glm::vec4(rgb[0], rgb[1], rgb[2], alpha);
+  }
+
+  /// Whether the colours are on a logarithmic scale, whatever the opacities are.
+  bool areLogarithmic() const
+  {
+    return this->Rgb && this->Rgb->GetScale() == VTK_CTF_LOG10 && this->Rgb->GetRange()[0] > 0 &&
+           this->Rgb->GetRange()[0] < this->Rgb->GetRange()[1];
+  }
+
+  /// Whether opacities are visibly others at 0 or below, where no logarithmic axis gets to.
+  bool varyBelowColours() const
+  {
+    if (this->Opacity->GetSize() == 0 || this->Opacity->GetRange()[0] > 0) {
+      return false;
+    }
+    constexpr double visible = 0.002; // half of a step of 8 bits
+    const double low = this->Rgb->GetRange()[0];
+    const double there = this->Opacity->GetValue(low);
+    const std::vector<double> nodes = NodesOf(this->Opacity);
+    return std::any_of(nodes.begin(), nodes.end(), [&](double node) {
+      return node < low && std::abs(this->Opacity->GetValue(node) - there) > visible;
+    });
   }
 
   /// The same at n places from `low` to `high`, whose cost does not grow with nodes times places.
@@ -60,7 +78,11 @@ struct Functions
     const auto size = static_cast<std::size_t>(n);
     std::vector<double> rgb(3 * size);
     std::vector<double> alpha(size);
-    if (this->Rgb) {
+    if (this->areLogarithmic()) { // VTK's table would have its places at equal ratios
+      for (std::size_t k = 0; k < size; ++k) {
+        this->colourAt(low + (high - low) * double(k) / (n - 1), &rgb[3 * k]);
+      }
+    } else if (this->Rgb) {
       this->Rgb->GetTable(low, high, n, rgb.data());
     } else {
       for (int channel = 0; channel < 3; ++channel) {
@@ -87,6 +109,10 @@ struct Functions
 
   int intervals(double low, double high) const
   {
+    if (this->areLogarithmic()) {
+      constexpr int peaks = 4; // as the lowest nodes are closest
+      return peaks * LargestTable;
+    }
     const int colour =
         this->Rgb ? IntervalsFor(this->Rgb, low, high) : IntervalsFor(this->Gray, low, high);
     return std::max(IntervalsFor(this->Opacity, low, high), colour);
@@ -105,6 +131,18 @@ struct Functions
   vtkPiecewiseFunction* Opacity;
 
 private:
+  void colourAt(double value, double rgb[3]) const
+  {
+    if (this->Rgb) {
+      // Below the range all is alike, and logarithms end.
+      const double place =
+          this->areLogarithmic() ? std::max(value, 0.5 * this->Rgb->GetRange()[0]) : value;
+      this->Rgb->GetTable(place, place, 1, rgb); // GetColor would be the banded one in ParaView
+    } else {
+      rgb[0] = rgb[1] = rgb[2] = this->Gray->GetValue(value);
+    }
+  }
+
   static std::vector<glm::vec4> joined(const std::vector<double>& rgb,
                                        const std::vector<double>& alpha)
   {
@@ -141,13 +179,6 @@ struct Range
   }
 };
 
-bool IsLogarithmic(const Functions& functions)
-{
-  return functions.Rgb && functions.Rgb->GetScale() == VTK_CTF_LOG10 &&
-         functions.Rgb->GetRange()[0] > 0 &&
-         functions.Rgb->GetRange()[0] < functions.Rgb->GetRange()[1];
-}
-
 Range TableRange(const Functions& functions, bool logarithmic)
 {
   Range range;
@@ -156,7 +187,7 @@ Range TableRange(const Functions& functions, bool logarithmic)
   const double colourLow = range.low;
   range.extend(functions.Opacity);
   if (logarithmic && range.low <= 0) {
-    range.low = colourLow; // an opacity node at or below 0 has no place on a logarithmic axis
+    range.low = colourLow; // opacities are the same below, see varyBelowColours
   }
   range.complete();
   return range;
@@ -222,7 +253,7 @@ TransferFunction BuildTransferFunction(vtkVolumeProperty* property)
 {
   const Functions functions(property);
   TransferFunction result;
-  result.logarithmic = IsLogarithmic(functions);
+  result.logarithmic = functions.areLogarithmic() && !functions.varyBelowColours();
   const Range range = TableRange(functions, result.logarithmic);
   result.low = range.low;
   result.high = range.high;

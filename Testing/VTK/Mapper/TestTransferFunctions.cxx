@@ -154,6 +154,28 @@ TEST_F(TransferFunctions, OfALogScaleAreAsFineAsItsLogarithmsAskFor)
   }
 }
 
+/// As ParaView leaves them when a scale becomes logarithmic: stretched over the data, whatever
+/// these are.
+TEST_F(TransferFunctions, OfALogScaleHaveOpacitiesBelowZero)
+{
+  this->colour->AddRGBPoint(0.01, 1, 0, 0);
+  this->colour->AddRGBPoint(100, 0, 0, 1);
+  this->colour->SetScaleToLog10();
+  this->opacity->AddPoint(-200, 0);
+  this->opacity->AddPoint(100, 0.9);
+  this->opacity->AddPoint(-50, 0.1);
+  this->opacity->AddPoint(-49.9, 0.6);
+  const auto table = inr::BuildTransferFunction(this->property);
+  EXPECT_EQ(table.below.a, 0);
+  for (const double value : {-199.0, -100.0, -50.5, -49.0, -1.0, 0.0, 3.0, 20.0, 99.0}) {
+    double rgb[3];
+    this->colour->GetColor(std::max(value, 0.01), rgb);
+    const glm::vec4 actual = LookUp(table, value);
+    ExpectColour(actual, rgb[0], rgb[1], rgb[2], 0.01);
+    EXPECT_NEAR(actual.a, this->opacity->GetValue(value), 0.01) << value;
+  }
+}
+
 /// Between the ends of the colours and those of the opacities; and opacities on a logarithmic axis
 /// of their own.
 TEST_F(TransferFunctions, OfALogScaleKeepWhatTheFunctionsAreSetTo)
@@ -221,13 +243,13 @@ TEST_F(TransferFunctions, OfALogScaleMayHaveTenThousandOpacities)
   }
 }
 
-TEST_F(TransferFunctions, KeepALogScalePositiveWhenTheOpacityIsNot)
+TEST_F(TransferFunctions, KeepALogScaleWhereTheOpacityIsHardlyAnotherAtZero)
 {
   this->colour->AddRGBPoint(0.1, 0, 0, 0);
-  this->colour->AddRGBPoint(10, 1, 1, 1);
+  this->colour->AddRGBPoint(100, 1, 1, 1);
   this->colour->SetScaleToLog10();
-  this->opacity->AddPoint(-5, 0);
-  this->opacity->AddPoint(10, 1);
+  this->opacity->AddPoint(0, 0);
+  this->opacity->AddPoint(100, 1);
   const auto table = inr::BuildTransferFunction(this->property);
   EXPECT_TRUE(table.logarithmic);
   EXPECT_EQ(table.low, 0.1);
