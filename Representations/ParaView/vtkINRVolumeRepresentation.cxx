@@ -156,7 +156,10 @@ int vtkINRVolumeRepresentation::RequestData(vtkInformation* request, vtkInformat
   this->Carrier->Initialize();
   if (MaySend()) {
     try {
-      this->Model->send(vtkImageData::SafeDownCast(this->Cache), this->Carrier);
+      this->Model->send(inputs[0]->GetNumberOfInformationObjects() == 1
+                            ? vtkDataObject::GetData(inputs[0], 0)
+                            : nullptr,
+                        this->Carrier);
     } catch (const std::exception& problem) {
       vtkErrorMacro(<< problem.what());
     }
@@ -253,8 +256,9 @@ bool vtkINRVolumeRepresentation::IsShown()
 
 bool vtkINRVolumeRepresentation::IsGroup()
 {
-  return this->GetNumberOfInputConnections(0) > 0 &&
-         vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0)) != nullptr;
+  return this->GetNumberOfInputConnections(0) > 0
+             ? vtkCompositeDataSet::SafeDownCast(this->GetInputDataObject(0, 0)) != nullptr
+             : this->Model->isOfGroup();
 }
 
 void vtkINRVolumeRepresentation::ReportColouring()

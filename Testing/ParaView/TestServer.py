@@ -72,6 +72,22 @@ for threshold in (0, 1e6):
     again = picture(other, f"server-late-{threshold}")
     check(abs(again - expected).max() < 2.5 / 255, "a file that comes late shows", abs(again - expected).max())
 
+# What is no INR is refused in the same words, whoever draws, and so is a group.
+for threshold in (0, 1e6):
+    other = simple.CreateRenderView(ViewSize=[64, 64], RemoteRenderThreshold=threshold)
+    for source, words in ((simple.Wavelet(), "'RTData' is not an INR"),
+                          (simple.GroupDatasets(Input=[simple.Wavelet(), simple.Wavelet()]),
+                           "A group of data sets cannot be drawn")):
+        plain = simple.Show(source, other)
+        with Messages() as messages:
+            plain.SetRepresentationType("INR Volume")
+            simple.Render(other)
+            simple.Render(other)
+        check(messages.text.count(words) == 1, "of what cannot be drawn", threshold, messages.text)
+        simple.Delete(source)
+    simple.Delete(other)
+simple.SetActiveView(view)
+
 # A new cache, and a picture in a limited time: so many bricks, however fast they come.
 display.BrickSize = 12
 display.LevelOfDetailScale = 0
