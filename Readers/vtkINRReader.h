@@ -17,8 +17,9 @@
  * first one that was asked for, between bounds of their own, since filters do not expect more or
  * fewer at another time.
  *
- * Models of files that were shown before stay in memory, in a sixteenth of the machine's at most,
- * so that going back to a time step of a series of files loads nothing unless its file has changed.
+ * Models of files that were shown before stay in memory, in a sixteenth of the machine's, 4 GiB
+ * at most, so that going back to a time step of a series of files loads nothing unless its file has
+ * changed.
  *
  * A file that cannot be read gives one error and an empty output; mend the file, call Modified(),
  * and the reader goes on.

@@ -18,7 +18,8 @@ namespace inr {
 /// A cache of bricks with what fills it: threads that wait for bricks, or a loader behind them.
 ///
 /// Several renderers may have the same one, on several threads. They take turns: all but
-/// capacity(), mapped(), budget() and forgetRequests() is for who has a Call.
+/// what never changes (hierarchy(), sharedBudget()), capacity(), mapped(), budget() and
+/// forgetRequests() is for who has a Call.
 class BrickStore
 {
 public:

@@ -28,7 +28,7 @@ public:
   static constexpr int LargestCoarsest = 40; ///< voxels per side: as bricks have by default
 
   /// `brickSize`: voxels per side, as said. Throws Error(InvalidArgument) for sizes out of range
-  /// and Error(TooLarge) for more than 2^19 bricks along an axis. `resolution`: of the field that
+  /// and Error(TooLarge) for 2^19 bricks or more along an axis. `resolution`: of the field that
   /// the voxels are of, see Evaluator.
   Hierarchy(const glm::i64vec3& dims, int brickSize,
             const glm::i64vec3& resolution = glm::i64vec3(0));

@@ -18,8 +18,8 @@ struct ModelOverrides
   std::optional<glm::dvec2> dataRange; ///< low < high
 };
 
-/// True when the first bytes look like one of our or upstream's model files (BSON with a known root
-/// key). Reads at most a few KiB; false for anything unreadable.
+/// True when the first bytes look like one of our or upstream's model files: BSON by its size or by
+/// its first key, or JSON text by that. Reads at most a few KiB; false for anything unreadable.
 bool IsModelFile(const std::string& path);
 
 /// Everything but the parameters and the macro-cells (both empty in the result): what a reader

@@ -213,14 +213,9 @@ void Renderer::Implementation::buildFor(const Blending& blending)
   }
 }
 
-bool Renderer::Implementation::choosesLevels(const Frame& frame,
-                                             const MarchSettings& settings) const
+bool Renderer::Implementation::choosesLevels(const Frame& frame) const
 {
-  // Values that leave their cell's range are moved into that of all cells that are walked through
-  // together, and these are others where there are fewer samples.
-  return this->Cached && frame.errorTolerance.value_or(0) > 0 && this->Cells.rangesHold() &&
-         frame.blending.mode == BlendMode::Composite && !frame.shading && !settings.crops &&
-         settings.step <= LevelChooser::LongestStep;
+  return this->Cached && LevelChooser::choosesFor(frame, this->Cells.rangesHold());
 }
 
 LevelChoice Renderer::Implementation::chooseLevels(const Frame& frame, const WorkLimit& limit,
@@ -228,7 +223,7 @@ LevelChoice Renderer::Implementation::chooseLevels(const Frame& frame, const Wor
                                                    MarchSettings& settings)
 {
   LevelChoice choice{frame};
-  if (!this->choosesLevels(frame, settings)) {
+  if (!this->choosesLevels(frame)) {
     return choice;
   }
   if (!this->Levels) {

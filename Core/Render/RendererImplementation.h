@@ -94,7 +94,7 @@ struct Renderer::Implementation
   /// Finds what matters to pictures blended like this, unless that is known.
   void buildFor(const Blending& blending);
   /// Whether what comes from coarser levels is chosen by such a frame's tolerance.
-  bool choosesLevels(const Frame& frame, const MarchSettings& settings) const;
+  bool choosesLevels(const Frame& frame) const;
   /// Puts such a choice into `settings`.
   LevelChoice chooseLevels(const Frame& frame, const WorkLimit& limit,
                            const std::function<bool()>& keepGoing, MarchSettings& settings);

@@ -105,7 +105,8 @@ ModelPointer TrainModel(const VolumeData& volume, const VolumeInfo& info,
 /// One reading of the whole gives range, ranges of macro-cells and a pool of samples, the same
 /// number in every equal part of the volume. While another thread trains, this one reads blocks
 /// again in random order and draws their samples anew: not more than three times the volume is read
-/// in all and, where the time limit is the only end, for not more than half of it. With
+/// in all and, where there is a time limit without
+/// maximumSteps, for not more than half of it. With
 /// maximumSteps the result is repeatable, whatever the speed of reading, unless the time limit ends
 /// it or seems to allow clearly fewer steps. From its checkpoint a process alone goes on without
 /// the first reading, and without what was read again, but for some blocks that show whether the

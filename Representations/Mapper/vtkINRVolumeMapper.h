@@ -249,12 +249,12 @@ public:
    * LevelOfDetailScale, AdaptiveSampling, PreIntegration, InferencePrecision and CachePrecision do
    * not count. 0: not at all. Below 0, the default: they do, and levels follow from the distance to
    * the viewer. Lit, cropped (but to a box), projected and path-traced pictures, those with a
-   * SampleDistance above 1, and those of models that instantvnr or cINR wrote, whose values may
-   * leave the ranges that their files state, are as with 0. It needs the cache: CacheMode
-   * NETWORK_ONLY does without. It has to know the field where that can be seen, which the first
-   * picture waits for: up to ten times as long as decoding that; where it is more than some 450
-   * million voxels, all are of the full resolution. Rays end at 0.999 of opacity, so below 0.3 it
-   * cannot be kept in opaque media.
+   * SampleDistance above 1, and those of models whose values may leave the ranges that are known of
+   * them, as instantvnr and cINR write them and as a reader's ScaleFactor above 1 makes them, are
+   * as with 0. It needs the cache: CacheMode NETWORK_ONLY does without. It has to know the field
+   * where that can be seen, which the first picture waits for: up to ten times as long as decoding
+   * that; where it is more than some 450 million voxels, all are of the full resolution. Rays end
+   * at 0.999 of opacity, so below 0.3 it cannot be kept in opaque media.
    */
   vtkSetClampMacro(ErrorTolerance, double, -1.0, 255.0);
   vtkGetMacro(ErrorTolerance, double);
@@ -417,7 +417,7 @@ public:
   /**
    * Invoked before the mapper has its window refine a picture; the call data are a bool* that an
    * observer in a busy application sets to false. It is then asked again a little later. Observers
-   * must leave the mapper alive.
+   * may delete the mapper.
    */
   enum { RefineEvent = vtkCommand::UserEvent + 73 };
 

@@ -117,8 +117,8 @@ struct Frame
   /// complete. Without a cache rays take no notice of it, and paths end between two rounds.
   double timeLimit = 0;
 
-  /// Offsets of the samples along their rays, but for preIntegration, and paths are random in
-  /// (seed, frameIndex, pixel).
+  /// Offsets of the samples along their rays, but for preIntegration, extremes and isosurfaces, and
+  /// paths are random in (seed, frameIndex, pixel).
   std::uint64_t seed = 0;
   std::uint64_t frameIndex = 0;
 };

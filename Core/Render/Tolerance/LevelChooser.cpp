@@ -83,6 +83,16 @@ bool LevelChooser::measure(const std::vector<std::int64_t>& blocks, const Arena&
   return this->Measurement.measure(blocks, question, arena, limit, keepGoing);
 }
 
+bool LevelChooser::choosesFor(const Frame& frame, bool rangesHold)
+{
+  // Values that leave their cell's range are moved into that of all cells that are walked through
+  // together, and these are others where there are fewer samples.
+  return frame.errorTolerance.value_or(0) > 0 && rangesHold &&
+         frame.mode == RenderMode::RayMarching && frame.blending.mode == BlendMode::Composite &&
+         !frame.shading && !(frame.cropping && !BoxOf(*frame.cropping).full) &&
+         frame.sampleDistance <= LongestStep;
+}
+
 void LevelChooser::chooseSamples(const Arena& arena)
 {
   const auto count = static_cast<std::int64_t>(this->Sampling.size());

@@ -26,6 +26,10 @@ public:
   /// Voxels: where samples are further apart than that, what they leave out is not known.
   static constexpr double LongestStep = 1.0;
 
+  /// Whether a frame's tolerance chooses anything; else it is drawn as with 0. `rangesHold`: of the
+  /// field, see MacroCells.
+  static bool choosesFor(const Frame& frame, bool rangesHold);
+
   /// Of a tolerance, what is made use of. The rest is for pixels between the rays that look ahead;
   /// for lines between those that are looked at there is PixelErrors::Unseen.
   static constexpr double MadeUseOf = 0.9;

@@ -4,6 +4,7 @@
 #include "Core/Render/Scene/ColorTable.h"
 #include "Core/Render/Scene/Frame.h"
 #include "Core/Render/Tolerance/ColorSensitivity.h"
+#include "Core/Render/Tolerance/LevelChooser.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,12 +46,10 @@ double LargestChange(const Frame& frame, const TransferFunction& colors, const V
 } // namespace
 
 CachePrecision PrecisionWithin(const Frame& frame, const TransferFunction& colors,
-                               const VolumeInfo& volume)
+                               const VolumeInfo& volume, bool rangesHold)
 {
   const double tolerance = frame.errorTolerance.value_or(0) / 255;
-  const bool isOnlyMarched = frame.mode == RenderMode::RayMarching && !frame.shading &&
-                             frame.blending.mode == BlendMode::Composite;
-  const bool shows = !isOnlyMarched || !(tolerance > 0) ||
+  const bool shows = !LevelChooser::choosesFor(frame, rangesHold) ||
                      !(LargestChange(frame, colors, volume) <= Share * tolerance);
   return shows ? CachePrecision::Float32 : CachePrecision::Bits16;
 }

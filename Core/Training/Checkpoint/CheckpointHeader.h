@@ -14,7 +14,7 @@ struct CheckpointHeader
   CheckpointHeader(TrainingIdentity identity, const TrainingState& state, std::int64_t surveyBytes,
                    std::int64_t trainingBytes);
 
-  /// Throws Error(Malformed).
+  /// Throws Error(Malformed), or Error(InvalidModel) for keys that are missing or wrong.
   explicit CheckpointHeader(const std::string& text);
 
   std::string text() const; ///< ASCII

@@ -8,7 +8,8 @@
 namespace inr {
 
 /// What is written into checkpoints: one by another optimiser would not go on to the same model. To
-/// be changed with any of the numbers in here, in AdamSchedule.h and in NewtonSchulz.h.
+/// be changed with any of the numbers in here, in Optimiser.cpp, AdamSchedule.{h,cpp} and
+/// NewtonSchulz.h.
 constexpr const char* OptimiserName =
     "orthogonalised momentum, 0.95, 8 to 40 / sqrt t, up to 128; Adam, 0.9, 0.99 to 0.999";
 

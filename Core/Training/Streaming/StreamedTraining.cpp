@@ -26,7 +26,7 @@ namespace {
 /// Share of the progress bar that the first reading gets.
 constexpr double ReadingShare = 0.1;
 
-/// Share of the time limit that reading again may take, where nothing but the clock is the end.
+/// Share of the time limit that reading again may take, where no number of steps is the end.
 constexpr double RereadingShare = 0.5;
 
 /// The default model is made to fit the limit; one that was asked for is left as it is.

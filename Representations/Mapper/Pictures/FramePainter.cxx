@@ -178,11 +178,13 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
   }
   frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
   const TransferFunction& colors = this->TransferFunctions.get(property);
+  const Model& model = *input.array->GetModel();
   RendererOptions options = settings.renderer;
   if (!options.cached) {
     options.cache = {}; // nor is there another renderer for another one
   } else if (frame.errorTolerance) {
-    options.cache.precision = PrecisionWithin(frame, colors, input.array->GetModel()->volume);
+    options.cache.precision =
+        PrecisionWithin(frame, colors, model.volume, model.macroCells.rangesHold());
   }
   this->makeRenderer(*input.array, options);
   this->Caster->setTransferFunction(colors);

@@ -37,7 +37,7 @@ inr::TransferFunction RampOf(double width, double opacity)
 
 inr::CachePrecision Chosen(const inr::Frame& frame, const inr::TransferFunction& colors)
 {
-  return inr::PrecisionWithin(frame, colors, VolumeOf(Cube));
+  return inr::PrecisionWithin(frame, colors, VolumeOf(Cube), true);
 }
 
 /// Waves as high as the colours are wide; in every brick one voxel that makes its quanta coarse.
@@ -101,7 +101,7 @@ TEST(StoragePrecision, FollowsWhatAPictureIsMadeOf)
   jumping.above = glm::vec4(0);
   EXPECT_EQ(Chosen(frame, jumping), exact);
   EXPECT_EQ(Chosen(frame, RampOf(1.0, 1.0)), exact);
-  EXPECT_EQ(inr::PrecisionWithin(frame, wide, VolumeOf(Cube * std::int64_t{1000})), exact);
+  EXPECT_EQ(inr::PrecisionWithin(frame, wide, VolumeOf(Cube * std::int64_t{1000}), true), exact);
 
   inr::Frame other = frame;
   other.unitDistance = 0.01; // so much more opaque
@@ -111,6 +111,15 @@ TEST(StoragePrecision, FollowsWhatAPictureIsMadeOf)
   other = frame;
   other.shading = inr::Material{};
   EXPECT_EQ(Chosen(other, wide), exact);
+  other = frame;
+  other.sampleDistance = 2; // and the rest that is drawn as with a tolerance of 0
+  EXPECT_EQ(Chosen(other, wide), exact);
+  other = frame;
+  other.cropping = inr::Cropping{glm::dvec3(20), glm::dvec3(50), 1u << 13};
+  EXPECT_EQ(Chosen(other, wide), rounded); // a box
+  other.cropping->flags = 1u << 13 | 1u << 26;
+  EXPECT_EQ(Chosen(other, wide), exact);
+  EXPECT_EQ(inr::PrecisionWithin(frame, wide, VolumeOf(Cube), false), exact);
   other = frame;
   other.blending.mode = inr::BlendMode::MaximumIntensity;
   EXPECT_EQ(Chosen(other, wide), exact);
