@@ -72,7 +72,7 @@ public:
   ValueType GetValue(vtkIdType index) const
   {
     const T* copy = this->Values->Copy.load(std::memory_order_acquire);
-    return copy ? copy[index] : this->Values->Bricks.Get(index);
+    return copy ? copy[index] : this->Compute(index);
   }
   void GetTypedTuple(vtkIdType index, ValueType* tuple) const { *tuple = this->GetValue(index); }
   ValueType GetTypedComponent(vtkIdType index, int) const { return this->GetValue(index); }
@@ -244,6 +244,26 @@ private:
 
   const T* MakeCopy();
 
+  /// Where there is no memory for it, and no way to say so to who asks: the lowest value.
+  T Compute(vtkIdType index) const
+  {
+    try {
+      return this->Values->Bricks.Get(index);
+    } catch (const std::bad_alloc&) {
+      const_cast<vtkINRTypedArray*>(this)->ReportNoMemory();
+      return ToScalar<T>(this->GetModel()->volume.low);
+    }
+  }
+  /// Once: values are many.
+  void ReportNoMemory()
+  {
+    if (!this->ToldOfMemory.exchange(true)) {
+      vtkErrorMacro("There is not enough memory to compute values of an implicit neural "
+                    "representation; those that cannot be computed are "
+                    << this->GetModel()->volume.low << ".");
+    }
+  }
+
   /// Says so once: a filter that writes does it for every value.
   bool Refuse(Change change)
   {
@@ -258,6 +278,7 @@ private:
 
   std::shared_ptr<Shared> Values;
   std::array<std::atomic<bool>, 2> Told{};
+  std::atomic<bool> ToldOfMemory{false};
 };
 
 template <class T> const T* vtkINRTypedArray<T>::MakeCopy()

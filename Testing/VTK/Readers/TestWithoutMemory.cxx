@@ -161,6 +161,33 @@ TEST_F(WithoutMemory, LookingAtAFileIsHarmless)
   EXPECT_EQ(reader->CanReadFile(this->Path.c_str()), 1);
 }
 
+/// Who asks for a value cannot be told otherwise.
+TEST_F(WithoutMemory, AnArraySaysSo)
+{
+  ASSERT_NE(Library.begin, 0u);
+  int failures = 0;
+  bool failed = true;
+  for (std::int64_t nth = 1; failed && !HasFailure(); ++nth) {
+    vtkNew<vtkINRReader> reader;
+    reader->SetFileName(this->Path.c_str());
+    reader->Update();
+    vtkDataArray* const values = reader->GetOutput()->GetPointData()->GetScalars();
+    const MessageCapture messages;
+    Failed = false;
+    Left = nth;
+    const double first = values->GetTuple1(100);
+    Left = -1;
+    failed = Failed;
+    failures += failed ? 1 : 0;
+    EXPECT_EQ(messages.errors().size(), failed ? 1u : 0u) << nth;
+    const double second = values->GetTuple1(100); // by now there is memory
+    EXPECT_TRUE(failed || first == second) << nth;
+    EXPECT_GE(second, values->GetRange()[0]);
+    EXPECT_GT(sum(reader->GetOutput()), 0);
+  }
+  EXPECT_GT(failures, 2);
+}
+
 } // namespace
 
 void* operator new(std::size_t bytes) { return Take(bytes, __builtin_return_address(0)); }
