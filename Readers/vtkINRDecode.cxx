@@ -109,15 +109,13 @@ bool vtkINRDecode::DescribeOutput(vtkInformation* outInfo)
     return false;
   }
   const inr::VolumeInfo& volume = grid->model->volume;
-  const glm::i64vec3 dims = inr::VoxelsAtLevel(volume.dims, this->Level);
-  const glm::dvec3 growth = glm::dvec3(volume.dims) / glm::dvec3(dims);
-  const glm::dvec3 spacing = grid->spacing * growth;
-  const glm::dvec3 origin = grid->origin + grid->direction * (0.5 * grid->spacing * (growth - 1.0));
+  const LevelGrid level(*grid, this->Level);
+  const glm::dvec3 spacing = grid->spacing * level.growth;
   int extent[6];
-  LevelExtent(dims, this->VolumeOfInterest, extent);
+  LevelExtent(level.dims, this->VolumeOfInterest, extent);
   outInfo->Set(Pipeline::WHOLE_EXTENT(), extent, 6);
   outInfo->Set(vtkDataObject::SPACING(), &spacing.x, 3);
-  outInfo->Set(vtkDataObject::ORIGIN(), &origin.x, 3);
+  outInfo->Set(vtkDataObject::ORIGIN(), &level.origin.x, 3);
   auto* image = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
   outInfo->Set(vtkDataObject::DIRECTION(), image->GetDirectionMatrix()->GetData(), 9);
   vtkDataObject::SetPointDataActiveScalarInfo(outInfo, TypeNumber(this->ScalarType, volume.type),

@@ -22,6 +22,9 @@
 #include <vtkStringArray.h>
 #include <vtkTypeInt64Array.h>
 
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -93,11 +96,8 @@ inr::ModelOverrides OverridesOf(const int dims[3], const double range[2])
 /// Row by row, as VTK keeps it; glm's matrices are columns.
 void CopyDirection(const glm::dmat3& direction, double elements[9])
 {
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      elements[3 * row + column] = direction[column][row];
-    }
-  }
+  const glm::dmat3 rows = glm::transpose(direction);
+  std::copy_n(glm::value_ptr(rows), 9, elements);
 }
 
 template <class Array, class Value>

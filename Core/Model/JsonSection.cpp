@@ -94,11 +94,6 @@ std::string JsonSection::text(const char* key) const
   return value.get<std::string>();
 }
 
-std::string JsonSection::text(const char* key, const std::string& fallback) const
-{
-  return this->has(key) ? this->text(key) : fallback;
-}
-
 void JsonSection::allowOnly(std::initializer_list<const char*> known) const
 {
   if (this->Object == nullptr) {

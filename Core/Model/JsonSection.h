@@ -49,7 +49,6 @@ public:
   double number(const char* key, double fallback) const;
   bool boolean(const char* key, bool fallback) const;
   std::string text(const char* key) const;
-  std::string text(const char* key, const std::string& fallback) const;
 
   /// One of `names`, whatever the case; Error(Unsupported) lists them.
   template <typename Enum, std::size_t Count>

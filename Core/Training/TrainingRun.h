@@ -31,7 +31,6 @@ public:
               const TrainingGroup* group = nullptr);
   ~TrainingRun();
 
-  const Description& description() const { return this->Result.description; }
   int macroCellSize() const { return this->MacroCellSize; }
   const VolumeInfo& volume() const { return this->Result.volume; }
 

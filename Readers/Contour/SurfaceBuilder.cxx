@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Contour/SurfaceBuilder.h"
 
-#include "Readers/Grid/LevelSampler.h"
 #include "Readers/MemoryCheck.h"
 
 #include <vtkCellArray.h>
@@ -74,14 +73,13 @@ SurfaceBuilder::SurfaceBuilder(const NativeGrid& grid, int level, std::size_t su
     : ArrayName(grid.arrayName), Axes(grid.Axes()), Mirrors(AreLeftHanded(this->Axes)),
       Shared(surfaces)
 {
-  const glm::i64vec3 size = inr::VoxelsAtLevel(grid.model->volume.dims, level);
-  const glm::dvec3 growth = glm::dvec3(grid.model->volume.dims) / glm::dvec3(size);
-  this->Origin = grid.origin + this->Axes * (0.5 * (growth - 1.0));
+  const LevelGrid own(grid, level);
+  this->Origin = own.origin;
   for (int axis = 0; axis < 3; ++axis) {
-    this->Axes[axis] *= growth[axis];
+    this->Axes[axis] *= own.growth[axis];
   }
   this->GradientAxes = glm::transpose(glm::inverse(this->Axes));
-  if (NeedsDouble(this->Origin, this->Axes, size)) {
+  if (NeedsDouble(this->Origin, this->Axes, own.dims)) {
     this->Points = vtkSmartPointer<vtkDoubleArray>::New();
   } else {
     this->Points = vtkSmartPointer<vtkFloatArray>::New();

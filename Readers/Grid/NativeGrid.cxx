@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Grid/NativeGrid.h"
 
+#include "Core/Cache/BrickKey.h"
 #include "vtkINRDataArray.h"
 
 #include <vtkAlgorithm.h>
@@ -10,6 +11,9 @@
 #include <vtkMatrix3x3.h>
 #include <vtkPointData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
@@ -33,6 +37,12 @@ glm::dvec3 SpacingOf(vtkImageData* image, const vtkINRDataArray& source)
 
 } // namespace
 
+LevelGrid::LevelGrid(const NativeGrid& native, int level)
+    : dims(inr::VoxelsAtLevel(native.model->volume.dims, level)),
+      growth(glm::dvec3(native.model->volume.dims) / glm::dvec3(this->dims)),
+      origin(native.origin + native.Axes() * (0.5 * (this->growth - 1.0)))
+{}
+
 std::optional<NativeGrid> FindNativeGrid(vtkDataObject* data)
 {
   auto* image = vtkImageData::SafeDownCast(data);
@@ -48,11 +58,7 @@ std::optional<NativeGrid> FindNativeGrid(vtkDataObject* data)
   source.GetShift(image, first);
   image->TransformIndexToPhysicalPoint(first, &grid.origin.x);
   grid.spacing = SpacingOf(image, source);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      grid.direction[column][row] = image->GetDirectionMatrix()->GetElement(row, column);
-    }
-  }
+  grid.direction = glm::transpose(glm::make_mat3(image->GetDirectionMatrix()->GetData()));
   return grid;
 }
 

@@ -35,6 +35,17 @@ struct NativeGrid
   }
 };
 
+/// The grid of a coarser level, see inr::VoxelsAtLevel, whose voxels are means over those of the
+/// native one: it fills the same space.
+struct LevelGrid
+{
+  LevelGrid(const NativeGrid& native, int level);
+
+  glm::i64vec3 dims;
+  glm::dvec3 growth; ///< of the spacing
+  glm::dvec3 origin; ///< where its voxel 0 stands
+};
+
 /// The grid of the first array of `data` that an INR computes, the active scalars first; nothing
 /// where there is none.
 std::optional<NativeGrid> FindNativeGrid(vtkDataObject* data);

@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
+#include "Readers/Processes.h"
 
 #include <vtkMultiProcessController.h>
 
@@ -40,7 +41,7 @@ std::vector<vtkIdType> MakeRoom(const std::vector<vtkIdType>& lengths, inr::Gath
 } // namespace
 
 ControllerGroup::ControllerGroup(vtkMultiProcessController* controller)
-    : Controller(controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr)
+    : Controller(AreSeveral(controller) ? controller : nullptr)
 {}
 
 int ControllerGroup::rank() const

@@ -14,6 +14,9 @@
 #include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -120,12 +123,7 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
     Require(std::isfinite(spacing) && spacing != 0.0,
             "the image's spacing is " + std::to_string(spacing) + " along an axis");
   }
-  const double* direction = image->GetDirectionMatrix()->GetData(); // rows; glm keeps columns
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      input.info.direction[column][row] = direction[3 * row + column];
-    }
-  }
+  input.info.direction = glm::transpose(glm::make_mat3(image->GetDirectionMatrix()->GetData()));
   input.info.arrayName = name;
   vtkInformation* about = image->GetInformation();
   if (about->Has(vtkDataObject::DATA_TIME_STEP())) {

@@ -5,6 +5,7 @@
 #include "Core/Error.h"
 #include "Core/Image/Exr.h"
 #include "Core/Render/Scene/FrameStatistics.h"
+#include "Readers/Processes.h"
 #include "Representations/Mapper/Pictures/FramePainter.h"
 #include "Representations/Mapper/Pictures/PaintSettings.h"
 #include "Representations/Mapper/Window/DeferredDrawing.h"
@@ -112,8 +113,7 @@ bool vtkINRVolumeMapper::GetDrawsTogether()
   const int blend = this->GetBlendMode();
   const bool hasPieces = blend == COMPOSITE_BLEND && this->RenderMode == RAY_MARCHING;
   vtkMultiProcessController* controller = this->Self->Controller;
-  return (!hasPieces || this->AlwaysTogether) && controller &&
-         controller->GetNumberOfProcesses() > 1;
+  return (!hasPieces || this->AlwaysTogether) && AreSeveral(controller);
 }
 
 std::shared_ptr<const inr::Accelerator> vtkINRVolumeMapper::FindAccelerator(std::string& reason)

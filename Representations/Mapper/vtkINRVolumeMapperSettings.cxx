@@ -3,6 +3,8 @@
 #include "Representations/Mapper/Pictures/PaintSettings.h"
 #include "vtkINRVolumeMapper.h"
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include <cstdint>
 #include <optional>
 
@@ -42,8 +44,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   settings.paths.maximumBounces = this->MaximumBounces;
   settings.paths.scatteringAlbedo = static_cast<float>(this->ScatteringAlbedo);
   settings.paths.anisotropy = this->Anisotropy;
-  settings.paths.ambientLight =
-      glm::dvec3(this->AmbientLight[0], this->AmbientLight[1], this->AmbientLight[2]);
+  settings.paths.ambientLight = glm::make_vec3(this->AmbientLight);
   settings.sampleDistance = this->SampleDistance;
   settings.adaptiveSampling = this->AdaptiveSampling;
   settings.preIntegration = this->PreIntegration;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FrameStatus.h"
 
+#include "Readers/Processes.h"
 #include "vtkCommunicator.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkMultiProcessController.h"
@@ -28,7 +29,7 @@ FrameStatus StatusOf(vtkINRVolumeMapper* mapper)
 
 FrameStatus StatusOfAll(const FrameStatus& own, vtkMultiProcessController* processes)
 {
-  if (!processes || processes->GetNumberOfProcesses() < 2) {
+  if (!AreSeveral(processes)) {
     return own;
   }
   const std::array<double, 4> sums{own.samples, own.hitRate * own.samples, own.cacheMiB,

@@ -3,6 +3,7 @@
 
 #include "Core/Cache/CacheOptions.h"
 #include "Core/Parallel.h"
+#include "Readers/Processes.h"
 #include "vtkMultiProcessController.h"
 #include "vtkType.h"
 
@@ -19,7 +20,7 @@ std::vector<vtkTypeUInt64> Gather(vtkMultiProcessController* controller, std::ui
 {
   const auto own = static_cast<vtkTypeUInt64>(mine);
   std::vector<vtkTypeUInt64> all(1, own);
-  if (controller && controller->GetNumberOfProcesses() > 1) {
+  if (AreSeveral(controller)) {
     all.resize(static_cast<std::size_t>(controller->GetNumberOfProcesses()));
     controller->AllGather(&own, all.data(), 1);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PictureRefinement.h"
 
+#include "Readers/Processes.h"
 #include "vtkCommunicator.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkMultiProcessController.h"
@@ -45,7 +46,7 @@ double PictureRefinement::pauseOfAll()
   const double own = this->Mapper.TakeRefinementPause();
   double longest = own;
   vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
-  if (processes && processes->GetNumberOfProcesses() > 1) {
+  if (AreSeveral(processes)) {
     processes->AllReduce(&own, &longest, 1, vtkCommunicator::MAX_OP);
   }
   this->GoesOn = longest > 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SharedDrawing.h"
 
+#include "Readers/Processes.h"
 #include "vtkCameraPass.h"
 #include "vtkCommunicator.h"
 #include "vtkINRLODVolume.h"
@@ -138,7 +139,7 @@ bool AllHave(vtkMultiProcessController* processes, bool something)
 {
   const int mine = something ? 1 : 0;
   int least = mine;
-  if (processes && processes->GetNumberOfProcesses() > 1) {
+  if (AreSeveral(processes)) {
     processes->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
   }
   return least > 0;

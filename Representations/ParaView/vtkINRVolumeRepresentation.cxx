@@ -4,6 +4,7 @@
 #include "MachineShare.h"
 #include "ModelDelivery.h"
 #include "PictureRefinement.h"
+#include "Readers/Processes.h"
 #include "SharedDrawing.h"
 #include "VolumePlacement.h"
 #include "WhyBlank.h"
@@ -38,8 +39,8 @@ namespace {
 bool HasPieces()
 {
   vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
-  return vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_BATCH && processes &&
-         processes->GetNumberOfProcesses() > 1;
+  return vtkProcessModule::GetProcessType() == vtkProcessModule::PROCESS_BATCH &&
+         AreSeveral(processes);
 }
 
 /// Whether another process may have to draw what this one has; of several that have all the model,
@@ -134,7 +135,7 @@ void vtkINRVolumeRepresentation::FindOthers()
   vtkDataSet* data = this->VolumeMapper->GetDataSetInput();
   const bool hasSome = data && data->GetNumberOfPoints() > 0;
   const bool haveAll = inr::AllHave(controller, hasSome);
-  const bool several = controller && controller->GetNumberOfProcesses() > 1;
+  const bool several = AreSeveral(controller);
   this->Others = haveAll && several ? controller : nullptr;
   this->GetMapper()->SetController(this->Others);
 }
@@ -219,7 +220,7 @@ void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
 void vtkINRVolumeRepresentation::ReportShared(bool drawsAll)
 {
   vtkMultiProcessController* processes = vtkMultiProcessController::GetGlobalController();
-  const bool others = processes && processes->GetNumberOfProcesses() > 1;
+  const bool others = AreSeveral(processes);
   if (drawsAll && others && !this->SharedReported) {
     this->SharedReported = true;
     vtkWarningMacro(

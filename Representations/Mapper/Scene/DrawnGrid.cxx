@@ -10,6 +10,7 @@
 
 #include <glm/gtc/matrix_access.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
 namespace inr {
@@ -18,14 +19,11 @@ namespace {
 /// Continuous indices of the image to the image's physical space.
 glm::dmat4 IndexToPhysical(vtkImageData* image)
 {
-  glm::dmat4 result(1.0);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      result[column][row] =
-          image->GetDirectionMatrix()->GetElement(row, column) * image->GetSpacing()[column];
-    }
-    result[3][row] = image->GetOrigin()[row];
+  glm::dmat4 result(glm::transpose(glm::make_mat3(image->GetDirectionMatrix()->GetData())));
+  for (int axis = 0; axis < 3; ++axis) {
+    result[axis] *= image->GetSpacing()[axis];
   }
+  result[3] = glm::dvec4(glm::make_vec3(image->GetOrigin()), 1.0);
   return result;
 }
 

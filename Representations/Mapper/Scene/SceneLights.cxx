@@ -7,11 +7,10 @@
 #include <vtkVolumeProperty.h>
 
 #include <glm/common.hpp>
+#include <glm/gtc/type_ptr.hpp>
 
 namespace inr {
 namespace {
-
-glm::dvec3 ToGlm(const double* v) { return {v[0], v[1], v[2]}; }
 
 LightKind KindOf(vtkLight* light)
 {
@@ -30,11 +29,11 @@ Light ToLight(vtkLight* light)
   light->GetTransformedFocalPoint(focus);
   Light result;
   result.kind = KindOf(light);
-  result.position = ToGlm(position);
-  result.direction = ToGlm(focus) - ToGlm(position);
-  result.color =
-      glm::max(glm::vec3(ToGlm(light->GetDiffuseColor()) * light->GetIntensity()), glm::vec3(0.0f));
-  result.attenuation = ToGlm(light->GetAttenuationValues());
+  result.position = glm::make_vec3(position);
+  result.direction = glm::make_vec3(focus) - glm::make_vec3(position);
+  result.color = glm::max(
+      glm::vec3(glm::make_vec3(light->GetDiffuseColor()) * light->GetIntensity()), glm::vec3(0.0f));
+  result.attenuation = glm::make_vec3(light->GetAttenuationValues());
   result.coneAngle = light->GetConeAngle();
   result.exponent = light->GetExponent();
   return result;

@@ -5,19 +5,14 @@
 #include <vtkMatrix4x4.h>
 #include <vtkRenderer.h>
 
+#include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
 namespace inr {
 
 glm::dmat4 ToGlm(vtkMatrix4x4* matrix)
 {
-  glm::dmat4 result;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      result[column][row] = matrix->GetElement(row, column);
-    }
-  }
-  return result;
+  return glm::transpose(glm::make_mat4(matrix->GetData())); // of rows; glm keeps columns
 }
 
 Viewport GetViewport(vtkRenderer* renderer)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Selection/SelectionPass.h"
 
+#include "Readers/Processes.h"
 #include "Representations/Mapper/Scene/Viewport.h"
 #include "Representations/Mapper/Selection/PickedCells.h"
 #include "Representations/Mapper/Window/ImageBlender.h"
@@ -23,8 +24,7 @@ namespace {
 int NumberOfProcess()
 {
   auto* controller = vtkMultiProcessController::GetGlobalController();
-  return controller && controller->GetNumberOfProcesses() > 1 ? controller->GetLocalProcessId() + 1
-                                                              : 0;
+  return AreSeveral(controller) ? controller->GetLocalProcessId() + 1 : 0;
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "Representations/Mapper/Window/PictureGroup.h"
 
 #include "Core/Error.h"
+#include "Readers/Processes.h"
 
 #include <vtkCommunicator.h>
 #include <vtkMultiProcessController.h>
@@ -26,8 +27,7 @@ void RequireSuccess(int succeeded)
 } // namespace
 
 PictureGroup::PictureGroup(vtkMultiProcessController* controller, std::vector<int> order)
-    : Controller(controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr),
-      Order(std::move(order))
+    : Controller(AreSeveral(controller) ? controller : nullptr), Order(std::move(order))
 {}
 
 bool PictureGroup::draws() const
