@@ -28,11 +28,11 @@ public:
   {}
 
   FrameStatistics march(const MarchJob& job, const DeviceColors<Machine>& colors,
-                        const WorkLimit& limit, const PassOutput& output,
-                        const std::function<bool()>& keepGoing)
+                        const DrawCall& call)
   {
+    const WorkLimit& limit = call.limit;
     if (this->Unfinished && this->Unfinished->frame.isOf(job.frame)) {
-      return this->refine(limit, output, keepGoing);
+      return this->refine(call);
     }
     // Others are looked at in between without a limit, too: see AcceleratedFrames::prove.
     if (limit.isLimited() && !this->letsOtherGoOn(job.frame.view)) {
@@ -45,9 +45,9 @@ public:
     Picture& picture = *this->Present;
     picture.setScene(job, colors, steps);
     const bool inTime = limit.isLimited() || this->Options.onlyWhatFits;
-    const FrameStatistics statistics = inTime ? this->marchInTime(picture, limit, keepGoing)
-                                              : this->marchComplete(picture, keepGoing);
-    picture.copyTo(output);
+    const FrameStatistics statistics = inTime ? this->marchInTime(picture, limit, call.keepGoing)
+                                              : this->marchComplete(picture, call.keepGoing);
+    picture.copyTo(call.output);
     if (std::exchange(this->Overfull, false) && !this->Unfinished) {
       this->keepUnfinished(job.frame);
     }
@@ -135,14 +135,14 @@ private:
   }
 
   /// Goes on with the same rays. What is finished is only shown.
-  FrameStatistics refine(const WorkLimit& limit, const PassOutput& output,
-                         const std::function<bool()>& keepGoing)
+  FrameStatistics refine(const DrawCall& call)
   {
     Picture& picture = *this->Unfinished->picture;
     this->Unfinished->waits = 0;
     FrameStatistics& all = this->Unfinished->soFar;
-    const FrameStatistics part = picture.goOn(limit, this->Options.maximumRequests, keepGoing);
-    picture.copyTo(output);
+    const FrameStatistics part =
+        picture.goOn(call.limit, this->Options.maximumRequests, call.keepGoing);
+    picture.copyTo(call.output);
     all.add(part);
     FrameStatistics statistics = all;
     statistics.complete = picture.done();

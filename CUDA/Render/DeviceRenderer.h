@@ -43,12 +43,11 @@ public:
     this->Colors.set(this->Shared->machine, majorants, colors);
   }
 
-  FrameStatistics march(const MarchJob& job, const WorkLimit& limit, const PassOutput& output,
-                        const std::function<bool()>& keepGoing) override
+  FrameStatistics march(const MarchJob& job, const DrawCall& call) override
   {
     const typename Store::Turn turn(*this->Shared);
     this->Paths.clearLayers();
-    return this->Marcher.march(job, this->Colors, limit, output, keepGoing);
+    return this->Marcher.march(job, this->Colors, call);
   }
 
   TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,

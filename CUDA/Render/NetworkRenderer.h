@@ -52,8 +52,7 @@ public:
     this->Colors.set(this->Own, majorants, colors);
   }
 
-  FrameStatistics march(const MarchJob& job, const WorkLimit& /*limit*/, const PassOutput& output,
-                        const std::function<bool()>& keepGoing) override
+  FrameStatistics march(const MarchJob& job, const DrawCall& call) override
   {
     const Timer timer;
     this->OfFrame.clear();
@@ -64,12 +63,13 @@ public:
     this->Traced.release();
     this->Marched.run({this->MarchedScene.data(), this->Picture.view()},
                       {job.frame.width, job.frame.height, nullptr, 0}, scene.lit,
-                      this->Picture.counts(), keepGoing);
+                      this->Picture.counts(), call.keepGoing);
     FrameStatistics statistics = this->Picture.statistics();
     statistics.work.networkSamples = statistics.samples;
     statistics.marchSeconds = timer.seconds();
-    this->Picture.copyTo(output.rgba.pixels.data(),
-                         output.depth != nullptr ? output.depth->pixels.data() : nullptr, nullptr);
+    Image* const depth = call.output.depth;
+    this->Picture.copyTo(call.output.rgba.pixels.data(),
+                         depth != nullptr ? depth->pixels.data() : nullptr, nullptr);
     return statistics;
   }
 

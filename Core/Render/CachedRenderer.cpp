@@ -143,25 +143,23 @@ void CachedRenderer::forgetColors()
   this->Bricks.reset();
 }
 
-FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& geometry,
-                                       const Majorants& majorants, const ColorTable& colors,
-                                       const MarchSettings& settings, const Shading* shading,
-                                       const WorkLimit& limit, const PassOutput& output,
-                                       const std::function<bool()>& keepGoing)
+FrameStatistics CachedRenderer::render(const MarchJob& job, const Majorants& majorants,
+                                       const ColorTable& colors, const DrawCall& call)
 {
+  const Frame& frame = job.frame;
+  const MarchSettings& settings = job.settings;
   this->Work = {};
   std::optional<Refinement>& unfinished = this->Unfinished.of(frame.view);
-  if (unfinished && limit.isLimited() && unfinished->continues(frame, output)) {
+  if (unfinished && call.limit.isLimited() && unfinished->continues(frame, call.output)) {
     try {
-      return this->refine(*unfinished, limit, output, keepGoing);
+      return this->refine(*unfinished, call);
     } catch (const std::bad_alloc&) { // in the midst of its rays: nobody knows how far they are
       unfinished.reset();
       throw;
     }
   }
   unfinished.reset();
-  const ColorLookup& lookup = colors.lookup();
-  const StepLookup& steps = this->stepsFor(lookup, settings.step * settings.unitsPerT);
+  const StepLookup& steps = this->stepsFor(job.colors, settings.step * settings.unitsPerT);
   const BrickCache& cache = this->Store->cache();
   const BlockVisibility* blocks = this->blocksFor(colors, settings, majorants.rangesHold());
   // With samples chosen for a tolerance; until these are, less is enough.
@@ -169,32 +167,30 @@ FrameStatistics CachedRenderer::render(const Frame& frame, const RayGeometry& ge
   this->LoadsWhole = frame.errorTolerance.value_or(0) > 0;
   std::optional<int> reach;
   if (blocks != nullptr && !looksFurther) {
-    reach = shading != nullptr ? 1 : 0; // gradients
+    reach = job.shading != nullptr ? 1 : 0; // gradients
   }
   const auto seen =
-      std::make_shared<const SeenSpans>(geometry.view(), majorants.view(), settings.dims,
+      std::make_shared<const SeenSpans>(job.geometry.view(), majorants.view(), settings.dims,
                                         frame.levelOfDetailScale, cache.hierarchy().levels());
-  const CachedScene scene{
-      frame,        geometry,        majorants, lookup,  steps,  this->bricksFor(majorants, reach),
-      this->Kernel, FormatOf(cache), settings,  shading, blocks, seen};
-  FrameStatistics statistics = this->renderFrame(scene, limit, output, keepGoing);
+  const CachedScene scene{frame,        job.geometry,    majorants,
+                          job.colors,   steps,           this->bricksFor(majorants, reach),
+                          this->Kernel, FormatOf(cache), settings,
+                          job.shading,  blocks,          seen};
+  FrameStatistics statistics = this->renderFrame(scene, call);
   statistics.work = this->Work;
   return statistics;
 }
 
-FrameStatistics CachedRenderer::renderFrame(const CachedScene& scene, const WorkLimit& limit,
-                                            const PassOutput& output,
-                                            const std::function<bool()>& keepGoing)
+FrameStatistics CachedRenderer::renderFrame(const CachedScene& scene, const DrawCall& call)
 {
   if (this->Options.onlyWhatFits) {
-    return this->renderWhatFits(scene, limit, output, keepGoing);
+    return this->renderWhatFits(scene, call);
   }
-  return limit.isLimited() ? this->renderInTime(scene, limit, output, keepGoing)
-                           : this->renderComplete(scene, output, keepGoing);
+  return call.limit.isLimited() ? this->renderInTime(scene, call)
+                                : this->renderComplete(scene, call);
 }
 
-FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const PassOutput& output,
-                                               const std::function<bool()>& keepGoing)
+FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const DrawCall& call)
 {
   this->Kept.reset(); // its bricks are no longer those of the latest frame
   CompletePass pass(scene);
@@ -203,13 +199,13 @@ FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const P
     const Timer march;
     this->beginFrame();
     RequestRanking requests;
-    this->Work.add(pass.advance(this->Threads, keepGoing, output, requests));
+    this->Work.add(pass.advance(this->Threads, call.keepGoing, call.output, requests));
     marching += march.seconds();
     if (pass.done()) {
       break;
     }
-    this->loadForPass(pass, requests, this->Store->cache().capacity() - 1, keepGoing);
-    RequireGoing(keepGoing);
+    this->loadForPass(pass, requests, this->Store->cache().capacity() - 1, call.keepGoing);
+    RequireGoing(call.keepGoing);
   }
   FrameStatistics statistics = pass.statistics();
   statistics.complete = true;
@@ -249,16 +245,14 @@ bool CachedRenderer::loadForFrame(const std::vector<BrickKey>& keys, const WorkL
 }
 
 FrameStatistics CachedRenderer::march(const CachedScene& scene, MarchedTiles& tiles,
-                                      const PassOutput& output,
-                                      const std::function<bool()>& keepGoing,
-                                      RequestRanking& requests)
+                                      const DrawCall& call, RequestRanking& requests)
 {
   const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
   // Tiles that stay as they are show what they did.
   this->Latest =
       this->Store->beginFrame(tiles.begun() ? std::optional(this->Latest) : std::nullopt);
   const FrameStatistics statistics =
-      tiles.march(scene, onMiss, this->Threads, keepGoing, output, requests);
+      tiles.march(scene, onMiss, this->Threads, call.keepGoing, call.output, requests);
   this->Work.add(statistics.work);
   return statistics;
 }
@@ -271,70 +265,68 @@ std::unique_ptr<KeptPicture> CachedRenderer::takeKept(const CachedScene& scene)
   return goesOn ? std::move(kept) : nullptr;
 }
 
-FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const WorkLimit& limit,
-                                             const PassOutput& output,
-                                             const std::function<bool()>& keepGoing)
+FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const DrawCall& call)
 {
   const std::unique_ptr<KeptPicture> kept = this->takeKept(scene);
   // Whoever takes from this picture what it has will do so again.
   const bool contested = this->Store->hasLostSince(this->Latest);
-  MarchedTiles tiles = kept && kept->has(output)
-                           ? kept->take(output)
+  MarchedTiles tiles = kept && kept->has(call.output)
+                           ? kept->take(call.output)
                            : MarchedTiles(scene.frame.width, scene.frame.height);
   while (true) {
     RequestRanking requests;
-    FrameStatistics statistics = this->march(scene, tiles, output, keepGoing, requests);
+    FrameStatistics statistics = this->march(scene, tiles, call, requests);
     statistics.complete = requests.empty();
     const std::int64_t room = this->room();
     const bool fits = !contested && requests.count() <= room;
     if (!fits) { // should the same be asked for again
-      this->Unfinished.of(scene.frame.view).emplace(scene, output);
+      this->Unfinished.of(scene.frame.view).emplace(scene, call.output);
     }
     const std::int64_t most = std::min<std::int64_t>(room, this->Options.maximumRequests);
-    this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking), limit,
-                       keepGoing);
-    const bool ends = limit.endsWithin(0) || limit.endsWithin(tiles.secondsToMarch(scene.bricks));
+    this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking),
+                       call.limit, call.keepGoing);
+    const bool ends =
+        call.limit.endsWithin(0) || call.limit.endsWithin(tiles.secondsToMarch(scene.bricks));
     if (statistics.complete || !fits || ends) {
       if (fits && !statistics.complete) {
-        this->Kept = kept ? std::make_unique<KeptPicture>(scene.frame, std::move(tiles), output)
-                          : std::make_unique<KeptPicture>(scene.frame);
+        this->Kept = kept
+                         ? std::make_unique<KeptPicture>(scene.frame, std::move(tiles), call.output)
+                         : std::make_unique<KeptPicture>(scene.frame);
       }
       return statistics;
     }
   }
 }
 
-FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const WorkLimit& limit,
-                                               const PassOutput& output,
-                                               const std::function<bool()>& keepGoing)
+FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const DrawCall& call)
 {
   // Whoever takes from this picture what it has will do so again.
-  bool full = limit.isLimited() && this->Store->hasLostSince(this->Latest);
+  bool full = call.limit.isLimited() && this->Store->hasLostSince(this->Latest);
   while (true) {
     RequestRanking requests;
     MarchedTiles tiles(scene.frame.width, scene.frame.height);
-    FrameStatistics statistics = this->march(scene, tiles, output, keepGoing, requests);
+    FrameStatistics statistics = this->march(scene, tiles, call, requests);
     const std::int64_t room = this->room();
     // Not down to the last brick: fewer and fewer come in for all that they replace.
     full = full || room <= this->Store->capacity() / 64;
     statistics.complete = full || requests.empty();
     if (!statistics.complete) {
       // Nothing goes that is shown, so every place of the picture only gets finer.
-      const std::int64_t most =
-          limit.isLimited() ? std::min<std::int64_t>(room, this->Options.maximumRequests) : room;
+      const std::int64_t most = call.limit.isLimited()
+                                    ? std::min<std::int64_t>(room, this->Options.maximumRequests)
+                                    : room;
       full = this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking),
-                                limit, keepGoing);
+                                call.limit, call.keepGoing);
     }
-    if (statistics.complete || limit.endsWithin(statistics.marchSeconds)) {
+    if (statistics.complete || call.limit.endsWithin(statistics.marchSeconds)) {
       return statistics;
     }
   }
 }
 
-FrameStatistics CachedRenderer::refine(Refinement& unfinished, const WorkLimit& limit,
-                                       const PassOutput& output,
-                                       const std::function<bool()>& keepGoing)
+FrameStatistics CachedRenderer::refine(Refinement& unfinished, const DrawCall& call)
 {
+  const WorkLimit& limit = call.limit;
   const std::int64_t most = limit.isTimed() ? this->Store->cache().capacity() - 1
                                             : std::int64_t{this->Options.maximumRequests};
   double marching = 0;
@@ -342,19 +334,19 @@ FrameStatistics CachedRenderer::refine(Refinement& unfinished, const WorkLimit& 
   const std::int64_t before = CamePast(unfinished.statistics());
   const auto inTime = [&] { return !limit.endsWithin(0); };
   const std::function<bool()>& mayLoad =
-      limit.isTimed() ? std::function<bool()>(inTime) : keepGoing;
+      limit.isTimed() ? std::function<bool()>(inTime) : call.keepGoing;
   while (true) {
     const Timer march;
     this->beginFrame();
     RequestRanking requests;
-    this->Work.add(unfinished.advance(this->Threads, keepGoing, requests));
+    this->Work.add(unfinished.advance(this->Threads, call.keepGoing, requests));
     marching += march.seconds();
     if (unfinished.done() || (!inTime() && CamePast(unfinished.statistics()) > before)) {
       break;
     }
     this->loadForPass(unfinished.pass(), requests, most, mayLoad);
   }
-  unfinished.copyTo(output);
+  unfinished.copyTo(call.output);
   FrameStatistics statistics = unfinished.statistics();
   statistics.complete = unfinished.done();
   statistics.marchSeconds = marching;

@@ -7,6 +7,7 @@
 #include "Core/Render/Acceleration/Accelerator.h"
 #include "Core/Render/Bricks/SufficientBricks.h"
 #include "Core/Render/KeptPicture.h"
+#include "Core/Render/Marching/MarchJob.h"
 #include "Core/Render/Marching/StepTable.h"
 #include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Paths/PathShortage.h"
@@ -22,7 +23,6 @@
 namespace inr {
 
 enum class OnPathMiss;
-class WorkLimit;
 
 /// Renders through a cache of bricks, which lives from frame to frame and which all renderers of
 /// the same field with the same bricks and size of the cache share. The threads that load bricks
@@ -45,11 +45,8 @@ public:
   CachedRenderer& operator=(const CachedRenderer&) = delete;
 
   /// Within a call; see Renderer::render. The references are for this only.
-  FrameStatistics render(const Frame& frame, const RayGeometry& geometry,
-                         const Majorants& majorants, const ColorTable& colors,
-                         const MarchSettings& settings, const Shading* shading,
-                         const WorkLimit& limit, const PassOutput& output,
-                         const std::function<bool()>& keepGoing);
+  FrameStatistics render(const MarchJob& job, const Majorants& majorants, const ColorTable& colors,
+                         const DrawCall& call);
   /// Around what follows; see BrickStore.
   BrickStore::Call call() const { return {*this->Store, this->Threads}; }
   /// Within a call: traces a round of a path-traced picture and brings what its paths missed, as
@@ -65,8 +62,7 @@ public:
   const std::shared_ptr<BrickStore>& sharedStore() const { return this->Store; }
 
 private:
-  FrameStatistics renderFrame(const CachedScene& scene, const WorkLimit& limit,
-                              const PassOutput& output, const std::function<bool()>& keepGoing);
+  FrameStatistics renderFrame(const CachedScene& scene, const DrawCall& call);
   void beginFrame();
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
   /// Null where all values matter.
@@ -78,19 +74,15 @@ private:
   /// eighth of it, in place of the next finer one, unless it is there.
   RequestRanking inSteps(const RequestRanking& requests, std::int64_t room) const;
   std::vector<BrickPart> partsOf(const std::vector<BrickKey>& keys) const;
-  FrameStatistics renderComplete(const CachedScene& scene, const PassOutput& output,
-                                 const std::function<bool()>& keepGoing);
+  FrameStatistics renderComplete(const CachedScene& scene, const DrawCall& call);
   /// What is kept of the same picture, or null.
   std::unique_ptr<KeptPicture> takeKept(const CachedScene& scene);
-  FrameStatistics renderInTime(const CachedScene& scene, const WorkLimit& limit,
-                               const PassOutput& output, const std::function<bool()>& keepGoing);
-  FrameStatistics renderWhatFits(const CachedScene& scene, const WorkLimit& limit,
-                                 const PassOutput& output, const std::function<bool()>& keepGoing);
+  FrameStatistics renderInTime(const CachedScene& scene, const DrawCall& call);
+  FrameStatistics renderWhatFits(const CachedScene& scene, const DrawCall& call);
   /// Those tiles that are due, as far as the bricks are there.
-  FrameStatistics march(const CachedScene& scene, MarchedTiles& tiles, const PassOutput& output,
-                        const std::function<bool()>& keepGoing, RequestRanking& requests);
-  FrameStatistics refine(Refinement& unfinished, const WorkLimit& limit, const PassOutput& output,
-                         const std::function<bool()>& keepGoing);
+  FrameStatistics march(const CachedScene& scene, MarchedTiles& tiles, const DrawCall& call,
+                        RequestRanking& requests);
+  FrameStatistics refine(Refinement& unfinished, const DrawCall& call);
   /// At most so many bricks.
   void loadForPass(CompletePass& pass, const RequestRanking& requests, std::int64_t most,
                    const std::function<bool()>& keepGoing);

@@ -218,8 +218,7 @@ bool Renderer::Implementation::choosesLevels(const Frame& frame) const
   return this->Cached && LevelChooser::choosesFor(frame, this->Cells.rangesHold());
 }
 
-LevelChoice Renderer::Implementation::chooseLevels(const Frame& frame, const WorkLimit& limit,
-                                                   const std::function<bool()>& keepGoing,
+LevelChoice Renderer::Implementation::chooseLevels(const Frame& frame, const DrawCall& call,
                                                    MarchSettings& settings)
 {
   LevelChoice choice{frame};
@@ -238,8 +237,9 @@ LevelChoice Renderer::Implementation::chooseLevels(const Frame& frame, const Wor
   const LevelChooser::Wish wish{*frame.errorTolerance, settings.step,
                                 settings.step * settings.unitsPerT};
   const std::int64_t before = this->Levels->measuredPoints();
-  choice.final = this->Levels->choose(wish, {geometry, frame.width, frame.height}, this->Cells,
-                                      this->Colors->lookup(), this->Threads, limit, keepGoing);
+  choice.final =
+      this->Levels->choose(wish, {geometry, frame.width, frame.height}, this->Cells,
+                           this->Colors->lookup(), this->Threads, call.limit, call.keepGoing);
   choice.points = this->Levels->measuredPoints() - before;
   if (choice.final) {
     settings.cellSampling = this->Levels->sampling();

@@ -24,15 +24,15 @@ TracedTiles EmptyTiles(const PathRound& round)
 
 } // namespace
 
-MarchWay Renderer::Implementation::wayOf(const Frame& frame)
+MarchSetup Renderer::Implementation::setupFor(const Frame& frame)
 {
-  MarchWay way{RayGeometry(frame, this->Volume.dims), {}, ShadingOf(frame)};
-  MarchSettings& settings = way.settings;
+  MarchSetup setup{RayGeometry(frame, this->Volume.dims), {}, ShadingOf(frame)};
+  MarchSettings& settings = setup.settings;
   settings.dims = glm::dvec3(this->Volume.dims);
   settings.step = frame.sampleDistance;
   settings.adaptive = frame.adaptiveSampling && frame.blending.mode == BlendMode::Composite;
   constexpr double opaque = 1e30; // so that float holds the lengths of the longest samples
-  settings.unitsPerT = std::min(way.geometry.lengthPerUnit() / frame.unitDistance, opaque);
+  settings.unitsPerT = std::min(setup.geometry.lengthPerUnit() / frame.unitDistance, opaque);
   settings.projector = this->projector();
   if (frame.preIntegration) {
     if (!this->PreIntegrated) {
@@ -44,46 +44,38 @@ MarchWay Renderer::Implementation::wayOf(const Frame& frame)
     settings.crops = true;
     settings.cropping = *frame.cropping;
   }
-  return way;
+  return setup;
 }
 
-FrameStatistics Renderer::Implementation::marchCached(const Frame& frame, MarchWay& way,
-                                                      const WorkLimit& limit,
-                                                      const PassOutput& output,
-                                                      const std::function<bool()>& keepGoing)
+FrameStatistics Renderer::Implementation::marchCached(const Frame& frame, MarchSetup& setup,
+                                                      const DrawCall& call)
 {
-  const BrickStore::Call call = this->Cached->call();
-  const LevelChoice choice = this->chooseLevels(frame, limit, keepGoing, way.settings);
-  FrameStatistics statistics =
-      this->Cached->render(choice.frame, way.geometry, this->Cells, *this->Colors, way.settings,
-                           way.lit(), limit, output, keepGoing);
-  statistics.work.bricks = call.done();
+  const BrickStore::Call turn = this->Cached->call();
+  const LevelChoice choice = this->chooseLevels(frame, call, setup.settings);
+  FrameStatistics statistics = this->Cached->render(setup.job(choice.frame, this->Colors->lookup()),
+                                                    this->Cells, *this->Colors, call);
+  statistics.work.bricks = turn.done();
   choice.addTo(statistics);
   return statistics;
 }
 
-FrameStatistics Renderer::Implementation::marchHere(const Frame& frame, MarchWay& way,
-                                                    const Evaluator& field, const WorkLimit& limit,
-                                                    const PassOutput& output,
-                                                    const std::function<bool()>& keepGoing)
+FrameStatistics Renderer::Implementation::marchOnCpu(const Frame& frame, MarchSetup& setup,
+                                                     const Evaluator& field, const DrawCall& call)
 {
   if (this->Cached) {
-    return this->marchCached(frame, way, limit, output, keepGoing);
+    return this->marchCached(frame, setup, call);
   }
-  const MarchScene scene{frame, way.geometry, this->Cells, this->Colors->lookup(),
-                         field, way.settings, way.lit()};
-  return MarchTiles(scene, this->Threads, output.rgba, output.depth, keepGoing);
+  const MarchScene scene{frame, setup.geometry, this->Cells, this->Colors->lookup(),
+                         field, setup.settings, setup.lit()};
+  return MarchTiles(scene, this->Threads, call.output.rgba, call.output.depth, call.keepGoing);
 }
 
 std::optional<FrameStatistics>
-Renderer::Implementation::marchElsewhere(const Frame& frame, MarchWay& way, const WorkLimit& limit,
-                                         const PassOutput& output,
-                                         const std::function<bool()>& keepGoing)
+Renderer::Implementation::marchOnDevice(const Frame& frame, MarchSetup& setup, const DrawCall& call)
 {
-  const LevelChoice choice = this->chooseLevels(frame, limit, keepGoing, way.settings);
-  std::optional<FrameStatistics> statistics = this->Drawn->march(
-      {choice.frame, way.geometry, way.settings, this->Colors->lookup(), way.lit()}, limit, output,
-      keepGoing);
+  const LevelChoice choice = this->chooseLevels(frame, call, setup.settings);
+  std::optional<FrameStatistics> statistics =
+      this->Drawn->march(setup.job(choice.frame, this->Colors->lookup()), call);
   if (statistics) {
     choice.addTo(*statistics);
   }
@@ -94,28 +86,29 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
                                                 const std::function<bool()>& keepGoing)
 {
   this->Paths.forget(frame.view);
-  MarchWay way = this->wayOf(frame);
+  MarchSetup setup = this->setupFor(frame);
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
-  if (this->isDrawnElsewhere(frame, keepGoing)) {
-    if (const std::optional<FrameStatistics> statistics =
-            this->marchElsewhere(frame, way, limit, output, keepGoing)) {
+  const DrawCall call{output, limit, keepGoing};
+  this->proveDevice(frame, keepGoing);
+  if (this->isForDevice(frame)) {
+    if (const auto statistics = this->marchOnDevice(frame, setup, call)) {
       return *statistics;
     }
   }
-  return this->marchHere(frame, way, *this->Samples, limit, output, keepGoing);
+  return this->marchOnCpu(frame, setup, *this->Samples, call);
 }
 
-bool Renderer::Implementation::isDrawnElsewhere(const Frame& frame,
-                                                const std::function<bool()>& keepGoing)
+void Renderer::Implementation::proveDevice(const Frame& frame,
+                                           const std::function<bool()>& keepGoing)
 {
   if (!this->Drawn) {
-    return false;
+    return;
   }
-  const auto elsewhere = [&](const Frame& small, const PassOutput& output) {
-    this->proveElsewhere(small, output, keepGoing);
+  const auto device = [&](const Frame& small, const PassOutput& output) {
+    this->proveOnDevice(small, output, keepGoing);
   };
-  const auto here = [&](const Frame& small, const PassOutput& output) {
-    this->proveHere(small, output, keepGoing);
+  const auto cpu = [&](const Frame& small, const PassOutput& output) {
+    this->proveOnCpu(small, output, keepGoing);
   };
   // Where pictures make do with what fits, that is nowhere the same, but for the coarsest level.
   // And paths to lights go far at the level where they begin, through any number of bricks.
@@ -124,19 +117,18 @@ bool Renderer::Implementation::isDrawnElsewhere(const Frame& frame,
   if (traces) { // through the finer levels, rays go
     Frame rays = frame;
     rays.mode = RenderMode::RayMarching;
-    this->Drawn->prove(rays, this->Options.cache.onlyWhatFits ? 1e9 : 1.0, elsewhere, here);
+    this->Drawn->prove(rays, this->Options.cache.onlyWhatFits ? 1e9 : 1.0, device, cpu);
   }
-  this->Drawn->prove(frame, coarsest ? 1e9 : 1.0, elsewhere, here);
-  return this->Drawn->draws(frame);
+  this->Drawn->prove(frame, coarsest ? 1e9 : 1.0, device, cpu);
 }
 
-void Renderer::Implementation::proveElsewhere(const Frame& small, const PassOutput& output,
-                                              const std::function<bool()>& keepGoing)
+void Renderer::Implementation::proveOnDevice(const Frame& small, const PassOutput& output,
+                                             const std::function<bool()>& keepGoing)
 {
   const WorkLimit none(0, this->Options.deterministic);
   if (small.mode == RenderMode::RayMarching) {
-    MarchWay way = this->wayOf(small);
-    this->marchElsewhere(small, way, none, output, keepGoing);
+    MarchSetup setup = this->setupFor(small);
+    this->marchOnDevice(small, setup, {output, none, keepGoing});
     return;
   }
   this->traceAlone(small, none, output, [&](const PathRound& round) {
@@ -145,20 +137,20 @@ void Renderer::Implementation::proveElsewhere(const Frame& small, const PassOutp
   });
 }
 
-void Renderer::Implementation::proveHere(const Frame& small, const PassOutput& output,
-                                         const std::function<bool()>& keepGoing)
+void Renderer::Implementation::proveOnCpu(const Frame& small, const PassOutput& output,
+                                          const std::function<bool()>& keepGoing)
 {
   const WorkLimit none(0, this->Options.deterministic);
   if (small.mode == RenderMode::RayMarching) {
-    MarchWay way = this->wayOf(small);
-    this->marchHere(small, way, *this->Field, none, output, keepGoing);
+    MarchSetup setup = this->setupFor(small);
+    this->marchOnCpu(small, setup, *this->Field, {output, none, keepGoing});
     return;
   }
   const TraceTiles trace = [&](const PathRound& round) {
-    return this->traceHere(round, *this->Field, none, keepGoing);
+    return this->traceOnCpu(round, *this->Field, none, keepGoing);
   };
   if (this->Cached) {
-    const BrickStore::Call call = this->Cached->call();
+    const BrickStore::Call turn = this->Cached->call();
     this->traceAlone(small, none, output, trace);
   } else {
     this->traceAlone(small, none, output, trace);
@@ -178,9 +170,9 @@ void Renderer::Implementation::traceAlone(const Frame& frame, const WorkLimit& l
   picture.advance(frame, this->medium(), trace, limit, output);
 }
 
-TracedTiles Renderer::Implementation::traceHere(const PathRound& round, const Evaluator& field,
-                                                const WorkLimit& limit,
-                                                const std::function<bool()>& keepGoing)
+TracedTiles Renderer::Implementation::traceOnCpu(const PathRound& round, const Evaluator& field,
+                                                 const WorkLimit& limit,
+                                                 const std::function<bool()>& keepGoing)
 {
   return this->Cached
              ? this->Cached->tracePaths(round, this->Cells, *this->Colors, limit, keepGoing)
@@ -190,12 +182,12 @@ TracedTiles Renderer::Implementation::traceHere(const PathRound& round, const Ev
 TracedTiles Renderer::Implementation::traceRound(const PathRound& round, const WorkLimit& limit,
                                                  const std::function<bool()>& keepGoing)
 {
-  if (this->Drawn && this->Drawn->draws(round.tracer.frame())) {
+  if (this->isForDevice(round.tracer.frame())) {
     if (std::optional<TracedTiles> traced = this->Drawn->tracePaths(round, limit, keepGoing)) {
       return std::move(*traced);
     }
   }
-  return this->traceHere(round, *this->Samples, limit, keepGoing);
+  return this->traceOnCpu(round, *this->Samples, limit, keepGoing);
 }
 
 FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const PassOutput& output,
@@ -204,7 +196,7 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
   PathPicture& picture = this->Paths.of(frame.view);
   const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
   if (!picture.continues(frame)) { // in its midst another would take the device's place
-    this->isDrawnElsewhere(frame, keepGoing);
+    this->proveDevice(frame, keepGoing);
   }
   const TraceTiles trace = [&](const PathRound& round) {
     return this->traceRound(round, limit, keepGoing);

@@ -21,13 +21,17 @@
 namespace inr {
 
 /// How a frame's rays are marched.
-struct MarchWay
+struct MarchSetup
 {
   RayGeometry geometry;
   MarchSettings settings;
   std::optional<Shading> shading;
 
   const Shading* lit() const { return this->shading ? &*this->shading : nullptr; }
+  MarchJob job(const Frame& frame, const ColorLookup& colors) const
+  {
+    return {frame, this->geometry, this->settings, colors, this->lit()};
+  }
 };
 
 /// A frame as it is drawn with levels that its tolerance has chosen, if it has one.
@@ -75,14 +79,16 @@ struct Renderer::Implementation
                  const ModelPointer& model, VolumeInfo volume, const MacroCells& cells,
                  RendererOptions options);
 
-  /// Whether the accelerator draws such a frame itself; it is then known to draw rightly, if a
-  /// small picture of that kind shows anything.
-  bool isDrawnElsewhere(const Frame& frame, const std::function<bool()>& keepGoing);
-  /// Such a small picture as proves it, drawn there if that does not fail, and by the CPU.
-  void proveElsewhere(const Frame& small, const PassOutput& output,
-                      const std::function<bool()>& keepGoing);
-  void proveHere(const Frame& small, const PassOutput& output,
-                 const std::function<bool()>& keepGoing);
+  /// Before a picture of a kind that the accelerator has not drawn yet: gives it up unless a small
+  /// one like it is the CPU's, if such a one shows anything.
+  void proveDevice(const Frame& frame, const std::function<bool()>& keepGoing);
+  /// Whether the accelerator draws such a frame itself.
+  bool isForDevice(const Frame& frame) { return this->Drawn && this->Drawn->draws(frame); }
+  /// That small picture by either, on the device if it does not fail.
+  void proveOnDevice(const Frame& small, const PassOutput& output,
+                     const std::function<bool()>& keepGoing);
+  void proveOnCpu(const Frame& small, const PassOutput& output,
+                  const std::function<bool()>& keepGoing);
   /// Has it made what frames will ask for, so that it is known beforehand whether it can.
   void tryAccelerator();
 
@@ -96,28 +102,24 @@ struct Renderer::Implementation
   /// Whether what comes from coarser levels is chosen by such a frame's tolerance.
   bool choosesLevels(const Frame& frame) const;
   /// Puts such a choice into `settings`.
-  LevelChoice chooseLevels(const Frame& frame, const WorkLimit& limit,
-                           const std::function<bool()>& keepGoing, MarchSettings& settings);
+  LevelChoice chooseLevels(const Frame& frame, const DrawCall& call, MarchSettings& settings);
 
-  MarchWay wayOf(const Frame& frame);
+  MarchSetup setupFor(const Frame& frame);
   FrameStatistics march(const Frame& frame, const PassOutput& output,
                         const std::function<bool()>& keepGoing);
   /// By the accelerator, if that does not fail.
-  std::optional<FrameStatistics> marchElsewhere(const Frame& frame, MarchWay& way,
-                                                const WorkLimit& limit, const PassOutput& output,
-                                                const std::function<bool()>& keepGoing);
+  std::optional<FrameStatistics> marchOnDevice(const Frame& frame, MarchSetup& setup,
+                                               const DrawCall& call);
   /// By the CPU; without a cache, with samples that `field` infers.
-  FrameStatistics marchHere(const Frame& frame, MarchWay& way, const Evaluator& field,
-                            const WorkLimit& limit, const PassOutput& output,
-                            const std::function<bool()>& keepGoing);
-  FrameStatistics marchCached(const Frame& frame, MarchWay& way, const WorkLimit& limit,
-                              const PassOutput& output, const std::function<bool()>& keepGoing);
+  FrameStatistics marchOnCpu(const Frame& frame, MarchSetup& setup, const Evaluator& field,
+                             const DrawCall& call);
+  FrameStatistics marchCached(const Frame& frame, MarchSetup& setup, const DrawCall& call);
   PathMedium medium() const;
   TracedTiles traceRound(const PathRound& round, const WorkLimit& limit,
                          const std::function<bool()>& keepGoing);
-  /// By the CPU; see marchHere.
-  TracedTiles traceHere(const PathRound& round, const Evaluator& field, const WorkLimit& limit,
-                        const std::function<bool()>& keepGoing);
+  /// By the CPU; see marchOnCpu.
+  TracedTiles traceOnCpu(const PathRound& round, const Evaluator& field, const WorkLimit& limit,
+                         const std::function<bool()>& keepGoing);
   /// A picture beside the one in the making.
   void traceAlone(const Frame& frame, const WorkLimit& limit, const PassOutput& output,
                   const TraceTiles& trace);

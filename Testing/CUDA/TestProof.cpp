@@ -119,13 +119,11 @@ public:
   {
     this->Honest->setColors(majorants, colors);
   }
-  inr::FrameStatistics march(const inr::MarchJob& job, const inr::WorkLimit& limit,
-                             const inr::PassOutput& output,
-                             const std::function<bool()>& keepGoing) override
+  inr::FrameStatistics march(const inr::MarchJob& job, const inr::DrawCall& call) override
   {
-    const inr::FrameStatistics statistics = this->Honest->march(job, limit, output, keepGoing);
+    const inr::FrameStatistics statistics = this->Honest->march(job, call);
     if (this->Wrong.isIt(job.frame)) {
-      spoil(output.rgba);
+      spoil(call.output.rgba);
     }
     return statistics;
   }

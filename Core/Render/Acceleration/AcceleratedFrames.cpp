@@ -171,12 +171,10 @@ void AcceleratedFrames::setColors(const Majorants& majorants, const ColorLookup&
   this->succeeds([&] { this->Device->setColors(majorants, colors); });
 }
 
-std::optional<FrameStatistics> AcceleratedFrames::march(const MarchJob& job, const WorkLimit& limit,
-                                                        const PassOutput& output,
-                                                        const std::function<bool()>& keepGoing)
+std::optional<FrameStatistics> AcceleratedFrames::march(const MarchJob& job, const DrawCall& call)
 {
   std::optional<FrameStatistics> statistics;
-  this->succeeds([&] { statistics = this->Device->march(job, limit, output, keepGoing); });
+  this->succeeds([&] { statistics = this->Device->march(job, call); });
   return statistics;
 }
 

@@ -29,9 +29,7 @@ public:
   void setColors(const Majorants& majorants, const ColorLookup& colors);
 
   /// A picture, or nothing where the accelerator has failed.
-  std::optional<FrameStatistics> march(const MarchJob& job, const WorkLimit& limit,
-                                       const PassOutput& output,
-                                       const std::function<bool()>& keepGoing);
+  std::optional<FrameStatistics> march(const MarchJob& job, const DrawCall& call);
   std::optional<TracedTiles> tracePaths(const PathRound& round, const WorkLimit& limit,
                                         const std::function<bool()>& keepGoing);
 

@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Marching/Shading.h"
+#include "Core/Render/Marching/MarchJob.h"
 #include "Core/Render/Paths/PathPicture.h"
 #include "Core/Render/Scene/FrameStatistics.h"
+#include "Core/Render/Tiles/DrawCall.h"
 
 #include <cstdint>
 #include <functional>
 
 namespace inr {
-
-class WorkLimit;
-
-/// A frame whose rays are to be marched.
-struct MarchJob
-{
-  const Frame& frame;
-  const RayGeometry& geometry;
-  const MarchSettings& settings; ///< `cellSampling`: of the cells of the majorants that were set
-  const ColorLookup& colors;     ///< those that were set
-  const Shading* shading;        ///< null: colours as the transfer function gives them
-};
 
 /// Draws frames of a model through a cache of its own or straight from the network, in the CPU's
 /// place: an accelerator's, on which cache, rays and paths stay. For one renderer, and one call at
@@ -40,9 +29,7 @@ public:
   virtual void setColors(const Majorants& majorants, const ColorLookup& colors) = 0;
 
   /// As Renderer::render, of frames that it draws.
-  virtual FrameStatistics march(const MarchJob& job, const WorkLimit& limit,
-                                const PassOutput& output,
-                                const std::function<bool()>& keepGoing) = 0;
+  virtual FrameStatistics march(const MarchJob& job, const DrawCall& call) = 0;
   /// See TraceTiles.
   virtual TracedTiles tracePaths(const PathRound& round, const WorkLimit& limit,
                                  const std::function<bool()>& keepGoing) = 0;

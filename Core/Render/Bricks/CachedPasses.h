@@ -4,6 +4,7 @@
 #include "Core/Image/Image.h"
 #include "Core/Render/Bricks/CachedMarcher.h"
 #include "Core/Render/Scene/FrameStatistics.h"
+#include "Core/Render/Tiles/DrawCall.h"
 #include "Core/Render/Tiles/Tiling.h"
 
 #include <functional>
@@ -12,15 +13,6 @@
 namespace inr {
 
 class Arena;
-
-/// Where a pass puts its pixels. `depth` may be null, and so may `samples`: two channels, how many
-/// samples the pixel took and the mean of the levels that they came from, -1 where it took none.
-struct PassOutput
-{
-  Image& rgba;
-  Image* depth;
-  Image* samples = nullptr;
-};
 
 /// How far a picture's rays have come, in samples, whether those were taken or left out.
 std::int64_t CamePast(const FrameStatistics& statistics);
