@@ -19,7 +19,7 @@ void RequireMemory(double bytes, const std::string& what, const std::string& adv
                      what + " take " +
                          inr::InMebibytes(static_cast<std::int64_t>(std::min(bytes, most))) +
                          " and this process may have " + std::to_string(inr::UsableMemory() >> 20) +
-                         "; " + advice);
+                         " MiB" + "; " + advice);
   }
 }
 

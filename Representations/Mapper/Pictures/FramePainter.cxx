@@ -77,7 +77,7 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
     constexpr double piece = 0.1;
     frame.timeLimit = std::min(frame.timeLimit, piece);
   }
-  const Job job{frame, renderer, volume, picture};
+  const Job job{frame, renderer, picture};
   if (!this->draw(job)) {
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
               "float textures.";
@@ -134,7 +134,7 @@ const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer,
   if (!this->Selected.depicts(this->depicted(rays, renderer, volume))) {
     this->Selected.begin();
     // In a group, not all may be asked; what was drawn has a part of each.
-    if (this->Group.isAlone() && this->drawUnseen({rays, renderer, volume, this->Selected})) {
+    if (this->Group.isAlone() && this->drawUnseen({rays, renderer, this->Selected})) {
       this->Selected.depict(this->depicted(rays, renderer, volume));
     }
   }
@@ -284,20 +284,21 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
   const std::int64_t pixels = std::int64_t{viewport.width} * viewport.height;
   const int enough = this->Group.largest(this->resolution(scene.mode).factor(1 / patience, pixels));
   int reduction = std::min(std::max(enough, 2 * fine.reduction), ImageReduction::Largest);
-  const DepictedScene depicted = this->depicted(scene, job.renderer, job.volume);
-  // A group's processes do not tell each other when something changed.
-  const bool isThere = this->Group.isAlone() && this->Coarser.depicts(depicted) &&
-                       coarse.reduction <= reduction && !coarse.statistics.blank;
-  reduction = isThere ? coarse.reduction : reduction;
-  Surroundings here = this->reduced(around, viewport, reduction);
-  if (!isThere) {
-    this->Coarser.begin();
-    const Job coarser{scene, job.renderer, job.volume, this->Coarser};
-    if (!this->renderTogether(coarser, here, reduction, Timer(Unlimited))) {
-      return std::nullopt;
-    }
-    this->Coarser.depict(depicted);
+  // What is around, the picture itself is told by.
+  const DepictedScene depicted{scene, this->Caster->colorsVersion(), 0};
+  if (this->Group.all(this->Coarser.depicts(depicted) && !coarse.statistics.blank)) {
+    reduction = coarse.reduction; // others would come and go
   }
+  Surroundings here = this->reduced(around, viewport, reduction);
+  this->Coarser.begin();
+  if (!this->renderTogether({scene, job.renderer, this->Coarser, true}, here, reduction,
+                            Timer(Unlimited))) {
+    const bool depthRead = fine.depthRead;
+    fine = {}; // nobody has seen it
+    fine.depthRead = depthRead;
+    return std::nullopt;
+  }
+  this->Coarser.depict(depicted);
   fine.rgba = coarse.rgba;
   fine.depth = coarse.depth;
   fine.reduction = reduction;
@@ -369,7 +370,7 @@ bool FramePainter::render(const Job& job, const Surroundings& around, int reduct
   last.reduction = reduction;
   this->resolution(frame.mode)
       .record(last.statistics.marchSeconds, std::int64_t{frame.width} * frame.height);
-  if (IsFinal(last.statistics)) {
+  if (IsFinal(last.statistics) || (job.standsIn && !last.statistics.blank)) {
     job.picture.finish(frame, this->CountSamples, this->Caster->colorsVersion());
   }
   return true;

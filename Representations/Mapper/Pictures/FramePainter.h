@@ -72,8 +72,9 @@ private:
   {
     const Frame& scene;
     vtkRenderer* renderer;
-    vtkVolume* volume;
     ViewPicture& picture;
+    /// Shown until there is a better one: it is not made again though it is not complete.
+    bool standsIn = false;
   };
 
   /// What to draw, or why nothing is.

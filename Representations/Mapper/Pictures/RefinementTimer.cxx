@@ -21,10 +21,32 @@ constexpr vtkCommand::EventIds Observed[] = {
     vtkCommand::TimerEvent,
     vtkCommand::StartInteractionEvent,
     vtkCommand::EndInteractionEvent,
+    vtkCommand::LeftButtonPressEvent,
     vtkCommand::LeftButtonReleaseEvent,
+    vtkCommand::MiddleButtonPressEvent,
     vtkCommand::MiddleButtonReleaseEvent,
+    vtkCommand::RightButtonPressEvent,
     vtkCommand::RightButtonReleaseEvent,
 };
+
+/// The buttons that are down after an event of one of them.
+unsigned ButtonsAfter(unsigned long event, unsigned before)
+{
+  switch (event) {
+  case vtkCommand::LeftButtonPressEvent:
+    return before | 1u;
+  case vtkCommand::LeftButtonReleaseEvent:
+    return before & ~1u;
+  case vtkCommand::MiddleButtonPressEvent:
+    return before | 2u;
+  case vtkCommand::MiddleButtonReleaseEvent:
+    return before & ~2u;
+  case vtkCommand::RightButtonPressEvent:
+    return before | 4u;
+  default:
+    return before & ~4u;
+  }
+}
 
 bool ShowsInteraction(vtkRenderWindow* window)
 {
@@ -71,23 +93,36 @@ void RefinementTimer::postpone()
 void RefinementTimer::cancel()
 {
   this->stop();
+  this->Pending = false;
+}
+
+void RefinementTimer::forget()
+{
+  this->cancel();
   if (this->Interactor) {
     this->Interactor->RemoveObserver(this->Command);
   }
   this->Interactor = nullptr;
-  this->Pending = false;
+}
+
+// From now on, whether there is a picture to wait for or not: when there is one, somebody may be in
+// the midst of an interaction.
+void RefinementTimer::observe(vtkRenderWindowInteractor* interactor)
+{
+  this->forget();
+  this->Interactor = interactor;
+  this->Interacting = false;
+  this->Buttons = 0;
+  for (const auto event : Observed) {
+    interactor->AddObserver(event, this->Command, First);
+  }
 }
 
 void RefinementTimer::start(vtkRenderWindowInteractor* interactor, double pause)
 {
   this->stop();
   if (this->Interactor != interactor) {
-    this->cancel();
-    this->Interactor = interactor;
-    this->Interacting = false;
-    for (const auto event : Observed) {
-      interactor->AddObserver(event, this->Command, First);
-    }
+    this->observe(interactor);
   }
   this->Timer = interactor->CreateOneShotTimer(static_cast<unsigned long>(pause * 1000));
   this->Pending = this->Timer != 0; // else there is no event loop to tell the time
@@ -137,7 +172,8 @@ void RefinementTimer::OnEvent(vtkObject*, unsigned long event, void* self, void*
     refinement->Interacting = false;
     break;
   default:
-    refinement->Released = true;
+    refinement->Buttons = ButtonsAfter(event, refinement->Buttons);
+    refinement->Released = refinement->Buttons == 0;
   }
 }
 

@@ -23,7 +23,7 @@ public:
   /// `mayRefine` is asked before a picture and may destroy this; false: again a little later. After
   /// true, `begin` is called right before the picture.
   RefinementTimer(std::function<bool()> mayRefine, std::function<void()> begin);
-  ~RefinementTimer() { this->cancel(); }
+  ~RefinementTimer() { this->forget(); }
   RefinementTimer(const RefinementTimer&) = delete;
   RefinementTimer& operator=(const RefinementTimer&) = delete;
 
@@ -46,6 +46,8 @@ private:
   bool endForgottenInteraction(vtkRenderWindowInteractor* interactor);
   void start(vtkRenderWindowInteractor* interactor, double pause);
   void stop();
+  void observe(vtkRenderWindowInteractor* interactor);
+  void forget();
 
   std::function<bool()> MayRefine;
   std::function<void()> Begin;
@@ -53,7 +55,8 @@ private:
   vtkNew<vtkCallbackCommand> Command;
   bool Pending = false;     ///< a picture is asked for, or being made because it was
   bool Interacting = false; ///< a mouse button is down, whether the mouse moves or not
-  bool Released = false;    ///< a button, since that began
+  bool Released = false;    ///< the last button, since that began
+  unsigned Buttons = 0;     ///< that are down, a bit for each
   int Timer = 0;
   int Fired = 0;                                                   ///< the timer before
   std::shared_ptr<const bool> Life = std::make_shared<bool>(true); ///< ends with this

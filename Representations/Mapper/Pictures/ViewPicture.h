@@ -56,7 +56,7 @@ public:
   /// Shows the one from before it began, if that is what `frame` asks for. The rest is as for
   /// PictureKey.
   bool showAgain(const Frame& frame, bool countsSamples, std::int64_t colors);
-  /// That the picture is the one `frame` asks for, and can become no better.
+  /// That the picture is the one `frame` asks for, and is not to become any better.
   void finish(const Frame& frame, bool countsSamples, std::int64_t colors);
   /// What the picture is of.
   void depict(const DepictedScene& scene);

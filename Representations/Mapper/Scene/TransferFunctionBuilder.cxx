@@ -57,18 +57,15 @@ struct Functions
            this->Rgb->GetRange()[0] < this->Rgb->GetRange()[1];
   }
 
-  /// Whether opacities are visibly others at 0 or below, where no logarithmic axis gets to.
-  bool varyBelowColours() const
+  /// Whether opacities of negative values are visibly others than close above 0, where a
+  /// logarithmic axis ends.
+  bool varyBelowZero() const
   {
-    if (this->Opacity->GetSize() == 0 || this->Opacity->GetRange()[0] > 0) {
-      return false;
-    }
     constexpr double visible = 0.002; // half of a step of 8 bits
-    const double low = this->Rgb->GetRange()[0];
-    const double there = this->Opacity->GetValue(low);
     const std::vector<double> nodes = NodesOf(this->Opacity);
+    const double there = nodes.empty() ? 0 : this->Opacity->GetValue(0);
     return std::any_of(nodes.begin(), nodes.end(), [&](double node) {
-      return node < low && std::abs(this->Opacity->GetValue(node) - there) > visible;
+      return node < 0 && std::abs(this->Opacity->GetValue(node) - there) > visible;
     });
   }
 
@@ -79,9 +76,7 @@ struct Functions
     std::vector<double> rgb(3 * size);
     std::vector<double> alpha(size);
     if (this->areLogarithmic()) { // VTK's table would have its places at equal ratios
-      for (std::size_t k = 0; k < size; ++k) {
-        this->colourAt(low + (high - low) * double(k) / (n - 1), &rgb[3 * k]);
-      }
+      this->coloursFromLogarithms(low, high, n, rgb);
     } else if (this->Rgb) {
       this->Rgb->GetTable(low, high, n, rgb.data());
     } else {
@@ -131,6 +126,33 @@ struct Functions
   vtkPiecewiseFunction* Opacity;
 
 private:
+  /// By a table over the logarithms: asked for each place, the function would go through its nodes.
+  void coloursFromLogarithms(double low, double high, int n, std::vector<double>& rgb) const
+  {
+    const double* ends = this->Rgb->GetRange();
+    const double first = std::log10(ends[0]);
+    const double last = std::log10(ends[1]);
+    std::vector<double> table(3 * (LargestTable + 1));
+    OverLogarithms(this->Rgb)->GetTable(first, last, LargestTable + 1, table.data());
+    double outside[2][3];
+    this->colourAt(0.5 * ends[0], outside[0]);
+    this->colourAt(2 * ends[1], outside[1]);
+    for (int k = 0; k < n; ++k) {
+      const double value = low + (high - low) * k / (n - 1);
+      double* const color = &rgb[3 * static_cast<std::size_t>(k)];
+      if (value < ends[0] || value > ends[1]) {
+        std::copy_n(outside[value < ends[0] ? 0 : 1], 3, color);
+        continue;
+      }
+      const double place = (std::log10(value) - first) / (last - first) * LargestTable;
+      const int cell = std::clamp(static_cast<int>(place), 0, LargestTable - 1);
+      const double* const entry = &table[3 * static_cast<std::size_t>(cell)];
+      for (int channel = 0; channel < 3; ++channel) {
+        color[channel] = entry[channel] + (place - cell) * (entry[channel + 3] - entry[channel]);
+      }
+    }
+  }
+
   void colourAt(double value, double rgb[3]) const
   {
     if (this->Rgb) {
@@ -187,7 +209,7 @@ Range TableRange(const Functions& functions, bool logarithmic)
   const double colourLow = range.low;
   range.extend(functions.Opacity);
   if (logarithmic && range.low <= 0) {
-    range.low = colourLow; // opacities are the same below, see varyBelowColours
+    range.low = colourLow; // but for opacities of negative values, see varyBelowZero
   }
   range.complete();
   return range;
@@ -253,7 +275,7 @@ TransferFunction BuildTransferFunction(vtkVolumeProperty* property)
 {
   const Functions functions(property);
   TransferFunction result;
-  result.logarithmic = functions.areLogarithmic() && !functions.varyBelowColours();
+  result.logarithmic = functions.areLogarithmic() && !functions.varyBelowZero();
   const Range range = TableRange(functions, result.logarithmic);
   result.low = range.low;
   result.high = range.high;

@@ -243,16 +243,19 @@ TEST_F(TransferFunctions, OfALogScaleMayHaveTenThousandOpacities)
   }
 }
 
-TEST_F(TransferFunctions, KeepALogScaleWhereTheOpacityIsHardlyAnotherAtZero)
+TEST_F(TransferFunctions, KeepALogScaleWhereNoOpacityIsLostByIt)
 {
   this->colour->AddRGBPoint(0.1, 0, 0, 0);
-  this->colour->AddRGBPoint(100, 1, 1, 1);
+  this->colour->AddRGBPoint(1e6, 1, 1, 1);
   this->colour->SetScaleToLog10();
-  this->opacity->AddPoint(0, 0);
-  this->opacity->AddPoint(100, 1);
+  this->opacity->AddPoint(-5, 0);
+  this->opacity->AddPoint(0, 0); // which hides what is 0
+  this->opacity->AddPoint(0.1, 1);
+  this->opacity->AddPoint(1e6, 1);
   const auto table = inr::BuildTransferFunction(this->property);
   EXPECT_TRUE(table.logarithmic);
   EXPECT_EQ(table.low, 0.1);
+  EXPECT_NEAR(table.below.a, 0, 0.01);
 }
 
 TEST_F(TransferFunctions, ResolveNodesThatAreCloseTogether)

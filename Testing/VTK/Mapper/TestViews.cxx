@@ -404,13 +404,18 @@ public:
   HastyView(const HastyView&) = delete;
   HastyView& operator=(const HastyView&) = delete;
 
-  /// As ParaView's selections do.
-  void interactWithoutEnd() const
+  void beginInteraction() const
   {
     this->Idle.interactor->InvokeEvent(vtkCommand::LeftButtonPressEvent);
     this->Idle.interactor->InvokeEvent(vtkCommand::StartInteractionEvent);
+  }
+  /// As ParaView's selections do.
+  void interactWithoutEnd() const
+  {
+    this->beginInteraction();
     this->Idle.interactor->InvokeEvent(vtkCommand::LeftButtonReleaseEvent);
   }
+  bool interacts() const { return this->Interacts; }
 
 private:
   void on(unsigned long event)
@@ -444,6 +449,22 @@ TEST(Views, ClearUpAfterInteractionsThatNobodyEnds)
   other.interactWithoutEnd();
   EXPECT_TRUE(before.clearsUp());
   EXPECT_TRUE(before.isStill());
+}
+
+TEST(Views, LeaveAnInteractionToItself)
+{
+  IdleWindow idle;
+  idle.watch.watch(idle.one.renderer);
+  const HastyView view(idle);
+  EXPECT_LE(RenderUntilConverged(idle.one, idle.watch), 40);
+  view.beginInteraction();
+  idle.interactor->InvokeEvent(vtkCommand::RightButtonPressEvent); // beside the left one
+  idle.interactor->InvokeEvent(vtkCommand::RightButtonReleaseEvent);
+  idle.one.mapper->SetSamplesPerPixel(1000);
+  idle.one.scene.window->Render(); // somebody else's, and it is not complete
+  EXPECT_TRUE(RunUntilIdle(idle.one.scene.window, idle.interactor, [] {}));
+  EXPECT_TRUE(view.interacts());
+  EXPECT_FALSE(idle.watch.allConverged());
 }
 
 } // namespace
