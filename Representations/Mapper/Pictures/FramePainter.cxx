@@ -289,19 +289,23 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
   if (this->Group.all(this->Coarser.depicts(depicted) && !coarse.statistics.blank)) {
     reduction = coarse.reduction; // others would come and go
   }
-  Surroundings here = this->reduced(around, viewport, reduction);
-  this->Coarser.begin();
-  if (!this->renderTogether({scene, job.renderer, this->Coarser, true}, here, reduction,
-                            Timer(Unlimited))) {
-    const bool depthRead = fine.depthRead;
-    fine = {}; // nobody has seen it
-    fine.depthRead = depthRead;
-    return std::nullopt;
+  Surroundings here;
+  for (bool blank = true; blank; reduction = std::min(4 * reduction, ImageReduction::Largest)) {
+    here = this->reduced(around, viewport, reduction);
+    this->Coarser.begin();
+    if (!this->renderTogether({scene, job.renderer, this->Coarser, true}, here, reduction,
+                              Timer(Unlimited))) {
+      const bool depthRead = fine.depthRead;
+      fine = {}; // nobody has seen it
+      fine.depthRead = depthRead;
+      return std::nullopt;
+    }
+    blank = reduction < ImageReduction::Largest && !this->Group.all(!coarse.statistics.blank);
   }
   this->Coarser.depict(depicted);
   fine.rgba = coarse.rgba;
   fine.depth = coarse.depth;
-  fine.reduction = reduction;
+  fine.reduction = coarse.reduction;
   return here;
 }
 
