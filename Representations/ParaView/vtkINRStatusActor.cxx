@@ -67,6 +67,13 @@ std::string ClampedOf(const inr::FrameStatus& status)
   return text.str();
 }
 
+/// Whether the picture is part of a larger one, of which each part has a status of its own.
+bool IsTile(vtkViewport* viewport)
+{
+  const int* scale = viewport->GetVTKWindow()->GetTileScale();
+  return scale[0] > 1 || scale[1] > 1;
+}
+
 } // namespace
 
 vtkINRStatusActor::vtkINRStatusActor()
@@ -179,7 +186,7 @@ int vtkINRStatusActor::RenderOverlay(vtkViewport* viewport)
 {
   const std::string text = this->TextIn(viewport);
   this->Height = 0;
-  if (text.empty()) {
+  if (text.empty() || IsTile(viewport)) {
     return 0;
   }
   this->SetInput(text.c_str());

@@ -76,6 +76,13 @@ check(0 < int(used) < 1000, "cache of", used)
 (block,) = rows_of_text(shown, bare)
 check(block[0] < 10 and 20 < block[1] - block[0] < 60, "the text is in rows", block)
 
+# Of a larger screenshot each part would have a status of its own.
+large = picture(view, "status-in-parts", (800, 600))
+display.ShowStatus = 0
+check((large == picture(view, "status-in-parts-off", (800, 600))).all(), "parts have a status each")
+display.ShowStatus = 1
+check((picture(view, "status-on-again") != bare).any(), "no status after a larger screenshot")
+
 # What an interactive picture lacks; coarser levels from further away.
 display.BrickSize = 10
 display.LevelOfDetailScale = 0
