@@ -47,11 +47,13 @@ struct FrameStatistics
   double marchSeconds = 0;
   WorkDone work; ///< of the call
 
-  /// Which part of the samples is not missed, those that are left out included; 1 of none.
+  /// Which part of the samples is not missed, those that are left out included; 1 of none. A lit
+  /// sample that lacks neighbours is missed for each.
   double hitRate() const
   {
     const std::int64_t all = this->samples + this->hidden;
-    return all > 0 ? 1.0 - static_cast<double>(this->missed) / static_cast<double>(all) : 1.0;
+    const auto missing = static_cast<double>(std::min(this->missed, all));
+    return all > 0 ? 1.0 - missing / static_cast<double>(all) : 1.0;
   }
 
   /// Adds what was counted in another part of the picture; times are not counts.

@@ -5,6 +5,7 @@
 // and a line in a table.
 #include "Core/Render/Renderer.h"
 #include "Core/Render/Scene/DrawnFrame.h"
+#include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/FakeAccelerator.h"
 
 #include <gtest/gtest.h>
@@ -302,6 +303,19 @@ TEST(RendererOptions, AreOthersWithAnotherValueOfAnyField)
            {"preloading", [](auto& o) { o.preloading = false; }},
            {"background", [](auto& o) { o.background = false; }},
            {"onlyWhatFits", [](auto& o) { o.onlyWhatFits = true; }}});
+}
+
+// Of what is lit, each neighbour that a sample lacks is missed.
+TEST(FrameStatistics, MissNoMoreThanAll)
+{
+  inr::FrameStatistics statistics;
+  EXPECT_EQ(statistics.hitRate(), 1);
+  statistics.samples = 8;
+  statistics.hidden = 2;
+  statistics.missed = 4;
+  EXPECT_DOUBLE_EQ(statistics.hitRate(), 0.6);
+  statistics.missed = 40;
+  EXPECT_EQ(statistics.hitRate(), 0);
 }
 
 } // namespace test::frame
