@@ -12,14 +12,13 @@
 
 void RequireMemory(double bytes, const std::string& what, const std::string& advice)
 {
-  const auto memory = static_cast<double>(inr::UsableMemory());
-  if (bytes > memory) {
+  const std::int64_t memory = inr::UsableMemory();
+  if (bytes > static_cast<double>(memory)) {
     const auto most = static_cast<double>(std::int64_t{1} << 62);
-    throw inr::Error(inr::ErrorCode::TooLarge,
-                     what + " take " +
-                         inr::InMebibytes(static_cast<std::int64_t>(std::min(bytes, most))) +
-                         " and this process may have " + std::to_string(inr::UsableMemory() >> 20) +
-                         " MiB" + "; " + advice);
+    throw inr::Error(
+        inr::ErrorCode::TooLarge,
+        what + " take " + inr::InMebibytes(static_cast<std::int64_t>(std::min(bytes, most))) +
+            " and this process may have " + std::to_string(memory >> 20) + " MiB" + "; " + advice);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
+#include "vtkINRDataArray.h"
 #include "vtkINRLODVolume.h"
 #include "vtkINRStatusActor.h"
 #include "vtkINRVolumeMapper.h"
@@ -21,6 +22,7 @@
 #include "vtkOutlineSource.h"
 #include "vtkPVDataDeliveryManager.h"
 #include "vtkPVRenderView.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataMapper.h"
 #include "vtkProcessModule.h"
@@ -211,7 +213,7 @@ void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
     vtkImageData* image = this->Model->receive(vtkPolyData::SafeDownCast(carrier));
     this->VolumeMapper->SetInputDataObject(image);
     this->Actor->SetEnableLOD(image ? 0 : 1); // the outline
-    this->ReportShared(image != nullptr);
+    this->ReportShared(image && vtkINRDataArray::FindIn(image->GetPointData()));
   } catch (const std::exception& problem) {
     vtkErrorMacro(<< problem.what());
   }

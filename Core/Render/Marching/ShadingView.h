@@ -43,11 +43,14 @@ struct ShadingView
       return result;
     }
     const glm::dvec3 normal = across / steepness;
-    const glm::dvec3 world(this->toWorld * glm::dvec4(index, 1.0));
-    for (int k = 0; k < this->lightCount; ++k) {
-      const Illumination light =
-          k < this->constantCount ? this->constant[k] : IlluminationAt(this->lights[k], world);
-      result += this->lit(color, toEye, normal, light);
+    for (int k = 0; k < this->constantCount; ++k) {
+      result += this->lit(color, toEye, normal, this->constant[k]);
+    }
+    if (this->lightCount > this->constantCount) {
+      const glm::dvec3 world(this->toWorld * glm::dvec4(index, 1.0));
+      for (int k = this->constantCount; k < this->lightCount; ++k) {
+        result += this->lit(color, toEye, normal, IlluminationAt(this->lights[k], world));
+      }
     }
     return result;
   }
@@ -57,15 +60,23 @@ private:
                                 const glm::dvec3& normal, const Illumination& light) const
   {
     const double facing = glm::dot(normal, light.toLight);
-    const double mirrored = 2.0 * facing * glm::dot(normal, toEye) - glm::dot(light.toLight, toEye);
     const float diffuse = static_cast<float>(std::abs(facing)) * this->surface.diffuse;
-    const float specular =
-        mirrored > 0 ? std::pow(static_cast<float>(mirrored), this->surface.specularPower) *
-                           this->surface.specular
-                     : 0.0f;
     // An irradiance of pi makes a white surface white.
     return light.irradiance * static_cast<float>(1.0 / detail::Pi) *
-           (color * diffuse + glm::vec3(specular));
+           (color * diffuse + glm::vec3(this->highlight(facing, toEye, normal, light.toLight)));
+  }
+
+  /// None by ParaView's defaults, and a power is a good part of what a lit sample takes.
+  INR_HOST_DEVICE float highlight(double facing, const glm::dvec3& toEye, const glm::dvec3& normal,
+                                  const glm::dvec3& toLight) const
+  {
+    if (!(this->surface.specular > 0.0f)) {
+      return 0.0f;
+    }
+    const double mirrored = 2.0 * facing * glm::dot(normal, toEye) - glm::dot(toLight, toEye);
+    return mirrored > 0 ? std::pow(static_cast<float>(mirrored), this->surface.specularPower) *
+                              this->surface.specular
+                        : 0.0f;
   }
 };
 

@@ -35,7 +35,8 @@ struct FrameStatistics
   /// if the options are to make do with that, the best that a full cache has.
   bool complete = true;
   std::int64_t paths = 0; ///< of path tracing: through each pixel, in the picture shown
-  /// Of path tracing: there was no time yet for some pixels, which show nothing.
+  /// Of path tracing through the CPU's cache: there was no time yet for some pixels, which show
+  /// nothing.
   bool blank = false;
   LevelSpan levels; ///< of the cache, that samples came from
   /// Whether an accelerator has drawn it, or part of it; else the CPU did, of what that inferred.

@@ -202,7 +202,6 @@ void FramePainter::makeRenderer(const vtkINRDataArray& array, const RendererOpti
   }
   this->Pictures.outdate();
   this->Selected.outdate();
-  this->Coarser.outdate();
   const bool measures = !options.deterministic;
   if (measures != measured) {
     this->Rays = ImageReduction(measures);
@@ -278,22 +277,30 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
 {
   constexpr double patience = 0.25; // seconds, beyond what the finer one took
   PaintedFrame& fine = job.picture.last();
-  const PaintedFrame& coarse = this->Coarser.last();
+  ViewPicture& picture = job.picture.coarser();
+  const PaintedFrame& coarse = picture.last();
   Frame scene = job.scene;
-  scene.view = this->Coarser.number();
-  const std::int64_t pixels = std::int64_t{viewport.width} * viewport.height;
-  const int enough = this->Group.largest(this->resolution(scene.mode).factor(1 / patience, pixels));
-  int reduction = std::min(std::max(enough, 2 * fine.reduction), ImageReduction::Largest);
+  scene.view = picture.number();
+  // By what is known of this picture: what others took is another matter.
+  const auto seconds = [&](int divided) {
+    const double ratio = static_cast<double>(divided) / fine.reduction;
+    return fine.statistics.marchSeconds / (ratio * ratio);
+  };
+  int reduction = std::min(2 * fine.reduction, ImageReduction::Largest);
+  while (reduction < ImageReduction::Largest && seconds(reduction) > patience) {
+    reduction *= 2;
+  }
+  reduction = this->Group.largest(reduction);
   // What is around, the picture itself is told by.
   const DepictedScene depicted{scene, this->Caster->colorsVersion(), 0};
-  if (this->Group.all(this->Coarser.depicts(depicted) && !coarse.statistics.blank)) {
+  if (this->Group.all(picture.depicts(depicted) && !coarse.statistics.blank)) {
     reduction = coarse.reduction; // others would come and go
   }
   Surroundings here;
   for (bool blank = true; blank; reduction = std::min(4 * reduction, ImageReduction::Largest)) {
     here = this->reduced(around, viewport, reduction);
-    this->Coarser.begin();
-    if (!this->renderTogether({scene, job.renderer, this->Coarser, true}, here, reduction,
+    picture.begin();
+    if (!this->renderTogether({scene, job.renderer, picture, true}, here, reduction,
                               Timer(Unlimited))) {
       const bool depthRead = fine.depthRead;
       fine = {}; // nobody has seen it
@@ -302,7 +309,7 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
     }
     blank = reduction < ImageReduction::Largest && !this->Group.all(!coarse.statistics.blank);
   }
-  this->Coarser.depict(depicted);
+  picture.depict(depicted);
   fine.rgba = coarse.rgba;
   fine.depth = coarse.depth;
   fine.reduction = coarse.reduction;

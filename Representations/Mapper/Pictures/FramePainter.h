@@ -115,9 +115,9 @@ private:
   ImageBlender Blender;
   TranslucentPeeler Peeler;
   PictureStore Pictures;
-  StillPictures Stills;     ///< of these
-  ViewPicture Selected{-1}; ///< for the latest selection, where no view shows what it is of
-  ViewPicture Coarser{-1};  ///< shown until there is something for all pixels of a finer one
+  StillPictures Stills; ///< of these
+  /// For the latest selection, where no view shows what it is of.
+  ViewPicture Selected{NobodysPicture};
 };
 
 } // namespace inr

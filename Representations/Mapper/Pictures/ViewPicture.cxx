@@ -44,8 +44,17 @@ bool ViewPicture::depicts(const DepictedScene& scene) const
          this->Scene && this->Scene->matches(scene.frame, false, scene.colors);
 }
 
+ViewPicture& ViewPicture::coarser()
+{
+  if (!this->Coarser) {
+    this->Coarser = std::make_unique<ViewPicture>(NobodysPicture);
+  }
+  return *this->Coarser;
+}
+
 void ViewPicture::outdate()
 {
+  this->Coarser.reset();
   this->Key.reset();
   this->Scene.reset();
 }

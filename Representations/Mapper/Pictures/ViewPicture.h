@@ -7,10 +7,14 @@
 #include "Representations/Mapper/Pictures/PictureKey.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 namespace inr {
+
+/// The number of all pictures that no view's next one goes on with.
+constexpr int NobodysPicture = -1;
 
 /// The last picture made and what it took; without pixels when nothing was drawn.
 struct PaintedFrame
@@ -65,6 +69,9 @@ public:
   /// For when everything has changed: it is a picture of nothing that there is.
   void outdate();
 
+  /// One with fewer pixels, shown until there is something for all of this one's.
+  ViewPicture& coarser();
+
   /// That the window be drawn again, to go on with this picture; and that this is being done.
   bool requested = false;
   bool goesOn = false;
@@ -76,6 +83,7 @@ private:
   std::optional<PictureKey> Key; ///< of what was drawn last, if it is complete
   std::optional<PictureKey> Scene;
   std::uint64_t Surroundings = 0;
+  std::unique_ptr<ViewPicture> Coarser;
 };
 
 } // namespace inr

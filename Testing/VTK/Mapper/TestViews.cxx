@@ -386,17 +386,13 @@ public:
   explicit HastyView(IdleWindow& idle) : Idle(idle)
   {
     idle.interactor->SetInteractorStyle(nullptr); // which would render for itself
-    idle.one.volume->VisibilityOff();
-    idle.one.scene.window->Render();
-    idle.interactor->ProcessEvents(); // of a window that has just come up, for which it renders
-    idle.one.volume->VisibilityOn();
     idle.interactor->EnableRenderOff();
     this->Command->SetClientData(this);
     this->Command->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
       static_cast<HastyView*>(data)->on(event);
     });
     for (const auto event : {vtkCommand::StartInteractionEvent, vtkCommand::EndInteractionEvent,
-                             vtkCommand::RenderEvent}) {
+                             vtkCommand::RenderEvent, vtkCommand::ExposeEvent}) {
       idle.interactor->AddObserver(event, this->Command);
     }
   }
@@ -420,10 +416,19 @@ public:
 private:
   void on(unsigned long event)
   {
-    if (event != vtkCommand::RenderEvent) {
+    if (event == vtkCommand::ExposeEvent) { // of a window that has come up, for which it renders
+      this->IsExposed = true;
+    } else if (event == vtkCommand::RenderEvent) {
+      if (!std::exchange(this->IsExposed, false)) {
+        this->render();
+      }
+    } else {
       this->Interacts = event == vtkCommand::StartInteractionEvent;
-      return;
     }
+  }
+
+  void render() const
+  {
     vtkRenderWindow* window = this->Idle.one.scene.window;
     window->SetDesiredUpdateRate(this->Interacts ? 5 : 0.002);
     window->Render();
@@ -432,6 +437,7 @@ private:
   IdleWindow& Idle;
   vtkNew<vtkCallbackCommand> Command;
   bool Interacts = false;
+  bool IsExposed = false;
 };
 
 TEST(Views, ClearUpAfterInteractionsThatNobodyEnds)
