@@ -5,10 +5,14 @@ import os
 import resource
 import tempfile
 
-import numpy as np
-from inrvolume import vtkINRContour, vtkINRDecode, vtkINRReader, vtkINRSlice, vtkINRWriter
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonDataModel import vtkImageData
+# Threads that come late would have no room for a stack.
+os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+
+import numpy as np  # noqa: E402
+from inrvolume import (vtkINRContour, vtkINRDecode, vtkINRReader, vtkINRSlice,  # noqa: E402
+                       vtkINRWriter)
+from vtkmodules.util.numpy_support import numpy_to_vtk  # noqa: E402
+from vtkmodules.vtkCommonDataModel import vtkImageData  # noqa: E402
 
 EDGE = 40
 M_MMAP_THRESHOLD = -3
