@@ -18,7 +18,7 @@ void RequireMemory(double bytes, const std::string& what, const std::string& adv
     throw inr::Error(
         inr::ErrorCode::TooLarge,
         what + " take " + inr::InMebibytes(static_cast<std::int64_t>(std::min(bytes, most))) +
-            " and this process may have " + std::to_string(memory >> 20) + " MiB" + "; " + advice);
+            " and this process may have " + std::to_string(memory >> 20) + " MiB; " + advice);
   }
 }
 

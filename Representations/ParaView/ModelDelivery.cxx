@@ -23,37 +23,36 @@
 namespace inr {
 namespace {
 
-/// Where an image presents a model, which filters may have moved: origin, what is between the first
-/// and the last point along each axis (of one point, its spacing), and the direction matrix by
-/// rows.
-std::array<double, 15> PlacementOf(vtkImageData* image, const vtkINRDataArray& array)
+/// Where an image has a grid of so many points from point `first` on: origin, what is between the
+/// first and the last point along each axis (of one point, its spacing), and the direction matrix
+/// by rows.
+std::array<double, 15> PlacementOf(vtkImageData* image, const int first[3], const int points[3])
 {
   std::array<double, 15> placement{};
-  int first[3];
-  array.GetShift(image, first);
   image->TransformIndexToPhysicalPoint(first, placement.data());
-  int presented[3];
-  array.GetPresentedDimensions(presented);
   for (int axis = 0; axis < 3; ++axis) {
-    placement[3 + axis] = image->GetSpacing()[axis] * std::max(presented[axis] - 1, 1);
+    placement[3 + axis] = image->GetSpacing()[axis] * std::max(points[axis] - 1, 1);
   }
   std::copy_n(image->GetDirectionMatrix()->GetData(), 9, placement.begin() + 6);
   return placement;
 }
 
+/// The same of the grid that presents a model, which filters may have moved.
+std::array<double, 15> PlacementOf(vtkImageData* image, const vtkINRDataArray& array)
+{
+  int first[3];
+  array.GetShift(image, first);
+  int presented[3];
+  array.GetPresentedDimensions(presented);
+  return PlacementOf(image, first, presented);
+}
+
 /// The same of an image without a model.
 std::array<double, 15> PlacementOf(vtkImageData* image)
 {
-  std::array<double, 15> placement{};
   const int* extent = image->GetExtent();
   const int first[3] = {extent[0], extent[2], extent[4]};
-  image->TransformIndexToPhysicalPoint(first, placement.data());
-  for (int axis = 0; axis < 3; ++axis) {
-    placement[3 + axis] =
-        image->GetSpacing()[axis] * std::max(extent[2 * axis + 1] - extent[2 * axis], 1);
-  }
-  std::copy_n(image->GetDirectionMatrix()->GetData(), 9, placement.begin() + 6);
-  return placement;
+  return PlacementOf(image, first, image->GetDimensions());
 }
 
 vtkSmartPointer<vtkImageData> ImageOf(const int dims[3], const double placement[15])
