@@ -97,7 +97,6 @@ const SufficientBricks& CachedRenderer::bricksFor(const Majorants& majorants,
   const bool fits = this->Bricks && this->Bricks->wantsAll() == !reach &&
                     this->Bricks->reach() == reach.value_or(0);
   if (!fits) {
-    this->Kept.reset();
     this->Unfinished.reset(); // it reads the former ones
     const BrickCache& cache = this->Store->cache();
     std::optional<VisibleBlocks> wanted;
@@ -136,7 +135,6 @@ std::vector<BrickPart> CachedRenderer::partsOf(const std::vector<BrickKey>& keys
 
 void CachedRenderer::forgetColors()
 {
-  this->Kept.reset();
   this->Unfinished.reset();
   this->Steps.reset();
   this->Blocks.reset();
@@ -149,16 +147,16 @@ FrameStatistics CachedRenderer::render(const MarchJob& job, const Majorants& maj
   const Frame& frame = job.frame;
   const MarchSettings& settings = job.settings;
   this->Work = {};
-  std::optional<Refinement>& unfinished = this->Unfinished.of(frame.view);
-  if (unfinished && call.limit.isLimited() && unfinished->continues(frame, call.output)) {
+  std::optional<Refinement>& refined = this->Unfinished.of(frame.view).refined;
+  if (refined && call.limit.isLimited() && refined->continues(frame, call.output)) {
     try {
-      return this->refine(*unfinished, call);
+      return this->refine(*refined, call);
     } catch (const std::bad_alloc&) { // in the midst of its rays: nobody knows how far they are
-      unfinished.reset();
+      refined.reset();
       throw;
     }
   }
-  unfinished.reset();
+  refined.reset();
   const StepLookup& steps = this->stepsFor(job.colors, settings.step * settings.unitsPerT);
   const BrickCache& cache = this->Store->cache();
   const BlockVisibility* blocks = this->blocksFor(colors, settings, majorants.rangesHold());
@@ -192,7 +190,7 @@ FrameStatistics CachedRenderer::renderFrame(const CachedScene& scene, const Draw
 
 FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const DrawCall& call)
 {
-  this->Kept.reset(); // its bricks are no longer those of the latest frame
+  this->Unfinished.forget(scene.frame.view);
   CompletePass pass(scene);
   double marching = 0;
   while (true) {
@@ -249,50 +247,38 @@ FrameStatistics CachedRenderer::march(const CachedScene& scene, MarchedTiles& ti
 {
   const OnMiss onMiss = this->Options.preloading ? OnMiss::Approach : OnMiss::UseCoarser;
   // Tiles that stay as they are show what they did.
-  this->Latest =
-      this->Store->beginFrame(tiles.begun() ? std::optional(this->Latest) : std::nullopt);
-  const FrameStatistics statistics =
-      tiles.march(scene, onMiss, this->Threads, call.keepGoing, call.output, requests);
+  tiles.latestFrame = this->Latest = this->Store->beginFrame(tiles.latestFrame);
+  const FrameStatistics statistics = tiles.march(scene, onMiss, this->Threads, call, requests);
   this->Work.add(statistics.work);
   return statistics;
 }
 
-std::unique_ptr<KeptPicture> CachedRenderer::takeKept(const CachedScene& scene)
-{
-  std::unique_ptr<KeptPicture> kept = std::move(this->Kept);
-  // Tiles go on with bricks that come in, not with samples that are chosen anew.
-  const bool goesOn = kept && kept->isOf(scene.frame) && scene.settings.cellSampling == nullptr;
-  return goesOn ? std::move(kept) : nullptr;
-}
-
 FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const DrawCall& call)
 {
-  const std::unique_ptr<KeptPicture> kept = this->takeKept(scene);
-  // Whoever takes from this picture what it has will do so again.
-  const bool contested = this->Store->hasLostSince(this->Latest);
-  MarchedTiles tiles = kept && kept->has(call.output)
+  UnfinishedPicture& unfinished = this->Unfinished.of(scene.frame.view);
+  const std::unique_ptr<KeptPicture> kept = std::move(unfinished.kept);
+  MarchedTiles tiles = kept && kept->isOf(scene) && kept->has(call.output)
                            ? kept->take(call.output)
                            : MarchedTiles(scene.frame.width, scene.frame.height);
+  // Whoever takes from this picture what it has will do so again.
+  const bool contested = this->Store->hasLostSince(tiles.latestFrame.value_or(this->Latest));
   while (true) {
     RequestRanking requests;
-    FrameStatistics statistics = this->march(scene, tiles, call, requests);
-    statistics.complete = requests.empty();
+    const FrameStatistics statistics = this->march(scene, tiles, call, requests);
     const std::int64_t room = this->room();
     const bool fits = !contested && requests.count() <= room;
-    if (!fits) { // should the same be asked for again
-      this->Unfinished.of(scene.frame.view).emplace(scene, call.output);
-    }
     const std::int64_t most = std::min<std::int64_t>(room, this->Options.maximumRequests);
     this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking),
                        call.limit, call.keepGoing);
-    const bool ends =
-        call.limit.endsWithin(0) || call.limit.endsWithin(tiles.secondsToMarch(scene.bricks));
-    if (statistics.complete || !fits || ends) {
-      if (fits && !statistics.complete) {
-        this->Kept = kept
-                         ? std::make_unique<KeptPicture>(scene.frame, std::move(tiles), call.output)
-                         : std::make_unique<KeptPicture>(scene.frame);
-      }
+    if (statistics.complete) {
+      return statistics;
+    }
+    if (!fits && !statistics.blank) { // should the same be asked for again
+      unfinished.refined.emplace(scene, call.output);
+      return statistics;
+    }
+    if (call.limit.endsWithin(0) || call.limit.endsWithin(tiles.secondsToMarch(scene.bricks))) {
+      unfinished.kept = std::make_unique<KeptPicture>(scene, std::move(tiles), call.output);
       return statistics;
     }
   }
@@ -302,10 +288,12 @@ FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const D
 {
   // Whoever takes from this picture what it has will do so again.
   bool full = call.limit.isLimited() && this->Store->hasLostSince(this->Latest);
+  const WorkLimit none(0, false); // each time all of it, as nothing is kept
   while (true) {
     RequestRanking requests;
     MarchedTiles tiles(scene.frame.width, scene.frame.height);
-    FrameStatistics statistics = this->march(scene, tiles, call, requests);
+    FrameStatistics statistics =
+        this->march(scene, tiles, {call.output, none, call.keepGoing}, requests);
     const std::int64_t room = this->room();
     // Not down to the last brick: fewer and fewer come in for all that they replace.
     full = full || room <= this->Store->capacity() / 64;

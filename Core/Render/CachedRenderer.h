@@ -62,6 +62,15 @@ public:
   const std::shared_ptr<BrickStore>& sharedStore() const { return this->Store; }
 
 private:
+  /// A view's latest picture, where it is not complete: one of these or none.
+  struct UnfinishedPicture
+  {
+    /// Where there was no time for all of it, or it lacks bricks that the cache has room for.
+    std::unique_ptr<KeptPicture> kept;
+    /// Of what the cache cannot hold, or keep for it.
+    std::optional<Refinement> refined;
+  };
+
   FrameStatistics renderFrame(const CachedScene& scene, const DrawCall& call);
   void beginFrame();
   const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
@@ -75,8 +84,6 @@ private:
   RequestRanking inSteps(const RequestRanking& requests, std::int64_t room) const;
   std::vector<BrickPart> partsOf(const std::vector<BrickKey>& keys) const;
   FrameStatistics renderComplete(const CachedScene& scene, const DrawCall& call);
-  /// What is kept of the same picture, or null.
-  std::unique_ptr<KeptPicture> takeKept(const CachedScene& scene);
   FrameStatistics renderInTime(const CachedScene& scene, const DrawCall& call);
   FrameStatistics renderWhatFits(const CachedScene& scene, const DrawCall& call);
   /// Those tiles that are due, as far as the bricks are there.
@@ -108,10 +115,7 @@ private:
   std::optional<BlockVisibility> Blocks;
   std::optional<SufficientBricks> Bricks; ///< of the latest frame
   bool LoadsWhole = false;                ///< as it will look at more later
-  /// The latest frame, where it lacks bricks that the cache has room for.
-  std::unique_ptr<KeptPicture> Kept;
-  /// Pictures of which the cache cannot hold, or keep for them, what they want.
-  PerView<std::optional<Refinement>> Unfinished;
+  PerView<UnfinishedPicture> Unfinished;
   PathShortage Shortage; ///< of the latest path-traced picture
 };
 

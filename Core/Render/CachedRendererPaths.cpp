@@ -12,7 +12,7 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
                                        const ColorTable& colors, const WorkLimit& limit,
                                        const std::function<bool()>& keepGoing)
 {
-  this->Kept.reset(); // its bricks are no longer those of the latest frame
+  this->Unfinished.forget(round.tracer.frame().view); // of its rays
   this->LoadsWhole = false;
   const bool hides = majorants.rangesHold() && colors.hidesAny();
   const SufficientBricks& bricks =

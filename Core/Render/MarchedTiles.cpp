@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/MarchedTiles.h"
 
+#include "Core/Render/Tiles/PassClock.h"
 #include "Core/Render/Tiles/TileLoop.h"
 #include "Core/Timer.h"
 
@@ -37,6 +38,9 @@ void MarchedTiles::MarchedTile::update(CachedMarcher& marcher)
 
 bool MarchedTiles::MarchedTile::isDue(const SufficientBricks& bricks) const
 {
+  if (this->pass == 0) {
+    return true;
+  }
   std::size_t come = 0;
   double sum = 0;
   for (const Request& request : this->missed.entries()) {
@@ -48,38 +52,86 @@ bool MarchedTiles::MarchedTile::isDue(const SufficientBricks& bricks) const
   return come > 0 && (come == this->missed.entries().size() || sum >= this->enough);
 }
 
+double MarchedTiles::wholeSeconds() const
+{
+  const auto reached = static_cast<double>(std::max<std::int64_t>(this->Reached, 1));
+  return this->SecondsToReach * static_cast<double>(this->Tiles.count()) / reached;
+}
+
 double MarchedTiles::secondsToMarch(const SufficientBricks& bricks) const
 {
-  const auto due = std::count_if(this->Marched.begin(), this->Marched.end(),
-                                 [&](const MarchedTile& tile) { return tile.isDue(bricks); });
-  return this->WholeSeconds * static_cast<double>(due) / static_cast<double>(this->Tiles.count());
+  const auto due = static_cast<double>(this->due(bricks).size());
+  return this->wholeSeconds() * due / static_cast<double>(this->Tiles.count());
+}
+
+std::vector<std::int64_t> MarchedTiles::due(const SufficientBricks& bricks) const
+{
+  std::vector<std::int64_t> due;
+  for (std::int64_t k = 0; k < this->Tiles.count(); ++k) {
+    if (this->Marched[static_cast<std::size_t>(k)].isDue(bricks)) {
+      due.push_back(k);
+    }
+  }
+  std::stable_sort(due.begin(), due.end(), [this](std::int64_t a, std::int64_t b) {
+    return this->Marched[static_cast<std::size_t>(a)].pass <
+           this->Marched[static_cast<std::size_t>(b)].pass;
+  });
+  return due;
+}
+
+std::vector<char> MarchedTiles::marchDue(const CachedScene& scene, OnMiss onMiss,
+                                         const Arena& arena, const DrawCall& call,
+                                         const std::vector<std::int64_t>& due)
+{
+  PassClock clock(call.limit, false);
+  std::vector<char> marched(due.size());
+  ForEachTile(arena, static_cast<std::int64_t>(due.size()), call.keepGoing, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    MarchedTile& tile = this->Marched[static_cast<std::size_t>(due[k])];
+    if (clock.mayBegin()) {
+      CachedMarcher marcher(scene, onMiss);
+      MarchTile(scene, marcher, this->Tiles.tile(due[k]), call.keepGoing, call.output);
+      tile.update(marcher);
+      marched[k] = 1;
+    } else if (tile.pass == 0) {
+      WriteEmpty(this->Tiles.tile(due[k]), call.output);
+    }
+  });
+  return marched;
 }
 
 FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
-                                    const std::function<bool()>& keepGoing,
-                                    const PassOutput& output, RequestRanking& requests)
+                                    const DrawCall& call, RequestRanking& requests)
 {
   const Timer timer;
-  ForEachTile(arena, this->Tiles.count(), keepGoing, [&](std::int64_t k) {
-    MarchedTile& tile = this->Marched[static_cast<std::size_t>(k)];
-    if (this->begun() && !tile.isDue(scene.bricks)) {
-      tile.statistics.work = {};
-      return;
-    }
-    CachedMarcher marcher(scene, onMiss);
-    MarchTile(scene, marcher, this->Tiles.tile(k), keepGoing, output);
-    tile.update(marcher);
-  });
+  const std::vector<std::int64_t> due = this->due(scene.bricks);
+  const std::vector<char> marched = this->marchDue(scene, onMiss, arena, call, due);
+  ++this->Pass;
   FrameStatistics sum;
+  std::int64_t count = 0;
+  std::int64_t reached = 0;
+  for (std::size_t k = 0; k < due.size(); ++k) {
+    MarchedTile& tile = this->Marched[static_cast<std::size_t>(due[k])];
+    if (marched[k] != 0) {
+      ++count;
+      reached += tile.pass == 0 ? 1 : 0;
+      tile.pass = this->Pass;
+      sum.work.add(std::exchange(tile.statistics.work, {})); // of this time
+    }
+  }
   for (const MarchedTile& tile : this->Marched) {
     sum.add(tile.statistics);
     requests.add(tile.missed,
                  [&](const Request& request) { return !IsThere(request, scene.bricks); });
   }
-  if (!this->begun()) {
-    this->WholeSeconds = timer.seconds();
+  if (reached > 0) {
+    this->Reached += reached;
+    this->SecondsToReach +=
+        timer.seconds() * static_cast<double>(reached) / static_cast<double>(count);
   }
-  sum.marchSeconds = this->WholeSeconds;
+  sum.blank = this->Reached < this->Tiles.count();
+  sum.complete = count == static_cast<std::int64_t>(due.size()) && requests.empty();
+  sum.marchSeconds = this->wholeSeconds();
   return sum;
 }
 

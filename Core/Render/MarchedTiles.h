@@ -4,10 +4,11 @@
 #include "Core/Cache/Requests.h"
 #include "Core/Render/Bricks/CachedPasses.h"
 #include "Core/Render/Scene/FrameStatistics.h"
+#include "Core/Render/Tiles/DrawCall.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <vector>
 
 namespace inr {
@@ -20,17 +21,19 @@ public:
   /// Of which none has been marched.
   MarchedTiles(int width, int height);
 
-  bool begun() const { return this->WholeSeconds > 0; }
-  /// What marching those may take that are due by now, judged by the time that all of them took.
+  /// When it was last marched, in the time of the store; nothing: it was not.
+  std::optional<std::uint64_t> latestFrame;
+
+  /// What marching those may take that are due by now, judged by the time that others took.
   double secondsToMarch(const SufficientBricks& bricks) const;
-  /// Marches those tiles that were not yet, and those for which enough has come of what they
-  /// missed; the others' pixels are in `output` already. What all of them still miss is added to
+  /// Marches those tiles that were not yet, then those for which enough has come of what they
+  /// missed, as many as PassClock lets begin; the others' pixels are in the output already or, of
+  /// those that were never marched, let everything through. What tiles still miss is added to
   /// `requests`, in the order of the tiles. Of the whole picture, but for the work, which is that
-  /// of this time. Throws Error(Cancelled) when `keepGoing` says so, see ForEachTile; tiles are
-  /// then to be thrown away.
+  /// of this time; complete where all is marched and nothing is missed. Throws Error(Cancelled)
+  /// when the call's `keepGoing` says so, see ForEachTile; tiles are then to be thrown away.
   FrameStatistics march(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
-                        const std::function<bool()>& keepGoing, const PassOutput& output,
-                        RequestRanking& requests);
+                        const DrawCall& call, RequestRanking& requests);
 
 private:
   struct MarchedTile
@@ -46,15 +49,26 @@ private:
     /// long, and pictures up to 17 dB further from it in between.
     bool isDue(const SufficientBricks& bricks) const;
 
+    int pass = 0; ///< in which it was last marched; 0: in none
     FrameStatistics statistics{};
     RequestList missed{};
     double mostMissed = 0; ///< contribution, of all times that it was marched
     double enough = 0;     ///< contribution that is to come
   };
 
+  /// Those to march, in this order: which were marched longest ago come first.
+  std::vector<std::int64_t> due(const SufficientBricks& bricks) const;
+  /// Marches tiles that are due, and says of each whether there was time for it.
+  std::vector<char> marchDue(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
+                             const DrawCall& call, const std::vector<std::int64_t>& due);
+  /// That marching all tiles takes, judged by those that were reached; 0 before.
+  double wholeSeconds() const;
+
   Tiling Tiles;
   std::vector<MarchedTile> Marched;
-  double WholeSeconds = 0; ///< that marching all tiles took; 0 before
+  int Pass = 0;              ///< the latest
+  std::int64_t Reached = 0;  ///< tiles that were ever marched
+  double SecondsToReach = 0; ///< that these took, each the first time
 };
 
 } // namespace inr

@@ -365,12 +365,13 @@ public:
    * Seconds after which a still frame is shown with what is there and refined in the following
    * ones, which the mapper asks the window's interactor for: short ones, with pauses for events in
    * between, and none while somebody interacts or RefineEvent is answered with no. A frame that
-   * takes the place of one that is still refined is such a short one, too. Until there was time for
-   * a path through each pixel, one with fewer pixels is shown (unless a GPU draws). 0: a still
-   * frame is complete, however long it takes. Below 0, the default: 0.5 where the window has an
-   * interactor, else 0. ParaView's screenshots, tiles of larger ones (SetTileScale) and offscreen
-   * windows are always complete; of others that render the window anew, as vtkWindowToImageFilter
-   * does by default, set it to 0 before.
+   * takes the place of one that is still refined is such a short one, too. Where a ray or
+   * path through each pixel takes more than twice as long, and a quarter of a second, one with
+   * fewer pixels is shown until there was time for all (not where a GPU draws; rays with
+   * CACHE_AND_NETWORK only). 0: a still frame is complete, however long it takes. Below 0, the
+   * default: 0.5 where the window has an interactor, else 0. ParaView's screenshots, tiles of
+   * larger ones (SetTileScale) and offscreen windows are always complete; of others that render the
+   * window anew, as vtkWindowToImageFilter does by default, set it to 0 before.
    */
   vtkSetMacro(StillTimeLimit, double);
   vtkGetMacro(StillTimeLimit, double);

@@ -49,7 +49,18 @@ bool IsEmpty(const CachedScene& scene, const Tile& tile)
   return !scene.settings.projector.projects() && scene.seen->isEmpty(tile);
 }
 
-/// What WritePixel leaves of rays without samples.
+bool March(CachedMarcher& marcher, CachedRay& ray)
+{
+  const SampleTally before = marcher.tally();
+  const bool done = marcher.march(ray);
+  const SampleTally after = marcher.tally();
+  ray.tally.samples += after.samples - before.samples;
+  ray.tally.levels += after.levels - before.levels;
+  return done;
+}
+
+} // namespace
+
 void WriteEmpty(const Tile& tile, const PassOutput& output)
 {
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
@@ -64,18 +75,6 @@ void WriteEmpty(const Tile& tile, const PassOutput& output)
     }
   }
 }
-
-bool March(CachedMarcher& marcher, CachedRay& ray)
-{
-  const SampleTally before = marcher.tally();
-  const bool done = marcher.march(ray);
-  const SampleTally after = marcher.tally();
-  ray.tally.samples += after.samples - before.samples;
-  ray.tally.levels += after.levels - before.levels;
-  return done;
-}
-
-} // namespace
 
 void MarchTile(const CachedScene& scene, CachedMarcher& marcher, const Tile& tile,
                const std::function<bool()>& keepGoing, const PassOutput& output)

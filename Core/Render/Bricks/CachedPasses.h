@@ -22,6 +22,9 @@ std::int64_t CamePast(const FrameStatistics& statistics);
 void MarchTile(const CachedScene& scene, CachedMarcher& marcher, const Tile& tile,
                const std::function<bool()>& keepGoing, const PassOutput& output);
 
+/// What rays leave that have no samples: they let everything through.
+void WriteEmpty(const Tile& tile, const PassOutput& output);
+
 /// Marches the picture with every sample at the level it asks for, whatever the size of the cache:
 /// tiles in a fixed order, as many at a time as their waiting rays fit memory; a ray that misses a
 /// brick waits until the brick is there and goes on. A sample needs one brick, and one more for

@@ -2,11 +2,10 @@
 #include "Core/Render/Paths/CachedPaths.h"
 
 #include "Core/Render/Bricks/OnMiss.h"
+#include "Core/Render/Tiles/PassClock.h"
 #include "Core/Render/Tiles/TileLoop.h"
-#include "Core/Render/Tiles/WorkLimit.h"
 
 #include <algorithm>
-#include <atomic>
 
 namespace inr {
 
@@ -232,10 +231,9 @@ TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& br
   traced.tiles.resize(round.tiles.size());
   std::vector<RequestList> lists(round.tiles.size());
   traced.reached.resize(round.tiles.size());
-  std::atomic<int> begun{0};
+  PassClock passClock(limit, hurries);
   const auto trace = [&](std::int64_t i) {
-    constexpr int least = 8; // that a call brings, however late it is
-    if (begun++ >= least && limit.secondsForTracing(hurries) <= 0) {
+    if (!passClock.mayBegin()) {
       return;
     }
     const auto k = static_cast<std::size_t>(i);

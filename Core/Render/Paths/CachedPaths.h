@@ -96,9 +96,9 @@ private:
   std::vector<float> AbsentValues;
 };
 
-/// Traces a round's tiles with what is in the cache: a few, and as many more as there is time to
-/// begin with by WorkLimit::secondsForTracing. What was missing is added to `requests` in the order
-/// of the tiles. Throws Error(Cancelled) when `keepGoing` says so; see ForEachTile.
+/// Traces a round's tiles with what is in the cache, as many as PassClock lets begin. What was
+/// missing is added to `requests` in the order of the tiles. Throws Error(Cancelled) when
+/// `keepGoing` says so; see ForEachTile.
 TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& bricks,
                               const Evaluator& field, OnPathMiss onMiss, const WorkLimit& limit,
                               bool hurries, const Arena& arena,

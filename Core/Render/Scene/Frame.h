@@ -110,11 +110,11 @@ struct Frame
   std::optional<double> errorTolerance;
 
   /// Seconds after which a picture is handed over as it is, with coarser levels where finer ones
-  /// are not there yet; what is missing is loaded in the time that is left. Paths through a medium
-  /// that is far too dense for its size may take longer: through the CPU's cache, a picture that
-  /// has none through some pixels yet (FrameStatistics::blank) lets everything through there, after
-  /// four times the limit, and a quarter of a second at least. 0: as long as it takes to be
-  /// complete. Without a cache rays take no notice of it, and paths end between two rounds.
+  /// are not there yet; what is missing is loaded in the time that is left. One ray or path through
+  /// each pixel may take longer: through the CPU's cache, what has none through some pixels after
+  /// twice the limit, and a quarter of a second at least, lets everything through there (see
+  /// FrameStatistics::blank). 0: as long as it takes to be complete. Without a cache rays take no
+  /// notice of it, nor do they within CacheOptions::onlyWhatFits, and paths end between two rounds.
   double timeLimit = 0;
 
   /// Offsets of the samples along their rays, but for preIntegration, extremes and isosurfaces, and

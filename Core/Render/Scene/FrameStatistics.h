@@ -35,16 +35,15 @@ struct FrameStatistics
   /// if the options are to make do with that, the best that a full cache has.
   bool complete = true;
   std::int64_t paths = 0; ///< of path tracing: through each pixel, in the picture shown
-  /// Of path tracing through the CPU's cache: there was no time yet for some pixels, which show
-  /// nothing.
+  /// Through the CPU's cache: there was no time yet for some pixels, which show nothing.
   bool blank = false;
   LevelSpan levels; ///< of the cache, that samples came from
   /// Whether an accelerator has drawn it, or part of it; else the CPU did, of what that inferred.
   bool accelerated = false;
   double seconds = 0; ///< wall time
   /// Wall time of the rays or paths, without what was loaded into the cache in between. Where only
-  /// some tiles of a picture were marched again, the time that all of them had taken at first or,
-  /// where these were not reached, may take.
+  /// some tiles of a picture were marched or traced, the time that all of them took at first or,
+  /// where some were not reached, may take.
   double marchSeconds = 0;
   WorkDone work; ///< of the call
 

@@ -16,9 +16,10 @@ namespace inr {
 /// - how many bricks are loaded within a frame, and how far one gets that wants more of them than
 ///   the cache holds,
 /// - whether the field is measured further for an error tolerance,
-/// - how many rounds of paths are traced and, where one takes several times as long as there is, or
-///   the network is asked what they meet, through how many tiles; or, by an accelerator whose cache
-///   is too small, how far they get.
+/// - through how many tiles rays or paths go, where all of them take twice as long as there is, or
+///   the network is asked what paths meet,
+/// - how many rounds of paths are traced or, by an accelerator whose cache is too small, how far
+///   they get.
 /// Counted, it is one pass, CacheOptions::maximumRequests bricks at most (so many for each pass
 /// that brings rays no further), and one round through all tiles that are not finished.
 ///
@@ -37,11 +38,11 @@ public:
   {
     return this->isLimited() && (this->Counted || this->Clock.left() < seconds);
   }
-  /// Until a round of paths has to end in its midst: where it `hurries`, with the frame, else a
+  /// Until a pass through tiles has to end in its midst: where it `hurries`, with the frame, else a
   /// good while later, as a picture with all of its pixels is worth some time.
-  double secondsForTracing(bool hurries) const
+  double secondsForPass(bool hurries) const
   {
-    constexpr double patience = 4; // times the limit
+    constexpr double patience = 2; // times the limit
     constexpr double least = 0.25; // seconds
     if (!this->isTimed()) {
       return std::numeric_limits<double>::infinity();

@@ -149,10 +149,16 @@ bool FramePainter::drawUnseen(const Job& job)
     return false;
   }
   vtkRenderWindow* window = job.renderer->GetRenderWindow();
-  const int reduction = this->Rays.factor(window->GetDesiredUpdateRate(), pixels);
   const Surroundings around = LookAround(job.renderer, viewport, this->Group, nullptr);
-  return this->render(job, this->reduced(around, viewport, reduction), reduction,
-                      Unless(window, Timer(Unlimited)));
+  int reduction = this->Rays.factor(window->GetDesiredUpdateRate(), pixels);
+  while (this->render(job, this->reduced(around, viewport, reduction), reduction,
+                      Unless(window, Timer(Unlimited)))) {
+    if (!job.picture.last().statistics.blank || reduction >= ImageReduction::Largest) {
+      return true;
+    }
+    reduction *= 2; // there is no other time for what is missing
+  }
+  return false;
 }
 
 DepictedScene FramePainter::depicted(const Frame& scene, vtkRenderer* renderer,
@@ -276,11 +282,15 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
                                                       const Viewport& viewport)
 {
   constexpr double patience = 0.25; // seconds, beyond what the finer one took
+  constexpr double once = 0.01;     // of rays: with what there is
   PaintedFrame& fine = job.picture.last();
   ViewPicture& picture = job.picture.coarser();
   const PaintedFrame& coarse = picture.last();
   Frame scene = job.scene;
   scene.view = picture.number();
+  if (scene.mode == RenderMode::RayMarching) {
+    scene.timeLimit = std::min(scene.timeLimit, once);
+  }
   // By what is known of this picture: what others took is another matter.
   const auto seconds = [&](int divided) {
     const double ratio = static_cast<double>(divided) / fine.reduction;

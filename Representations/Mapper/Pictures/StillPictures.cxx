@@ -55,8 +55,9 @@ void StillPictures::followUp(ViewPicture& picture, vtkRenderWindow* window,
   if (!picture.requested) {
     return;
   }
-  // Bricks are decoded in the pause, too; paths are traced within pictures only.
-  const double share = settings.mode == RenderMode::PathTracing ? 0.25 : 1;
+  // Bricks are decoded in the pause, too; other work is done within pictures only.
+  const bool waitsForBricks = settings.mode != RenderMode::PathTracing && !last.statistics.blank;
+  const double share = waitsForBricks ? 1 : 0.25;
   const double pause = std::clamp(share * last.seconds, 0.02, 0.5);
   if (shownElsewhere) {
     this->Pause = std::max(this->Pause, pause); // of both eyes

@@ -8,6 +8,7 @@
 #include <vtkActor.h>
 #include <vtkCubeSource.h>
 #include <vtkPolyDataMapper.h>
+#include <vtkVolumeProperty.h>
 
 #include <string>
 
@@ -40,6 +41,16 @@ struct OneVolume
     actor->SetMapper(polygons);
     this->renderer->AddActor(actor);
     return actor;
+  }
+
+  /// Makes it last: no machine finishes its pictures within a second.
+  void slowDown()
+  {
+    this->mapper->SetNumberOfThreads(1);
+    this->mapper->SetAdaptiveSampling(false);
+    this->mapper->SetSampleDistance(0.001);
+    this->volume->GetProperty()->SetScalarOpacityUnitDistance(
+        this->mapper->GetRenderMode() == vtkINRVolumeMapper::PATH_TRACING ? 0.01 : 10);
   }
 
   Scene scene;

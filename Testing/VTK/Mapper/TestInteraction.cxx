@@ -5,11 +5,14 @@
 #include "Representations/Mapper/Pictures/ImageReduction.h"
 
 #include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkRenderer.h>
 #include <vtkVolumeProperty.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace {
 
@@ -28,6 +31,41 @@ TEST(Frames, GiveWayToCoarserOnesWhenTheyComeTooLate)
     EXPECT_GT(one.mapper->GetImageReduction(),
               mode == 0 ? inr::ImageReduction::Unmeasured : inr::ImageReduction::UnmeasuredPaths);
     EXPECT_GT(*std::max_element(first.pixels.begin(), first.pixels.end()), 0.0f) << mode;
+  }
+}
+
+/// Pixels that show something in the one picture and nothing in the other.
+int CountHoles(const inr::Image& whole, const inr::Image& other)
+{
+  int holes = 0;
+  for (std::size_t k = 3; k < whole.pixels.size(); k += 4) {
+    holes += whole.pixels[k] > 0.9f && other.pixels[k] == 0 ? 1 : 0;
+  }
+  return holes;
+}
+
+TEST(Frames, ShowAllOfThePictureWhileThereIsNoTimeForAllOfItsPixels)
+{
+  for (const int mode : {0, 1}) { // ray marching, path tracing
+    OneVolume one;
+    one.mapper->SetRenderMode(mode);
+    one.mapper->SetAmbientLight(1, 1, 1);
+    one.mapper->ShownElsewhereOn();
+    one.volume->GetProperty()->SetScalarOpacityUnitDistance(mode == 0 ? 10 : 0.01);
+    one.scene.window->SetSize(400, 400);
+    const inr::Image whole = one.scene.capture();
+    one.slowDown();
+    one.renderer->GetActiveCamera()->Zoom(1.0001); // as good as the same
+    one.mapper->SetStillTimeLimit(1e-3);
+    inr::Image before;
+    for (int picture = 0; picture < 3; ++picture) {
+      const inr::Image first = one.scene.capture();
+      ASSERT_FALSE(one.mapper->GetConverged());
+      EXPECT_GT(one.mapper->GetImageReduction(), 1) << mode;
+      EXPECT_EQ(CountHoles(whole, first), 0) << mode << ", " << picture;
+      EXPECT_TRUE(picture == 0 || first.pixels == before.pixels) << "another one, which flickers";
+      before = first;
+    }
   }
 }
 

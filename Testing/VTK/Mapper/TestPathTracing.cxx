@@ -263,43 +263,6 @@ TEST(PathTracing, WindowsClearUpWhileTheyAreIdle)
   EXPECT_TRUE(one.mapper->GetConverged());
 }
 
-/// Pixels that show something in the one picture and nothing in the other.
-int CountHoles(const inr::Image& whole, const inr::Image& other)
-{
-  int holes = 0;
-  for (std::size_t k = 3; k < whole.pixels.size(); k += 4) {
-    holes += whole.pixels[k] > 0.99f && other.pixels[k] == 0 ? 1 : 0;
-  }
-  return holes;
-}
-
-TEST(PathTracing, ShowsAllOfThePictureWhileThereIsNoTimeForAllOfItsPixels)
-{
-  Traced one;
-  one.mapper->SetAmbientLight(1, 1, 1);
-  one.mapper->SetNumberOfThreads(1);
-  one.mapper->ShownElsewhereOn();
-  one.volume->GetProperty()->SetScalarOpacityUnitDistance(0.01);
-  one.scene.window->SetSize(400, 400);
-  const inr::Image whole = one.scene.capture();
-  vtkNew<vtkCallbackCommand> slowly;
-  slowly->SetCallback([](vtkObject*, unsigned long, void*, void*) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  });
-  one.scene.window->AddObserver(vtkCommand::AbortCheckEvent, slowly);
-  one.renderer->GetActiveCamera()->Zoom(1.0001); // as good as the same
-  one.mapper->SetStillTimeLimit(1e-3);
-  inr::Image before;
-  for (int picture = 0; picture < 3; ++picture) {
-    const inr::Image first = one.scene.capture();
-    ASSERT_EQ(one.mapper->GetNumberOfPaths(), 0);
-    EXPECT_GT(one.mapper->GetImageReduction(), 1);
-    EXPECT_EQ(CountHoles(whole, first), 0) << picture;
-    EXPECT_TRUE(picture == 0 || first.pixels == before.pixels) << "another one, which flickers";
-    before = first;
-  }
-}
-
 TEST(PathTracing, PicturesShownElsewhereGoOnWhenThatIsAskedFor)
 {
   Traced one;

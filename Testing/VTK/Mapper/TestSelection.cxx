@@ -7,6 +7,7 @@
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
 #include <vtkHardwareSelector.h>
+#include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkRenderWindowInteractor.h>
@@ -16,9 +17,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -195,6 +198,45 @@ TEST(Selection, OfTracedPathsWaitsForNone)
   one.mapper->SetSamplesPerPixel(VTK_INT_MAX);
   OneVolume marched;
   EXPECT_EQ(Select(one), Select(marched));
+}
+
+/// Indices of the first and the last cell along an axis.
+std::pair<vtkIdType, vtkIdType> Extent(const Cells& cells, OneVolume& one, int axis)
+{
+  const int* dims = vtkImageData::SafeDownCast(one.mapper->GetInput())->GetDimensions();
+  std::pair<vtkIdType, vtkIdType> extent(VTK_INT_MAX, -1);
+  for (const vtkIdType cell : cells) {
+    const vtkIdType row = cell / (dims[0] - 1);
+    const vtkIdType index = axis == 0   ? cell % (dims[0] - 1)
+                            : axis == 1 ? row % (dims[1] - 1)
+                                        : row / (dims[1] - 1);
+    extent = {std::min(extent.first, index), std::max(extent.second, index)};
+  }
+  return extent;
+}
+
+TEST(Selection, IsOfTheWholeViewWhileThereIsNoTimeForAllOfItsPixels)
+{
+  OneVolume quick;
+  OneVolume slow;
+  for (OneVolume* one : {&quick, &slow}) {
+    one->volume->GetProperty()->SetScalarOpacityUnitDistance(10);
+    one->scene.window->SetSize(400, 400);
+    one->scene.window->Render();
+    one->renderer->GetActiveCamera()->Zoom(1.01);
+  }
+  slow.mapper->SetStillTimeLimit(1e-3);
+  slow.mapper->ShownElsewhereOn();
+  slow.slowDown();
+  const Cells all = Select(quick);
+  const Cells some = Select(slow); // in fewer pixels
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [first, last] = Extent(all, quick, axis);
+    const auto [low, high] = Extent(some, slow, axis);
+    EXPECT_GT(last - first, 20) << axis;
+    EXPECT_NEAR(low, first, 4) << axis;
+    EXPECT_NEAR(high, last, 4) << axis;
+  }
 }
 
 TEST(Selection, LooksAtThePictureThatIsThere)
