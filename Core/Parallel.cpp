@@ -60,6 +60,7 @@ std::uint64_t AvailableCoresKey()
 #ifdef __linux__
   cpu_set_t mask;
   CPU_ZERO(&mask);
+  // It fails on machines of more cores than the mask has: they all have one key then.
   sched_getaffinity(0, sizeof(mask), &mask);
   return KeyOf(MachineKey(), &mask, sizeof(mask));
 #else

@@ -31,12 +31,12 @@ public:
   void store(std::int32_t slot, const BrickView& brick, const BlockSet& known,
              const ValueRange& within = {});
   const BlockSet& known(std::int32_t slot) const { return this->Known[slot]; }
-  /// Of all blocks, x fastest. Wider than need be by a 256th of the brick's range at most, by half
-  /// a quantum of integers, and by what interpolating rounds.
+  /// Of all blocks, x fastest. Each end further out than need be by a code at most, and by half a
+  /// quantum of integers and what interpolating rounds.
   void ranges(std::int32_t slot, ValueRange* ranges) const;
 
 private:
-  /// 256ths of the range of the brick's voxels.
+  /// 256ths of the range that values are in: `within` or, where that is not known, the brick's own.
   struct Codes
   {
     std::uint8_t low, high;

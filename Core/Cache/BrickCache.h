@@ -26,8 +26,8 @@ public:
   /// further, which is a sample's brick, or two, and those of a gradient.
   static constexpr std::int64_t FewestBricks = 8;
 
-  /// Never takes more than `bytes`. Throws Error(InvalidArgument) when that does not hold
-  /// FewestBricks and their tables.
+  /// Never takes more than `bytes` as bytesFor() counts; the system gives memory by the page.
+  /// Throws Error(InvalidArgument) when that does not hold FewestBricks and their tables.
   BrickCache(const Hierarchy& hierarchy, CachePrecision precision, std::int64_t bytes);
 
   const Hierarchy& hierarchy() const { return this->Levels; }

@@ -94,7 +94,7 @@ void BrickLoader::work()
   LowerPriority();
   std::unique_lock<std::mutex> lock(this->Mutex);
   while (!this->Ended) {
-    if ((this->Paused && !this->Awaited) || !this->tryToInferOne(lock)) {
+    if (this->isAtRest() || !this->tryToInferOne(lock)) {
       this->Wake.wait(lock);
     }
   }
@@ -106,6 +106,9 @@ bool BrickLoader::tryToInferOne(std::unique_lock<std::mutex>& lock)
   try {
     return this->inferOne(lock);
   } catch (...) {
+    if (!lock.owns_lock()) {
+      lock.lock();
+    }
     this->Failure = std::current_exception();
     this->Wanted.clear(); // or it would be tried for ever
     this->Ready.notify_all();
@@ -116,13 +119,18 @@ bool BrickLoader::tryToInferOne(std::unique_lock<std::mutex>& lock)
 /// False when there is nothing to begin.
 bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
 {
-  const std::int64_t atOnce = this->Source->bricksAtOnce(); // read once: it may change
   // What was begun in layers ends in layers, though the source infer whole bricks by now.
   Brick* brick = this->withLayersLeft();
-  if (brick == nullptr && atOnce > 0) {
-    return this->inferTogether(atOnce, lock);
-  }
-  if (brick == nullptr) {
+  if (brick == nullptr && this->mayBegin()) {
+    lock.unlock(); // an accelerator may be in the making, for seconds
+    const std::int64_t atOnce = this->Source->bricksAtOnce(); // read once: it may change
+    lock.lock();
+    if (this->Ended || this->isAtRest()) {
+      return true; // to look again
+    }
+    if (atOnce > 0) {
+      return this->inferTogether(atOnce, lock);
+    }
     brick = this->begin();
   }
   if (brick == nullptr) {
@@ -150,10 +158,13 @@ BrickLoader::Brick* BrickLoader::withLayersLeft() const
   return found == this->InWork.end() ? nullptr : found->get();
 }
 
-/// The next brick that is wanted, where there is room for it.
+/// Whether some brick is wanted, and there is room for it.
+bool BrickLoader::mayBegin() const { return !this->Wanted.empty() && this->holding() < this->Room; }
+
+/// The next such brick; null when there is none.
 BrickLoader::Brick* BrickLoader::begin()
 {
-  if (this->Wanted.empty() || this->holding() >= this->Room) {
+  if (!this->mayBegin()) {
     return nullptr;
   }
   const BrickPart& next = this->Wanted.front();
@@ -344,10 +355,7 @@ void BrickLoader::waitFor(Clock::time_point deadline, std::unique_lock<std::mute
 }
 
 /// Whether the threads have something to finish or to begin.
-bool BrickLoader::hasWork() const
-{
-  return !this->InWork.empty() || (!this->Wanted.empty() && this->holding() < this->Room);
-}
+bool BrickLoader::hasWork() const { return !this->InWork.empty() || this->mayBegin(); }
 
 void BrickLoader::handOver(const std::function<void(const BrickPart&, const float*)>& receive)
 {

@@ -19,11 +19,12 @@ namespace inr {
 /// Infers bricks on threads of its own while the application does something else.
 ///
 /// Its threads work layer by layer, all of them on the first bricks that were asked for, at a low
-/// priority, and not at all while it is paused: so pausing and ending it take the time of one layer
-/// at most. Bricks of a source that infers several at once are begun together, and one call of that
-/// source takes the place of the layer. It is made paused. What requests bricks, waits for them and
-/// receives them is one thread at a time; others may pause it, ask what it holds, and take from it
-/// what is wanted.
+/// priority, and begin none while it is paused: so it rests after the time of one layer at most.
+/// Bricks of a source that infers several at once are begun together, and one call of that source
+/// takes the place of the layer. Whoever ends it waits for that and, where the source is being made
+/// ready (see BrickSource::bricksAtOnce), for that; nobody else does. It is made paused. What
+/// requests bricks, waits for them and receives them is one thread at a time; others may pause it,
+/// ask what it holds, and take from it what is wanted.
 class BrickLoader
 {
 public:
@@ -81,6 +82,8 @@ private:
   bool tryToInferOne(std::unique_lock<std::mutex>& lock);
   bool inferTogether(std::int64_t atOnce, std::unique_lock<std::mutex>& lock);
   Brick* withLayersLeft() const;
+  bool isAtRest() const { return this->Paused && !this->Awaited; }
+  bool mayBegin() const;
   Brick* begin();
   void inferLayer(Brick& brick, std::int64_t z, std::unique_lock<std::mutex>& lock);
   void inferBricks(const std::vector<Brick*>& bricks, std::unique_lock<std::mutex>& lock);

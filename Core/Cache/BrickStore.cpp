@@ -283,14 +283,15 @@ std::uint64_t BrickStore::oldestUse()
 
 void BrickStore::giveOldest()
 {
+  const std::uint64_t brick = this->oldestBrickUse();
   // The queue is for the latest frame, and what that has used is worth more.
-  if (this->mayGiveQueue() && this->oldestBrickUse() >= this->Cache.frame()) {
+  if (brick >= this->Cache.frame() && this->mayGiveQueue()) {
     this->Loader->giveUp();
     this->Queue = this->Loader->held();
     this->LostQueue = this->Cache.frame();
-  } else {
+  } else if (brick < BrickCache::Pinned) {
     this->Cache.evict(this->evictableBefore());
-  }
+  } // else the loader has begun with the queue since oldestUse was asked
 }
 
 namespace {

@@ -7,10 +7,10 @@
 
 namespace inr {
 
-/// How a cached voxel is kept. The integers divide a range of values evenly, so that a value is off
-/// by at most half a quantum, (max - min)/(2^bits - 1)/2. It is that of the macro-cells that the
-/// brick reaches into, which does not depend on what part of it is inferred; or of the brick's
-/// values, where there are no ranges that hold.
+/// How a cached voxel is kept. The integers divide a range of values evenly, so that a value of
+/// it is off by at most half a quantum, (max - min)/(2^bits - 1)/2. It is that of the macro-cells
+/// that the brick reaches into, which does not depend on what part of it is inferred; or of the
+/// brick's values, where there are no ranges that hold.
 enum class CachePrecision { Float32, Bits16, Bits8 };
 
 INR_HOST_DEVICE constexpr std::int64_t BytesPerVoxel(CachePrecision precision)

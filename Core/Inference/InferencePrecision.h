@@ -19,10 +19,11 @@ enum class InferencePrecision {
 /// always is; SplitBFloat16 pays with tile registers only, which go with AVX-512.
 bool IsUsable(InferencePrecision precision, InstructionSet set);
 
-/// Whether no number that the network computes can come near either end of float's range, wherever
-/// it is evaluated: by the largest magnitudes that features, weights and activations allow, none is
-/// too large, and what is below 2^-126 counts for at most 2^-30 of a value y. Kernels for bfloat16
-/// cannot tell whether a number was too large, and take one that small for zero.
+/// Whether no value that the network computes can come near either end of float's range, wherever
+/// it is evaluated (what squareplus squares on the way may, and is watched): by the largest
+/// magnitudes that features, weights and activations allow, none is too large, and what is below
+/// 2^-126 counts for at most 2^-30 of a value y. Kernels for bfloat16 cannot tell whether a number
+/// was too large, and take one that small for zero.
 bool StaysInRange(const ModelView& model);
 
 } // namespace inr

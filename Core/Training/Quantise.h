@@ -23,7 +23,7 @@ QuantiseLimits LimitsForRatio(const Model& model, double ratio);
 /// Chooses `model.steps` and makes the parameters multiples of them: the coarsest ones that keep
 /// the limits, to an eighth of a power of two. Groups share the allowed error so that a bit more
 /// would help as much in any of them: with n parameters and an error of s * step^2 in the output,
-/// step is proportional to sqrt(n / s). Parameters that no output depends on become 0.
+/// step is proportional to sqrt(n / s). What the padding of a network multiplies becomes 0.
 ///
 /// `model.storedAs` becomes Quantised; or Half, with the parameters as they were, when not even the
 /// finest steps keep the loss, or the estimate has too few finite voxels to tell. `check` stops it

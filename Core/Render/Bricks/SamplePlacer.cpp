@@ -41,6 +41,8 @@ SamplePlacer::SamplePlacer(const CachedScene& scene, OnMiss onMiss, MarchNotes& 
     : Scene(scene), Notes(notes), Bricks(scene, onMiss, notes),
       LooksAtBothEnds(scene.settings.looksAtBothEnds()),
       MayGoBack(this->LooksAtBothEnds || scene.shading != nullptr),
+      MostRoom(this->MayGoBack || scene.settings.projector.projects() ? MostSingle
+                                                                      : SampleBatch::Capacity),
       DitherMask(scene.settings.projector.findsSurfaces() ? 0 : ~std::int64_t{0}),
       ShortestBlock(ShortestBlockOf(scene.format))
 {}
@@ -69,7 +71,7 @@ void SamplePlacer::adaptRoom(double before, double after)
   if (after < 0.5 * before || after < little) {
     this->Room = FirstRoom;
   } else if (after < 1.0 && after > 0.75 * before) {
-    this->Room = std::min(2 * this->Room, this->MayGoBack ? MostSingle : SampleBatch::Capacity);
+    this->Room = std::min(2 * this->Room, this->MostRoom);
   }
 }
 

@@ -100,6 +100,7 @@ private:
   RayBricks Bricks;
   bool LooksAtBothEnds;    ///< of samples
   bool MayGoBack;          ///< as what is found at samples may want bricks that are not there
+  int MostRoom;            ///< of all batches
   std::int64_t DitherMask; ///< of sample numbers
   double ShortestBlock;    ///< edge in voxels: the last one along an axis may be cut off
 

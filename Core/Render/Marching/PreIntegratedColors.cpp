@@ -10,7 +10,7 @@ namespace {
 constexpr int FewestNodes = 1 << 10;
 constexpr int MostNodes = 1 << 14;
 constexpr double ExtinctionTolerance = 2e-4; // of the extinction
-/// Of what is opaque: enough for a stretch of which 1/4000 is to be so, and little enough that what
+/// Of what is opaque: enough for a stretch of which 1/3900 is to be so, and little enough that what
 /// is faint is not lost in sums with it.
 constexpr double OpaqueExtinction = 0x1p16;
 

@@ -60,8 +60,8 @@ public:
   /// than there are), else starts anew. Traces until Frame::samplesPerPixel or, at least one round
   /// as far as `trace` comes in it, as far as `limit`. Shows the mean of the complete samples or,
   /// before the first of them is complete, what there is of it, where the rest lets everything
-  /// through. `trace` may throw; nothing is lost then but its round. Throws
-  /// Error(InvalidArgument) as PathTracer does, and for fewer than one sample per pixel.
+  /// through. `trace` may throw; nothing is lost then but its round. The
+  /// frame is a valid one: see RequireValid.
   FrameStatistics advance(const Frame& frame, const PathMedium& medium, const TraceTiles& trace,
                           const WorkLimit& limit, const PassOutput& output);
   /// Whether a call with that frame would go on with the same picture.

@@ -42,8 +42,7 @@ class PathTracer
 public:
   /// Of Frame::paths and Frame::lights. `levels` >= 1 are the cache levels that points are asked
   /// at, by Frame::levelOfDetailScale; 1 means native resolution everywhere. The references must
-  /// outlive the tracer. Throws Error(InvalidArgument) for options and lights outside their
-  /// documented ranges.
+  /// outlive the tracer. The frame is a valid one: see RequireValid.
   PathTracer(const Frame& frame, const RayGeometry& geometry, const glm::i64vec3& dims,
              const Majorants& majorants, const ColorLookup& colors, int levels = 1);
   PathTracer(const PathTracer&) = delete;

@@ -24,7 +24,7 @@ inline double OpacityOver(double length, double opacity)
   return opacity < 1.0 ? OpacityOf(length * ExtinctionOf(opacity)) : 1.0;
 }
 
-/// The same for inner loops, to within 2e-6 and, relatively, 1e-3.
+/// The same for inner loops, to within 3e-6 and, relatively, 1e-3.
 INR_HOST_DEVICE inline float OpacityOver(float length, float opacity)
 {
   // The power is faster, but what is faint or short it loses to rounding.

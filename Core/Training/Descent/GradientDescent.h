@@ -39,8 +39,8 @@ public:
   /// same: half of it gains some tenths of a dB in one time step, and may lose them after several.
   void startFrom(const AlignedVector<float>& parameters);
 
-  /// Parameters, their first and second moments (float), and how often each entry of the grid was
-  /// updated (uint16), in this order.
+  /// Parameters, their first and second moments (float), and how often each parameter of the grid
+  /// was updated (uint16; it stops where nothing depends on it any more), in this order.
   StateArrays state() override;
   void goOnAfter(std::uint64_t steps) override { this->Steps = steps; }
 

@@ -34,9 +34,8 @@ class SamplePool : public BatchSource
 {
 public:
   /// At least `blocks.count()` and BatchSize samples, of 8 bytes each, and as near to `mostSamples`
-  /// as a power of two comes. Of all blocks the share `rereads` is read again, while the learning
-  /// rate falls. All numbers are those of all processes together; blocks are named by their numbers
-  /// in `blocks`.
+  /// as a power of two comes. All numbers are those of all processes together; blocks are named by
+  /// their numbers in `blocks`.
   SamplePool(const BlockGrid& blocks, std::int64_t mostSamples, std::uint64_t seed,
              const BlockShare& share);
 
@@ -66,7 +65,8 @@ public:
   std::int64_t differences(std::int64_t block, const VolumePiece& piece, double tolerance,
                            const Arena& arena) const;
 
-  /// Before the training: what is target 0 and 1, and the share of blocks to read again, 0 to 1.
+  /// Before the training: what is target 0 and 1, and the share of blocks, 0 to 1, to read again
+  /// while the learning rate falls.
   void begin(double low, double high, double rereads);
 
   /// The next block to read again, whose samples of round 1 are to be offered; none as long as

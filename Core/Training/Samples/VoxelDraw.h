@@ -16,8 +16,8 @@ namespace inr {
 /// Half of them, as it were, are drawn uniformly, half in proportion to the contrast around them:
 /// the difference of the largest and the smallest value in their block. Where data are localised,
 /// a few blocks have nearly all of a model's error, and uniform voxels miss them. The first draws
-/// of a stream, however many, are spread evenly: of voxels that are drawn more than once, on
-/// average, none is left out.
+/// of a stream, however many, are spread evenly: of voxels that are drawn twice, on average,
+/// none is left out.
 class VoxelDraw
 {
 public:

@@ -279,6 +279,50 @@ TEST_P(BrickLoaderTest, EndsWhatWasBegunInLayersWhenBricksAreInferredTogether)
   }
 }
 
+/// An accelerator that is in the making until it is let go.
+class SlowlyMade : public TogetherSource
+{
+public:
+  std::int64_t bricksAtOnce() const override
+  {
+    this->asked = true;
+    while (!this->made) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return 3;
+  }
+
+  mutable std::atomic<bool> asked{false};
+  std::atomic<bool> made{false};
+};
+
+TEST(BrickLoader, IsPausedAndAskedWhileItsSourceIsBeingMade)
+{
+  const auto source = std::make_shared<SlowlyMade>();
+  inr::BrickLoader loader(source, 1, 5);
+  loader.resume();
+  loader.request(Whole(Bricks(5, 3)));
+  while (!source->asked) {
+    std::this_thread::yield();
+  }
+  std::atomic<bool> answered{false};
+  std::thread other([&] {
+    loader.pause();
+    EXPECT_EQ(loader.begun(), 0);
+    EXPECT_EQ(loader.held(), 0);
+    answered = true;
+  });
+  for (int k = 0; k < 5000 && !answered; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(answered);
+  source->made = true;
+  other.join();
+  EXPECT_EQ(loader.begun(), 0); // paused meanwhile: it is not begun
+  loader.loadFor(Forever);
+  EXPECT_EQ(Receive(loader).size(), 3u);
+}
+
 TEST_P(BrickLoaderTest, OfBricksThatFailTogetherNoneComes)
 {
   const auto source = std::make_shared<TogetherSource>();
