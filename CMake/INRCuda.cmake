@@ -48,7 +48,10 @@ endif ()
 
 # What it knows: newer toolkits than this CMake drop and add generations.
 execute_process(COMMAND "${CMAKE_CUDA_COMPILER}" --list-gpu-code
-  OUTPUT_VARIABLE inr_gpu_code ERROR_QUIET)
+  RESULT_VARIABLE inr_nvcc_result OUTPUT_VARIABLE inr_gpu_code ERROR_QUIET)
+if (NOT inr_nvcc_result EQUAL 0)
+  inr_without_cuda("${CMAKE_CUDA_COMPILER} is no nvcc that runs")
+endif ()
 string(REGEX MATCHALL "sm_[0-9]+" inr_known "${inr_gpu_code}")
 list(TRANSFORM inr_known REPLACE "sm_" "")
 list(REMOVE_DUPLICATES inr_known)

@@ -3,6 +3,7 @@
 
 #include "Core/Cache/CacheOptions.h"
 #include "Core/Error.h"
+#include "Core/NumberText.h"
 #include "Readers/Extents.h"
 #include "Readers/Grid/NativeGrid.h"
 #include "Readers/Grid/PresentedGrid.h"
@@ -29,10 +30,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
-#include <iomanip>
 #include <limits>
-#include <locale>
-#include <sstream>
 #include <string>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -68,6 +66,15 @@ std::array<int, 6> RequestedPiece(vtkInformation* outInfo, int ghostLevels)
   outInfo->Get(Pipeline::UPDATE_EXTENT(), requested);
   return PieceExtent(requested, outInfo->Get(Pipeline::UPDATE_PIECE_NUMBER()),
                      outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), ghostLevels);
+}
+
+bool IsWithin(const std::array<int, 6>& extent, const glm::ivec3& dims)
+{
+  bool within = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    within = within && extent[2 * axis] >= 0 && extent[2 * axis + 1] < dims[axis];
+  }
+  return within;
 }
 
 // Whether an upstream file may have been made of more voxels than it tells: training out of core
@@ -120,14 +127,8 @@ void AddKnown(vtkFieldData* fields, const char* name, double value)
   }
 }
 
-/// With so many significant digits as tell files apart.
-std::string Rounded(double value)
-{
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << std::setprecision(4) << value;
-  return text.str();
-}
+/// With so many digits as tell files apart.
+std::string Rounded(double value) { return inr::NumberText(value, 4); }
 
 void AddText(vtkFieldData* fields, const char* name, const std::string& text)
 {
@@ -278,7 +279,7 @@ void vtkINRReader::Describe(const inr::VolumeInfo& scaled)
   this->SSIM = header.quality ? header.quality->ssim : unknown;
   this->MaximumError = header.quality ? header.quality->maxError : unknown;
 
-  const glm::dvec3 dims(header.volume.dims);
+  const glm::dvec3 dims(header.nativeDims.value_or(header.volume.dims)); // what was compressed
   this->Ratio = dims.x * dims.y * dims.z *
                 static_cast<double>(inr::ScalarSize(header.volume.type)) /
                 static_cast<double>(this->Internal->Source->FileSize());
@@ -321,6 +322,12 @@ void vtkINRReader::ReadData(vtkInformation* outInfo)
   std::array<int, 6> extent =
       RequestedPiece(outInfo, outInfo->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()));
   if (IsEmpty(extent.data())) { // more processes than cells
+    return;
+  }
+  if (!IsWithin(extent, this->Internal->Grid.dims)) { // no fault of the file's
+    vtkErrorMacro("The extent that was asked for is not within the grid, which has "
+                  << this->Internal->Grid.dims.x << " x " << this->Internal->Grid.dims.y << " x "
+                  << this->Internal->Grid.dims.z << " points; ask for a part of these.");
     return;
   }
 

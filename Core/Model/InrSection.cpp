@@ -127,7 +127,8 @@ VolumeInfo ParseVolume(const JsonSection& section)
   volume.spacing = ParseReals(section.section("spacing"));
   volume.origin = ParseReals(section.section("origin"));
   volume.direction = ParseDirection(section);
-  volume.arrayName = section.text("array_name");
+  const std::string name = section.text("array_name").c_str(); // as VTK has names
+  volume.arrayName = name.empty() ? volume.arrayName : name;   // ParaView dies of an empty one
   const std::string type = section.text("array_type");
   const std::optional<ScalarType> scalar = ScalarFromName(type);
   if (!scalar) {

@@ -7,6 +7,7 @@
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/InrSection.h"
 #include "Core/Model/Quantised.h"
+#include "Core/NumberText.h"
 
 #include <cmath>
 #include <limits>
@@ -227,18 +228,22 @@ void ApplyOverrides(const ModelOverrides& overrides, bool isOwn, Model& model)
     }
     if (dims != volume.dims) { // at whose voxels nobody has measured
       model.macroCells.provenance = MacroCellProvenance::File;
+      model.quality.reset();
     }
     volume.dims = dims;
   }
   if (overrides.dataRange) {
     if (!(overrides.dataRange->x < overrides.dataRange->y)) {
-      throw Error(ErrorCode::InvalidArgument, "DataRange is " +
-                                                  std::to_string(overrides.dataRange->x) + " to " +
-                                                  std::to_string(overrides.dataRange->y) +
+      throw Error(ErrorCode::InvalidArgument, "DataRange is " + NumberText(overrides.dataRange->x) +
+                                                  " to " + NumberText(overrides.dataRange->y) +
                                                   "; give the smallest value and a larger one");
     }
+    const double before = volume.high - volume.low;
     volume.low = overrides.dataRange->x;
     volume.high = overrides.dataRange->y;
+    if (model.quality && before > 0) { // the other measures are relative to the range
+      model.quality->maxError *= (volume.high - volume.low) / before;
+    }
   }
   RequireValidVolume(volume, ErrorCode::InvalidArgument);
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Model/VolumeInfo.h"
 
+#include "Core/NumberText.h"
+
 #include <glm/matrix.hpp>
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace inr {
@@ -29,6 +32,77 @@ constexpr std::array<ScalarEntry, 10> Scalars = {{{"int8", 1},
                                                   {"float64", 8}}};
 
 constexpr std::size_t MaximumNameLength = 1024;
+
+template <class Value> bool Holds(double value)
+{
+  return value >= static_cast<double>(std::numeric_limits<Value>::lowest()) &&
+         value <= static_cast<double>(std::numeric_limits<Value>::max());
+}
+
+bool Holds(ScalarType type, double value)
+{
+  switch (type) {
+  case ScalarType::Int8:
+    return Holds<std::int8_t>(value);
+  case ScalarType::UInt8:
+    return Holds<std::uint8_t>(value);
+  case ScalarType::Int16:
+    return Holds<std::int16_t>(value);
+  case ScalarType::UInt16:
+    return Holds<std::uint16_t>(value);
+  case ScalarType::Int32:
+    return Holds<std::int32_t>(value);
+  case ScalarType::UInt32:
+    return Holds<std::uint32_t>(value);
+  case ScalarType::Int64:
+    return Holds<std::int64_t>(value);
+  case ScalarType::UInt64:
+    return Holds<std::uint64_t>(value);
+  case ScalarType::Float32:
+    return Holds<float>(value);
+  case ScalarType::Float64:
+    break;
+  }
+  return true;
+}
+
+void RequireValidGrid(const VolumeInfo& volume, ErrorCode code)
+{
+  RequireValidDims(volume.dims, code);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(volume.spacing[axis]) || volume.spacing[axis] == 0) {
+      throw Error(code, "the spacing must be finite and not zero");
+    }
+    if (!std::isfinite(volume.spacing[axis] * static_cast<double>(volume.dims[axis]))) {
+      throw Error(code, "the spacing is too large: the volume has no finite size");
+    }
+  }
+  const double determinant = glm::determinant(volume.direction);
+  if (!std::isfinite(determinant) || determinant == 0) {
+    throw Error(code, "the direction matrix must be finite and invertible");
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(volume.origin[axis])) {
+      throw Error(code, "the origin must be finite");
+    }
+  }
+}
+
+void RequireValidRange(const VolumeInfo& volume, ErrorCode code)
+{
+  if (!(volume.low <= volume.high) || !std::isfinite(volume.low) || !std::isfinite(volume.high)) {
+    throw Error(code, "the value range must be finite, its low end not above its high end");
+  }
+  if (!std::isfinite(volume.high - volume.low)) {
+    throw Error(code, "the values range over more than a double can tell, 1.8e308; divide them by "
+                      "some number");
+  }
+  if (!Holds(volume.type, volume.low) || !Holds(volume.type, volume.high)) {
+    throw Error(code, "the values range from " + NumberText(volume.low) + " to " +
+                          NumberText(volume.high) + ", which a " + ScalarName(volume.type) +
+                          " cannot hold");
+  }
+}
 
 } // namespace
 
@@ -63,26 +137,8 @@ void RequireValidDims(const glm::i64vec3& dims, ErrorCode code)
 
 void RequireValidVolume(const VolumeInfo& volume, ErrorCode code)
 {
-  RequireValidDims(volume.dims, code);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(volume.spacing[axis]) || volume.spacing[axis] == 0) {
-      throw Error(code, "the spacing must be finite and not zero");
-    }
-    if (!std::isfinite(volume.origin[axis])) {
-      throw Error(code, "the origin must be finite");
-    }
-  }
-  const double determinant = glm::determinant(volume.direction);
-  if (!std::isfinite(determinant) || determinant == 0) {
-    throw Error(code, "the direction matrix must be finite and invertible");
-  }
-  if (!(volume.low <= volume.high) || !std::isfinite(volume.low) || !std::isfinite(volume.high)) {
-    throw Error(code, "the value range must be finite, its low end not above its high end");
-  }
-  if (!std::isfinite(volume.high - volume.low)) {
-    throw Error(code, "the values range over more than a double can tell, 1.8e308; divide them by "
-                      "some number");
-  }
+  RequireValidGrid(volume, code);
+  RequireValidRange(volume, code);
   if (volume.time && !std::isfinite(*volume.time)) {
     throw Error(code, "the time must be finite");
   }

@@ -62,9 +62,9 @@ inline double ValueOf(const VolumeInfo& info, float y)
 /// Throws Error(`code`) unless dims are 1 to 2^31 - 1 with a product of at most 2^53.
 void RequireValidDims(const glm::i64vec3& dims, ErrorCode code);
 
-/// The same of a volume's, and unless spacing is finite and not zero, origin and direction are
-/// finite, the direction can be inverted, and low <= high are finite with a finite difference, as
-/// is a time. A name may have up to 1024 bytes.
+/// The same of a volume's, and unless spacing is not zero and it, the size, origin and direction
+/// are finite, the direction can be inverted, low <= high are finite with a finite difference and
+/// the type holds them, and a time is finite. A name may have up to 1024 bytes.
 void RequireValidVolume(const VolumeInfo& volume, ErrorCode code);
 
 } // namespace inr

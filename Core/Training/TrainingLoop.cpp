@@ -2,6 +2,7 @@
 #include "Core/Training/TrainingLoop.h"
 
 #include "Core/Error.h"
+#include "Core/NumberText.h"
 #include "Core/Training/Descent/GradientDescent.h"
 #include "Core/Training/NoMemory.h"
 #include "Core/Training/Quantise.h"
@@ -121,8 +122,7 @@ void TrainingLoop::finish(Descent& descent)
   if (descent.steps() == 0) {
     throw Error(ErrorCode::InvalidArgument,
                 "not one step of the training was finished within the TimeLimit of " +
-                    std::to_string(this->Options.timeLimit) +
-                    " s; raise it or choose a smaller model");
+                    NumberText(this->Options.timeLimit) + " s; raise it or choose a smaller model");
   }
   RequireFinite(std::all_of(parameters.begin(), parameters.end(),
                             [](float parameter) { return std::isfinite(parameter); }),

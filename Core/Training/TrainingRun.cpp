@@ -8,6 +8,7 @@
 #include "Core/Model/Compression.h"
 #include "Core/Model/ModelFile.h"
 #include "Core/Model/Quantised.h"
+#include "Core/NumberText.h"
 #include "Core/Timer.h"
 #include "Core/Training/Checkpoint/TrainingIdentity.h"
 #include "Core/Training/Descent/AcceleratedDescent.h"
@@ -85,7 +86,7 @@ void CheckArguments(const glm::i64vec3& dims, const TrainingOptions& options)
                                     {"TargetRatio", options.targetRatio},
                                     {"TimeLimit", options.timeLimit}}) {
     if (!std::isfinite(value) || value < 0) { // an infinite one would pass for a limit below
-      throw Error(ErrorCode::InvalidArgument, std::string(name) + " is " + std::to_string(value) +
+      throw Error(ErrorCode::InvalidArgument, std::string(name) + " is " + NumberText(value) +
                                                   "; set a finite positive number, or 0 for none");
     }
   }

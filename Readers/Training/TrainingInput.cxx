@@ -94,7 +94,8 @@ std::vector<vtkAbstractArray*> VolumesAmong(vtkDataSetAttributes& data)
 
 TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
 {
-  const std::string name = values->GetName() ? values->GetName() : "Scalars";
+  const bool isNamed = values->GetName() && *values->GetName();
+  const std::string name = isNamed ? values->GetName() : inr::VolumeInfo().arrayName;
   auto* array = vtkDataArray::SafeDownCast(values);
   Require(array != nullptr,
           "array '" + name + "' is a " + values->GetClassName() + ", which does not hold numbers");

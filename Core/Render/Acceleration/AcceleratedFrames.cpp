@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
+#include "Core/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -134,7 +135,7 @@ std::string WhatDiffers(const Frame& frame, Image drawn, Image truth)
   Brighten(drawn, truth);
   const double psnr = ImagePsnr(drawn, truth);
   return psnr >= least ? ""
-                       : "it draws a picture that is " + std::to_string(psnr) +
+                       : "it draws a picture that is " + NumberText(psnr, 4) +
                              " dB from the CPU's, not the same";
 }
 

@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Model/RangeGrids.h"
+#include "Core/NumberText.h"
 
 #include <cmath>
 #include <limits>
@@ -24,10 +25,9 @@ MacroCells WithoutHoles(const MacroCells& cells)
 void RequireFinite(const ValueRange& range, std::size_t cell)
 {
   if (!std::isfinite(range.low) || !std::isfinite(range.high)) {
-    throw Error(ErrorCode::InvalidArgument, "macro-cell " + std::to_string(cell) +
-                                                " has values from " + std::to_string(range.low) +
-                                                " to " + std::to_string(range.high) +
-                                                "; both have to be finite numbers");
+    throw Error(ErrorCode::InvalidArgument,
+                "macro-cell " + std::to_string(cell) + " has values from " + NumberText(range.low) +
+                    " to " + NumberText(range.high) + "; both have to be finite numbers");
   }
 }
 

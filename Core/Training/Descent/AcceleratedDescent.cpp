@@ -2,6 +2,7 @@
 #include "Core/Training/Descent/AcceleratedDescent.h"
 
 #include "Core/Error.h"
+#include "Core/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -128,8 +129,8 @@ std::optional<double> AcceleratedDescent::compareStep(BatchSource& batches, cons
     if (!IsNear(loss, *expected, 1e-3 * *expected) || !this->agrees()) {
       throw Error(ErrorCode::Device, "its first step is another one than the CPU's, with an error "
                                      "of " +
-                                         std::to_string(loss) + " in place of " +
-                                         std::to_string(*expected));
+                                         NumberText(loss) + " in place of " +
+                                         NumberText(*expected));
     }
     this->IsChecked = true;
     ++this->Steps;

@@ -3,14 +3,13 @@
 
 #include "Core/Error.h"
 #include "Core/GridBox.h"
+#include "Core/NumberText.h"
 #include "Core/Training/Samples/RandomStream.h"
 #include "Core/Training/TrainingRun.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <optional>
-#include <sstream>
 #include <string>
 
 namespace inr {
@@ -49,13 +48,6 @@ std::vector<std::int64_t> ChooseBars(std::int64_t bars, std::int64_t count, std:
     chosen.push_back(static_cast<std::int64_t>(share * static_cast<double>(bars)));
   }
   return chosen;
-}
-
-std::string ToText(double value)
-{
-  std::ostringstream text;
-  text << std::setprecision(10) << value;
-  return text.str();
 }
 
 std::string ToText(const GridBox& box)
@@ -150,8 +142,9 @@ void StreamedVolume::requireKnownRange(const VolumePiece& piece, const GridBox& 
   if (now.low < low || now.high > high) {
     throw Error(ErrorCode::InvalidArgument,
                 "the data changed while they were read: voxels " + ToText(box) + " now are " +
-                    ToText(now.low) + " to " + ToText(now.high) + ", outside " +
-                    ToText(this->Statistics.low) + " to " + ToText(this->Statistics.high) +
+                    NumberText(now.low, 10) + " to " + NumberText(now.high, 10) + ", outside " +
+                    NumberText(this->Statistics.low, 10) + " to " +
+                    NumberText(this->Statistics.high, 10) +
                     ", the range of all data when they were read for the first time");
   }
   if (now.nonFinite > this->Statistics.nonFinite) {

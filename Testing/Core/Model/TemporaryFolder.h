@@ -48,7 +48,7 @@ inline std::shared_ptr<inr::Model> FullModel()
   model->volume.origin = {-1e6, 0.3, 1.0 / 3.0};
   model->volume.direction = glm::dmat3(0, 1, 0, -1, 0, 0, 0, 0, 1);
   model->volume.arrayName = "Temperature é";
-  model->volume.type = inr::ScalarType::UInt16;
+  model->volume.type = inr::ScalarType::Float64;
   model->volume.low = -1.25e-3;
   model->volume.high = 6.02e23;
   model->volume.time = -0.1;

@@ -67,7 +67,25 @@ TEST(Contradictions, OfNumbersThatBelongTogether)
   ExpectRefused("range", [](json& root) {
     root["inr"]["data_range"] = {{"low", -1e308}, {"high", 1e308}};
   });
+  ExpectRefused("a uint8 cannot hold", [](json& root) {
+    root["inr"]["array_type"] = "uint8";
+    root["inr"]["data_range"] = {{"low", 0}, {"high", 256}};
+  });
+  ExpectRefused("a float32 cannot hold", [](json& root) {
+    root["inr"]["array_type"] = "float32";
+    root["inr"]["data_range"] = {{"low", -1e39}, {"high", 0}};
+  });
+  ExpectRefused("no finite size", [](json& root) { root["inr"]["spacing"]["y"] = 1e308; });
   ExpectRefused("exclude", [](json& root) { root["model"]["encoding"]["n_features"] = 16; });
+}
+
+TEST(Contradictions, LeaveNoArrayWithoutAName)
+{
+  for (const std::string& name : {std::string(), std::string(1, '\0') + "x"}) {
+    json document = Document();
+    document["inr"]["array_name"] = name;
+    EXPECT_EQ(inr::ModelFromBytes(BytesOf(document))->volume.arrayName, "Scalars");
+  }
 }
 
 TEST(Contradictions, OfKinds)

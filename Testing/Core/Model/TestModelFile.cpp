@@ -262,6 +262,23 @@ TEST_F(ModelFile, OverridesWin)
   EXPECT_FALSE(inr::ReadModel(Folder.file("model.inr"))->nativeDims);
 }
 
+TEST_F(ModelFile, QualityIsOfWhatWasMeasured)
+{
+  const auto model = FullModel();
+  this->roundTrip(*model);
+  inr::ModelOverrides overrides;
+  const double width = model->volume.high - model->volume.low;
+  overrides.dataRange = glm::dvec2(-3 * width, width);
+  const inr::Model wider = inr::ReadModelHeader(Folder.file("model.inr"), overrides);
+  ASSERT_GT(model->quality->maxError, 0);
+  EXPECT_DOUBLE_EQ(wider.quality->maxError, 4 * model->quality->maxError); // in data units
+  EXPECT_EQ(wider.quality->psnr, model->quality->psnr);
+  overrides.dims = model->volume.dims;
+  EXPECT_TRUE(inr::ReadModelHeader(Folder.file("model.inr"), overrides).quality);
+  overrides.dims = glm::i64vec3(8, 9, 10);
+  EXPECT_FALSE(inr::ReadModelHeader(Folder.file("model.inr"), overrides).quality);
+}
+
 TEST_F(ModelFile, IsRecognisedByContent)
 {
   this->roundTrip(*FullModel());

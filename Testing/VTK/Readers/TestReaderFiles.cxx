@@ -3,6 +3,7 @@
 #include "MessageCapture.h"
 #include "ReaderFixture.h"
 
+#include <vtkExtractVOI.h>
 #include <vtkFieldData.h>
 #include <vtkStringArray.h>
 
@@ -69,6 +70,33 @@ TEST_F(Reader, TakesNameRangeAndDimensionsFromTheUser)
   EXPECT_EQ(this->scalars()->GetRange()[0], -1.0);
   EXPECT_EQ(this->scalars()->GetRange()[1], 3.0);
   EXPECT_EQ(image->GetNumberOfPoints(), 10 * 11 * 12);
+}
+
+TEST_F(Reader, ComparesTheFileWithWhatWasCompressed)
+{
+  const std::string path = this->write(*MakeModel(Dims));
+  this->open(path);
+  const double ratio = this->Algorithm->GetRatio();
+  this->Algorithm->SetDimensions(200, 130, 70);
+  this->open(path);
+  EXPECT_EQ(this->Algorithm->GetRatio(), ratio);
+}
+
+/// Somebody else may ask for what there is.
+TEST_F(Reader, GoesOnAfterARequestForPointsThatDoNotExist)
+{
+  this->open(this->write(*MakeModel(Dims)));
+  vtkNew<vtkExtractVOI> beyond;
+  beyond->SetInputConnection(this->Algorithm->GetOutputPort());
+  beyond->SetVOI(0, 100, 0, 5, 0, 5);
+  {
+    const MessageCapture messages;
+    beyond->Update();
+    EXPECT_NE(messages.text().find("not within the grid"), std::string::npos) << messages.text();
+    EXPECT_EQ(this->Algorithm->GetOutput()->GetNumberOfPoints(), 0);
+  }
+  this->Algorithm->UpdateWholeExtent();
+  EXPECT_EQ(this->Algorithm->GetOutput()->GetNumberOfPoints(), Dims.x * Dims.y * Dims.z);
 }
 
 TEST_F(Reader, SaysWhenTheQualityIsThatOfSomeVoxels)
