@@ -213,7 +213,8 @@ void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
   try {
     vtkImageData* image = this->Model->receive(vtkPolyData::SafeDownCast(carrier));
     this->VolumeMapper->SetInputDataObject(image);
-    this->Actor->SetEnableLOD(image ? 0 : 1); // the outline
+    const bool others = AreSeveral(vtkMultiProcessController::GetGlobalController());
+    this->Actor->SetEnableLOD(image || others ? 0 : 1); // the outline, where nobody draws more
     this->ReportShared(image && vtkINRDataArray::FindIn(image->GetPointData()));
   } catch (const std::exception& problem) {
     vtkErrorMacro(<< problem.what());

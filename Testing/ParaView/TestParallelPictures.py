@@ -8,7 +8,7 @@ import sys
 import numpy as np
 from glass_scenes import check_parallel, path_of, pictures
 from paraview import servermanager, simple
-from pvtest import check, load_plugin, output_file, picture, read_png, show_model
+from pvtest import Messages, check, load_plugin, output_file, picture, read_png, show_model
 
 # One of each kind; the processes of a server draw all of them.
 CHOSEN = ["paths", "paths over glass", "isosurfaces over glass", "turned over glass 0", "two traced", "lit",
@@ -31,6 +31,17 @@ def check_text():
     check(not differs[:-60].any(), "more than the text is drawn")
 
 
+def check_behind():
+    """Nothing is wrong with a camera that has turned away."""
+    view, _ = show_model()
+    simple.Render(view)
+    view.CameraPosition, view.CameraFocalPoint = [500, 500, 500], [1000, 1000, 1000]
+    with Messages() as messages:
+        behind = picture(view, "batch-behind")
+    check(messages.errors() == 0, "it reported", messages.text)
+    check(behind.std() < 1e-6, "something is shown")
+
+
 if sys.argv[1] == "write":
     pictures("batch", CHOSEN)
     # They share the memory of the machine, too.
@@ -40,6 +51,7 @@ if sys.argv[1] == "write":
         for size in re.findall(r" CacheSize: (\d+)", str(volume.GetMapper())):
             check(processes > 1 and 0 < int(size) <= memory / 4 / processes, "CacheSize", size)
     check_text()
+    check_behind()
 else:
     expected = pictures("alone", CHOSEN)[2]
     found = {name: read_png(output_file(path_of("batch", name) + ".png")) for name in expected}

@@ -63,6 +63,12 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   this->Group = settings.group;
   ViewPicture& picture = this->Pictures.of(renderer, volume);
   picture.begin();
+  // Processes that draw together do so where nothing is to be seen, too.
+  if (this->Group.all(IsBehindCamera(renderer, volume->GetBounds()))) {
+    picture.last().converged = true;
+    this->Stills.followUp(picture, renderer->GetRenderWindow(), settings); // nothing goes on
+    return {};
+  }
   Frame frame;
   std::string problem;
   this->Group.together([&] { problem = this->prepare(mapper, renderer, volume, settings, frame); });

@@ -10,12 +10,15 @@
 namespace inr {
 namespace {
 
+/// The one of the points that the mapper is told to draw, if there is one.
 vtkAbstractArray* SelectedArray(vtkVolumeMapper* mapper, vtkImageData* image)
 {
-  int cellFlag = 0;
-  return vtkAbstractMapper::GetAbstractScalars(image, mapper->GetScalarMode(),
-                                               mapper->GetArrayAccessMode(), mapper->GetArrayId(),
-                                               mapper->GetArrayName(), cellFlag);
+  int whose = 0;
+  vtkAbstractArray* array = vtkAbstractMapper::GetAbstractScalars(
+      image, mapper->GetScalarMode(), mapper->GetArrayAccessMode(), mapper->GetArrayId(),
+      mapper->GetArrayName(), whose);
+  constexpr int ofPoints = 0; // as VTK counts here, 1 are the cells and 2 the data set itself
+  return whose == ofPoints ? array : nullptr;
 }
 
 std::string NotAnInr(vtkAbstractArray* array)

@@ -5,8 +5,10 @@
 #include <vtkMatrix4x4.h>
 #include <vtkRenderer.h>
 
+#include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
 
 namespace inr {
 
@@ -29,6 +31,21 @@ glm::dmat4 ClipToWorld(vtkRenderer* renderer)
   const glm::dmat4 projection =
       ToGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1));
   return glm::inverse(projection * ToGlm(camera->GetModelViewTransformMatrix()));
+}
+
+bool IsBehindCamera(vtkRenderer* renderer, const double bounds[6])
+{
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const glm::dvec3 eye = glm::make_vec3(camera->GetPosition());
+  const glm::dvec3 forward = glm::make_vec3(camera->GetDirectionOfProjection());
+  const bool seesBehind = camera->GetClippingRange()[0] < 0; // by parallel rays
+  bool behind = !seesBehind;
+  for (int corner = 0; behind && corner < 8; ++corner) {
+    const glm::dvec3 at(bounds[corner & 1], bounds[2 + (corner >> 1 & 1)],
+                        bounds[4 + (corner >> 2)]);
+    behind = glm::dot(at - eye, forward) < 0;
+  }
+  return behind;
 }
 
 std::size_t PixelUnder(std::size_t pixel, int width, int height, const Viewport& viewport)

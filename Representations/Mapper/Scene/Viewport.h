@@ -23,6 +23,9 @@ Viewport GetViewport(vtkRenderer* renderer);
 /// Inverse of what the renderer's camera does, stereo shear and tiles included.
 glm::dmat4 ClipToWorld(vtkRenderer* renderer);
 
+/// Whether the renderer's camera has all that is within these bounds behind it.
+bool IsBehindCamera(vtkRenderer* renderer, const double bounds[6]);
+
 /// The pixel of the viewport in which the centre of one lies of a smaller image over it, both by
 /// number, row by row.
 std::size_t PixelUnder(std::size_t pixel, int width, int height, const Viewport& viewport);

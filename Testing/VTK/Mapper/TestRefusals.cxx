@@ -220,6 +220,13 @@ TEST_F(Refusals, AnArrayThatIsNotThere)
   this->expectRefused("no point scalars");
 }
 
+TEST_F(Refusals, AnArrayOfTheWholeDataSet)
+{
+  this->mapper->SetScalarMode(VTK_SCALAR_MODE_USE_FIELD_DATA);
+  this->mapper->SelectScalarArray("INRMaximumError"); // as a reader's image has one
+  this->expectRefused("no point scalars");
+}
+
 TEST_F(Refusals, OtherDataSets)
 {
   vtkNew<vtkRectilinearGrid> grid;
