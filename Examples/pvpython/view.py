@@ -49,4 +49,7 @@ view.GetActiveCamera().Azimuth(30)
 if not SaveScreenshot(picture_file, view) or not os.path.isfile(picture_file):
     sys.exit(f"{picture_file} was not written: is there such a folder, and a format of that name?")
 shown.UpdatePropertyInformation()  # else it tells what was before
-print(f"{picture_file}: drawn on {shown.GetPropertyValue('BackendInUse')}")
+backend = shown.GetPropertyValue("BackendInUse")
+if not backend:
+    sys.exit(f"{picture_file} shows nothing of the model; what is above says why")
+print(f"{picture_file}: drawn on {backend}")

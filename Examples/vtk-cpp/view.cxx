@@ -80,6 +80,9 @@ int main(int argc, char** argv)
   window->SetSize(600, 600);
   window->AddRenderer(renderer);
   window->Render();
+  if (*mapper->GetBackendInUse() == 0) {
+    return 1; // the mapper has said why
+  }
   if (!WritePicture(window, argv[2])) {
     std::cerr << argv[2] << " was not written: is there such a folder?\n";
     return 1;

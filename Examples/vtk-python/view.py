@@ -52,6 +52,8 @@ window.SetOffScreenRendering(True)
 window.SetSize(600, 600)
 window.AddRenderer(renderer)
 window.Render()
+if not mapper.GetBackendInUse():
+    sys.exit("nothing was drawn; the mapper has said why")
 
 capture = vtkWindowToImageFilter()
 capture.SetInput(window)
