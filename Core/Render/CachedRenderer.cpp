@@ -66,18 +66,18 @@ CachedRenderer::~CachedRenderer()
 
 void CachedRenderer::beginFrame() { this->Latest = this->Store->beginFrame(); }
 
-const StepLookup& CachedRenderer::stepsFor(const ColorLookup& colors, double stepLength)
+const std::shared_ptr<const StepTable>& CachedRenderer::stepsFor(const ColorLookup& colors,
+                                                                 double stepLength)
 {
   const int lengths = SampleLengths(this->Store->cache().hierarchy().levels());
   if (!this->Steps || !this->Steps->fits(stepLength, lengths)) {
-    this->Unfinished.reset(); // it reads the former ones
-    this->Steps.emplace(colors, stepLength, lengths);
+    this->Steps = std::make_shared<const StepTable>(colors, stepLength, lengths);
   }
-  return this->Steps->lookup();
+  return this->Steps;
 }
 
-const BlockVisibility* CachedRenderer::blocksFor(const ColorTable& colors,
-                                                 const MarchSettings& settings, bool rangesHold)
+std::shared_ptr<const BlockVisibility>
+CachedRenderer::blocksFor(const ColorTable& colors, const MarchSettings& settings, bool rangesHold)
 {
   if (!rangesHold) { // what is moved into them may show what its block does not
     return nullptr;
@@ -86,26 +86,25 @@ const BlockVisibility* CachedRenderer::blocksFor(const ColorTable& colors,
     return nullptr; // all values matter
   }
   if (!this->Blocks) {
-    this->Blocks.emplace(this->Store->cache(), colors);
+    this->Blocks = std::make_shared<const BlockVisibility>(this->Store->cache(), colors);
   }
-  return &*this->Blocks;
+  return this->Blocks;
 }
 
-const SufficientBricks& CachedRenderer::bricksFor(const Majorants& majorants,
-                                                  std::optional<int> reach)
+const std::shared_ptr<const SufficientBricks>& CachedRenderer::bricksFor(const Majorants& majorants,
+                                                                         std::optional<int> reach)
 {
   const bool fits = this->Bricks && this->Bricks->wantsAll() == !reach &&
                     this->Bricks->reach() == reach.value_or(0);
   if (!fits) {
-    this->Unfinished.reset(); // it reads the former ones
     const BrickCache& cache = this->Store->cache();
     std::optional<VisibleBlocks> wanted;
     if (reach) {
       wanted.emplace(cache.hierarchy(), majorants.view(), *reach);
     }
-    this->Bricks.emplace(cache, wanted);
+    this->Bricks = std::make_shared<const SufficientBricks>(cache, wanted);
   }
-  return *this->Bricks;
+  return this->Bricks;
 }
 
 RequestRanking CachedRenderer::inSteps(const RequestRanking& requests, std::int64_t room) const
@@ -157,9 +156,9 @@ FrameStatistics CachedRenderer::render(const MarchJob& job, const Majorants& maj
     }
   }
   refined.reset();
-  const StepLookup& steps = this->stepsFor(job.colors, settings.step * settings.unitsPerT);
+  const auto steps = this->stepsFor(job.colors, settings.step * settings.unitsPerT);
   const BrickCache& cache = this->Store->cache();
-  const BlockVisibility* blocks = this->blocksFor(colors, settings, majorants.rangesHold());
+  const auto blocks = this->blocksFor(colors, settings, majorants.rangesHold());
   // With samples chosen for a tolerance; until these are, less is enough.
   const bool looksFurther = settings.looksAtBothEnds() || settings.cellSampling != nullptr;
   this->LoadsWhole = frame.errorTolerance.value_or(0) > 0;
@@ -277,7 +276,7 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Dra
       unfinished.refined.emplace(scene, call.output);
       return statistics;
     }
-    if (call.limit.endsWithin(0) || call.limit.endsWithin(tiles.secondsToMarch(scene.bricks))) {
+    if (call.limit.endsWithin(0) || call.limit.endsWithin(tiles.secondsToMarch(*scene.bricks))) {
       unfinished.kept = std::make_unique<KeptPicture>(scene, std::move(tiles), call.output);
       return statistics;
     }

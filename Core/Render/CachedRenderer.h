@@ -73,12 +73,13 @@ private:
 
   FrameStatistics renderFrame(const CachedScene& scene, const DrawCall& call);
   void beginFrame();
-  const StepLookup& stepsFor(const ColorLookup& colors, double stepLength);
+  const std::shared_ptr<const StepTable>& stepsFor(const ColorLookup& colors, double stepLength);
   /// Null where all values matter.
-  const BlockVisibility* blocksFor(const ColorTable& colors, const MarchSettings& settings,
-                                   bool rangesHold);
+  std::shared_ptr<const BlockVisibility> blocksFor(const ColorTable& colors,
+                                                   const MarchSettings& settings, bool rangesHold);
   /// `reach`: see VisibleBlocks; nothing: whole bricks.
-  const SufficientBricks& bricksFor(const Majorants& majorants, std::optional<int> reach);
+  const std::shared_ptr<const SufficientBricks>& bricksFor(const Majorants& majorants,
+                                                           std::optional<int> reach);
   /// Where there is no room for so many bricks, the level that is not on the way, which takes an
   /// eighth of it, in place of the next finer one, unless it is there.
   RequestRanking inSteps(const RequestRanking& requests, std::int64_t room) const;
@@ -111,10 +112,11 @@ private:
   std::shared_ptr<BrickStore> Store;
   std::uint64_t Latest = BrickCache::Pinned; ///< of this renderer's frames in the store
   WorkDone Work;                             ///< of rays, in the present call
-  std::optional<StepTable> Steps;
-  std::optional<BlockVisibility> Blocks;
-  std::optional<SufficientBricks> Bricks; ///< of the latest frame
-  bool LoadsWhole = false;                ///< as it will look at more later
+  // Of the latest frame; null before.
+  std::shared_ptr<const StepTable> Steps;
+  std::shared_ptr<const BlockVisibility> Blocks;
+  std::shared_ptr<const SufficientBricks> Bricks;
+  bool LoadsWhole = false; ///< as it will look at more later
   PerView<UnfinishedPicture> Unfinished;
   PathShortage Shortage; ///< of the latest path-traced picture
 };

@@ -16,7 +16,7 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
   this->LoadsWhole = false;
   const bool hides = majorants.rangesHold() && colors.hidesAny();
   const SufficientBricks& bricks =
-      this->bricksFor(majorants, hides ? std::optional<int>(0) : std::nullopt);
+      *this->bricksFor(majorants, hides ? std::optional<int>(0) : std::nullopt);
   const bool contested = limit.isLimited() && this->Store->hasLostSince(this->Latest);
   this->Shortage.begin(round.first, !limit.isLimited(), contested);
   if (round.whole || this->Store->frame() != this->Latest) {

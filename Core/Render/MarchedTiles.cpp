@@ -104,7 +104,7 @@ FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, con
                                     const DrawCall& call, RequestRanking& requests)
 {
   const Timer timer;
-  const std::vector<std::int64_t> due = this->due(scene.bricks);
+  const std::vector<std::int64_t> due = this->due(*scene.bricks);
   const std::vector<char> marched = this->marchDue(scene, onMiss, arena, call, due);
   ++this->Pass;
   FrameStatistics sum;
@@ -122,7 +122,7 @@ FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, con
   for (const MarchedTile& tile : this->Marched) {
     sum.add(tile.statistics);
     requests.add(tile.missed,
-                 [&](const Request& request) { return !IsThere(request, scene.bricks); });
+                 [&](const Request& request) { return !IsThere(request, *scene.bricks); });
   }
   if (reached > 0) {
     this->Reached += reached;

@@ -5,7 +5,7 @@ namespace inr {
 
 Refinement::Refinement(const CachedScene& scene, const PassOutput& soFar)
     : Picture(scene.frame),
-      Geometry(this->Picture.frame(), scene.bricks.cache().hierarchy().dims()),
+      Geometry(this->Picture.frame(), scene.bricks->cache().hierarchy().dims()),
       Lighting(ShadingOf(this->Picture.frame())),
       Scene{this->Picture.frame(), this->Geometry,
             scene.majorants,       scene.colors,

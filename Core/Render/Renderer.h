@@ -89,8 +89,9 @@ public:
 
   /// Bytes in use by the caches of all renderers of the process, their tables and queues: at most
   /// the largest of their CacheOptions::bytes. (One that comes while the others draw with all of
-  /// it brings its empty tables until they end, eight bytes for each brick that it may come to hold.) An accelerator's caches are
-  /// counted, too, and have such a limit of their own. 0 without a cache.
+  /// it brings its empty tables until they end, eight bytes for each brick that it may come to
+  /// hold.) An accelerator's caches are counted, too, and have such a limit of their own. 0 without
+  /// a cache.
   std::int64_t cacheBytes() const;
   /// Bricks in the cache of this renderer and those that it shares them with, 0 as above.
   std::int64_t cachedBricks() const;

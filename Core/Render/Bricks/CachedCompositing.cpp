@@ -34,9 +34,9 @@ void CachedMarcher::composite(CachedRay& state)
   if (this->Scene.colors.logarithmic) {
     this->takeLogarithms(whole);
   }
-  const int used =
-      this->Scene.kernel.composite(this->Scene.steps, this->Batch, whole, OpaqueTransmittance,
-                                   state.color, this->Notes.statistics.clamped);
+  const int used = this->Scene.kernel.composite(this->Scene.steps->lookup(), this->Batch, whole,
+                                                OpaqueTransmittance, state.color,
+                                                this->Notes.statistics.clamped);
   this->noteHalfOpaque(state, 0, used);
   if (isLast && state.color.transmittance > OpaqueTransmittance) {
     this->compositeLast(state);

@@ -178,7 +178,7 @@ WorkDone CompletePass::advance(const Arena& arena, const std::function<bool()>& 
 void CompletePass::crowd(std::int64_t loaded)
 {
   this->Alone = loaded == 0;
-  if (4 * loaded < this->Scene.bricks.cache().capacity()) {
+  if (4 * loaded < this->Scene.bricks->cache().capacity()) {
     this->Window = std::max<std::size_t>(this->Window / 2, 1);
   }
 }

@@ -11,7 +11,8 @@ namespace {
 SampleWalker SamplesOf(const CachedScene& scene, const Ray& ray, std::uint64_t stream, int x, int y)
 {
   SampleWalker samples(scene.majorants.view(), scene.settings, ray, scene.frame.levelOfDetailScale,
-                       scene.bricks.cache().hierarchy().levels(), JitterOf(scene.settings, stream));
+                       scene.bricks->cache().hierarchy().levels(),
+                       JitterOf(scene.settings, stream));
   if (ray.length > 0) {
     samples.confine(scene.seen->of(ray, x, y), scene.settings);
   }

@@ -42,7 +42,7 @@ __attribute__((flatten)) bool RayBricks::reopen(BrickRun& run, const Ray& ray, f
                                                 int level, double place)
 {
   this->close(run, transmittance);
-  const BrickCache& cache = this->Scene.bricks.cache();
+  const BrickCache& cache = this->Scene.bricks->cache();
   const double t = place * this->Scene.settings.step;
   BrickWay& wanted = this->Ways[level & 1];
   if (wanted.level() != level) {
@@ -50,7 +50,7 @@ __attribute__((flatten)) bool RayBricks::reopen(BrickRun& run, const Ray& ray, f
   }
   wanted.moveTo(t);
   const BrickKey key = wanted.brick();
-  std::int32_t slot = this->Scene.bricks.find(key);
+  std::int32_t slot = this->Scene.bricks->find(key);
   if (slot >= 0) {
     run.open(wanted, wanted, cache.view(slot), this->Scene.settings.step);
   } else if (this->Missing == OnMiss::Stop) {
@@ -70,13 +70,13 @@ __attribute__((flatten)) bool RayBricks::reopen(BrickRun& run, const Ray& ray, f
 
 std::int32_t RayBricks::openCoarser(BrickRun& run, const Ray& ray, const BrickWay& wanted, double t)
 {
-  const BrickCache& cache = this->Scene.bricks.cache();
+  const BrickCache& cache = this->Scene.bricks->cache();
   const Hierarchy& hierarchy = cache.hierarchy();
   BrickKey wish = wanted.brick();
   for (int level = wanted.level() + 1;; ++level) { // the coarsest is there
     BrickWay served(hierarchy.view(), level, ray);
     served.moveTo(t);
-    const std::int32_t slot = this->Scene.bricks.find(served.brick());
+    const std::int32_t slot = this->Scene.bricks->find(served.brick());
     if (slot >= 0) {
       run.open(wanted, served, cache.view(slot), this->Scene.settings.step);
       if (this->Missing == OnMiss::Approach) {

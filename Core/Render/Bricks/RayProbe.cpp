@@ -5,7 +5,7 @@ namespace inr {
 
 RayProbe::RayProbe(const CachedScene& scene, OnMiss onMiss)
     : Scene(scene), Stops(onMiss == OnMiss::Stop),
-      Gradients(scene.bricks, scene.format, scene.kernel)
+      Gradients(*scene.bricks, scene.format, scene.kernel)
 {}
 
 bool RayProbe::find(const Ray& ray, int level, double place, float contribution,
@@ -24,11 +24,11 @@ bool RayProbe::find(const Ray& ray, int level, double place, float contribution,
 bool RayProbe::open(const Ray& ray, int level, double place, float contribution,
                     RequestList& requests)
 {
-  const BrickCache& cache = this->Scene.bricks.cache();
+  const BrickCache& cache = this->Scene.bricks->cache();
   const double step = this->Scene.settings.step;
   BrickWay wanted(cache.hierarchy().view(), level, ray);
   wanted.moveTo(place * step);
-  std::int32_t slot = this->Scene.bricks.find(wanted.brick());
+  std::int32_t slot = this->Scene.bricks->find(wanted.brick());
   if (slot < 0) {
     requests.add(wanted.brick(), this->Stops ? 1.0f : contribution);
     if (this->Stops) {
@@ -39,7 +39,7 @@ bool RayProbe::open(const Ray& ray, int level, double place, float contribution,
   while (slot < 0) { // the coarsest level is there
     served = BrickWay(cache.hierarchy().view(), served.level() + 1, ray);
     served.moveTo(place * step);
-    slot = this->Scene.bricks.find(served.brick());
+    slot = this->Scene.bricks->find(served.brick());
   }
   cache.touch(slot);
   this->Run.open(wanted, served, cache.view(slot), step);
