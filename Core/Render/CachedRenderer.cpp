@@ -24,21 +24,19 @@ const CacheOptions& Checked(const CacheOptions& options)
 }
 
 /// What all renderers of the same field with the same options share.
-std::shared_ptr<BrickStore>
-StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<const void>& identity,
-         const glm::i64vec3& dims, std::shared_ptr<const MacroCells> cells,
-         const CacheOptions& options, const Arena& arena,
-         const std::shared_ptr<const Accelerator>& accelerator, const ModelPointer& model)
+std::shared_ptr<BrickStore> StoreFor(const CachedField& of, const CacheOptions& options,
+                                     const Arena& arena)
 {
   const std::int64_t bytes = options.bytes > 0 ? options.bytes : DefaultCacheBytes();
   const std::shared_ptr<CacheBudget> budget = CacheBudget::ofProcess();
-  const StoreKey key{identity,          cells, field->kernel(),    dims,       options.brickSize,
-                     options.precision, bytes, options.background, accelerator};
+  const StoreKey key{of.identity, of.cells,           of.field->kernel(),
+                     of.dims,     options.brickSize,  options.precision,
+                     bytes,       options.background, of.accelerator};
   return budget->storeFor(key, [&] {
     std::shared_ptr<const BrickSource> source = MakeBrickSource(
-        field, Hierarchy(dims, options.brickSize, field->resolution()), std::move(cells));
-    if (accelerator) {
-      source = MakeBrickSource(accelerator, model, std::move(source));
+        of.field, Hierarchy(of.dims, options.brickSize, of.field->resolution()), of.cells);
+    if (of.accelerator) {
+      source = MakeBrickSource(of.accelerator, of.model, std::move(source));
     }
     return std::make_shared<BrickStore>(budget, std::move(source), options.precision, bytes,
                                         options.background, arena.threads());
@@ -47,16 +45,10 @@ StoreFor(const std::shared_ptr<const Evaluator>& field, const std::shared_ptr<co
 
 } // namespace
 
-CachedRenderer::CachedRenderer(std::shared_ptr<const Evaluator> field,
-                               const std::shared_ptr<const void>& identity,
-                               const glm::i64vec3& dims, std::shared_ptr<const MacroCells> cells,
-                               const CacheOptions& options, const BrickKernel& kernel,
-                               const Arena& arena,
-                               const std::shared_ptr<const Accelerator>& accelerator,
-                               const ModelPointer& model)
-    : Options(Checked(options)), Kernel(kernel), Threads(arena), Field(std::move(field)),
-      Store(StoreFor(this->Field, identity, dims, std::move(cells), options, arena, accelerator,
-                     model))
+CachedRenderer::CachedRenderer(const CachedField& field, const CacheOptions& options,
+                               const BrickKernel& kernel, const Arena& arena)
+    : Options(Checked(options)), Kernel(kernel), Threads(arena), Field(field.field),
+      Store(StoreFor(field, options, arena))
 {}
 
 CachedRenderer::~CachedRenderer()

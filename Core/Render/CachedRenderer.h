@@ -24,21 +24,28 @@ namespace inr {
 
 enum class OnPathMiss;
 
+/// What is drawn through a cache.
+struct CachedField
+{
+  std::shared_ptr<const Evaluator> field;
+  std::shared_ptr<const void> identity; ///< the same object for the same field
+  glm::i64vec3 dims;                    ///< voxels
+  /// Of the field, whose ranges hold; may be null.
+  std::shared_ptr<const MacroCells> cells;
+  /// Infers the bricks; null: the CPU does.
+  std::shared_ptr<const Accelerator> accelerator;
+  ModelPointer model; ///< that the field is of, where there is an accelerator
+};
+
 /// Renders through a cache of bricks, which lives from frame to frame and which all renderers of
 /// the same field with the same bricks and size of the cache share. The threads that load bricks
 /// are as many as those of the first.
 class CachedRenderer
 {
 public:
-  /// `identity`: the same object for the same field. `cells`: of the field, whose ranges hold; may
-  /// be null. `accelerator`: infers the bricks; where it is not null, the field is that of `model`.
   /// Throws what Hierarchy and BrickCache throw. `arena` must outlive the renderer.
-  CachedRenderer(std::shared_ptr<const Evaluator> field,
-                 const std::shared_ptr<const void>& identity, const glm::i64vec3& dims,
-                 std::shared_ptr<const MacroCells> cells, const CacheOptions& options,
-                 const BrickKernel& kernel, const Arena& arena,
-                 const std::shared_ptr<const Accelerator>& accelerator = nullptr,
-                 const ModelPointer& model = nullptr);
+  CachedRenderer(const CachedField& field, const CacheOptions& options, const BrickKernel& kernel,
+                 const Arena& arena);
   /// Nothing more is loaded for its pictures, even where somebody keeps the bricks.
   ~CachedRenderer();
   CachedRenderer(const CachedRenderer&) = delete;

@@ -2,6 +2,7 @@
 #include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Paths/CachedPaths.h"
 #include "Core/Render/Scene/FrameStatistics.h"
+#include "Core/Render/Tiles/PassClock.h"
 #include "Core/Render/Tiles/WorkLimit.h"
 
 #include <algorithm>
@@ -25,8 +26,9 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
   const OnPathMiss onMiss = this->onPathMiss(limit);
   // Inferring takes many times as long as the round before that said how long a round is.
   const bool hurries = onMiss == OnPathMiss::Infer && !round.first && limit.isTimed();
+  PassClock clock(limit, hurries);
   RequestRanking requests;
-  TracedTiles traced = TraceThroughCache(round, bricks, *this->Field, onMiss, limit, hurries,
+  TracedTiles traced = TraceThroughCache(round, {bricks, *this->Field, onMiss}, clock,
                                          this->Threads, keepGoing, requests);
   this->Shortage.check(requests.count(), this->room());
   if (this->Shortage.lacks() && this->Options.onlyWhatFits) {

@@ -94,8 +94,10 @@ Renderer::Implementation::Implementation(std::shared_ptr<const Evaluator> field,
   }
   if (this->Options.cached) { // at once, so that whom this one replaces can leave its bricks
     const BrickKernel& kernel = BrickKernelFor(ChooseInstructionSet(this->Options.kernel));
-    this->Cached.emplace(this->Field, this->Identity, this->Volume.dims, SharedCells(cells, model),
-                         this->Options.cache, kernel, this->Threads, accelerator, model);
+    const CachedField field{this->Field,       this->Identity,
+                            this->Volume.dims, SharedCells(cells, model),
+                            accelerator,       model};
+    this->Cached.emplace(field, this->Options.cache, kernel, this->Threads);
   } else if (accelerator) {
     this->Samples = MakeEvaluator(this->Accelerated, this->Field);
   }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Cache/CacheOptions.h"
 #include "Core/Cache/KeptBricks.h"
 #include "Core/Image/Image.h"
 #include "Core/Inference/Evaluator.h"
 #include "Core/Model/Model.h"
 #include "Core/Render/Acceleration/AcceleratedField.h"
-#include "Core/Render/CachedRenderer.h"
 #include "Core/Render/Scene/Frame.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/TransferFunction.h"

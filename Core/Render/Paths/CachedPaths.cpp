@@ -20,10 +20,9 @@ float Between(float a, float b, float weight) { return a + (b - a) * weight; }
 
 } // namespace
 
-CachedSampler::CachedSampler(const SufficientBricks& bricks, const Evaluator& field,
-                             OnPathMiss onMiss)
-    : Bricks(bricks), Cache(bricks.cache()), Missing(onMiss),
-      Network(field, this->Cache.hierarchy().dims()),
+CachedSampler::CachedSampler(const CachedPathField& field)
+    : Bricks(field.bricks), Cache(field.bricks.cache()), Missing(field.onMiss),
+      Network(field.field, this->Cache.hierarchy().dims()),
       BrickStride(this->Cache.hierarchy().brickDims() - 1),
       InverseBrickStride(1.0 / this->BrickStride),
       VoxelBytes(BytesPerVoxel(this->Cache.precision())),
@@ -220,25 +219,23 @@ private:
 
 } // namespace
 
-TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& bricks,
-                              const Evaluator& field, OnPathMiss onMiss, const WorkLimit& limit,
-                              bool hurries, const Arena& arena,
+TracedTiles TraceThroughCache(const PathRound& round, const CachedPathField& field,
+                              PassClock& clock, const Arena& arena,
                               const std::function<bool()>& keepGoing, RequestRanking& requests)
 {
-  const Timer clock;
+  const Timer timer;
   const Tiling tiling(round.output.rgba.width, round.output.rgba.height);
   TracedTiles traced;
   traced.tiles.resize(round.tiles.size());
   std::vector<RequestList> lists(round.tiles.size());
   traced.reached.resize(round.tiles.size());
-  PassClock passClock(limit, hurries);
   const auto trace = [&](std::int64_t i) {
-    if (!passClock.mayBegin()) {
+    if (!clock.mayBegin()) {
       return;
     }
     const auto k = static_cast<std::size_t>(i);
     traced.reached[k] = 1;
-    CachedSampler sampler(bricks, field, onMiss);
+    CachedSampler sampler(field);
     StoppableSampler stoppable(sampler, keepGoing);
     const Tile tile = tiling.tile(round.tiles[k]);
     traced.tiles[k] = round.tracer.trace(tile, stoppable, round.output.rgba, round.output.depth);
@@ -251,7 +248,7 @@ TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& br
   for (const RequestList& list : lists) {
     requests.add(list);
   }
-  traced.seconds = clock.seconds();
+  traced.seconds = timer.seconds();
   return traced;
 }
 

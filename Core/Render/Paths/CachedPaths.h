@@ -15,7 +15,7 @@
 namespace inr {
 
 class Arena;
-class WorkLimit;
+class PassClock;
 
 /// What a path gets where the brick it wants is not there.
 enum class OnPathMiss {
@@ -24,13 +24,21 @@ enum class OnPathMiss {
   Infer       ///< what the network says at the point, and a wish
 };
 
+/// What paths read.
+struct CachedPathField
+{
+  const SufficientBricks& bricks;
+  const Evaluator& field; ///< for misses
+  OnPathMiss onMiss;
+};
+
 /// The field as a cache of bricks has it: trilinear between the voxels of the level asked for. The
 /// coarsest level must be mapped.
 class CachedSampler : public FieldSampler
 {
 public:
-  /// `field` is for misses. The references must outlive the sampler.
-  CachedSampler(const SufficientBricks& bricks, const Evaluator& field, OnPathMiss onMiss);
+  /// What is referred to must outlive the sampler.
+  explicit CachedSampler(const CachedPathField& field);
 
   void sample(const FieldPoint* points, std::int64_t count, float* values) override;
 
@@ -96,12 +104,11 @@ private:
   std::vector<float> AbsentValues;
 };
 
-/// Traces a round's tiles with what is in the cache, as many as PassClock lets begin. What was
+/// Traces a round's tiles with what is in the cache, as many as `clock` lets begin. What was
 /// missing is added to `requests` in the order of the tiles. Throws Error(Cancelled) when
 /// `keepGoing` says so; see ForEachTile.
-TracedTiles TraceThroughCache(const PathRound& round, const SufficientBricks& bricks,
-                              const Evaluator& field, OnPathMiss onMiss, const WorkLimit& limit,
-                              bool hurries, const Arena& arena,
+TracedTiles TraceThroughCache(const PathRound& round, const CachedPathField& field,
+                              PassClock& clock, const Arena& arena,
                               const std::function<bool()>& keepGoing, RequestRanking& requests);
 
 /// Traces a round's tiles with the field itself.

@@ -2,6 +2,7 @@
 //
 // What an accelerator computes for a renderer.
 #include "Core/Render/Scene/FrameStatistics.h"
+#include "Core/Render/Tiles/Tiling.h"
 #include "Testing/Core/Render/AcceleratedScene.h"
 
 #include <optional>

@@ -2,9 +2,11 @@
 //
 // Isosurfaces along rays, through the cache and straight from the field, against a fine search in
 // double.
+#include "Core/Cache/BrickCache.h"
 #include "Core/Error.h"
 #include "Core/Image/Metrics.h"
 #include "Core/Render/Marching/Shading.h"
+#include "Core/Render/Rays/RayGeometry.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/BlendScene.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Cache/BrickSource.h"
 #include "Core/Model/MacroCells.h"
+#include "Core/Random.h"
 #include "Core/Render/Tolerance/LevelErrors.h"
 #include "Core/Render/Tolerance/LevelResampling.h"
 #include "Testing/Core/Render/VoxelScene.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Rays/LevelOfDetail.h"
+#include "Core/Render/Rays/RayGeometry.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/Scene.h"
 

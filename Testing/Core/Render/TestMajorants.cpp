@@ -5,6 +5,7 @@
 #include "Core/Error.h"
 #include "Core/Model/ScaledModel.h"
 #include "Core/Render/MacroCells/CellWalker.h"
+#include "Core/Render/MacroCells/Majorants.h"
 #include "Core/Render/Rays/LevelOfDetail.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/Scene.h"

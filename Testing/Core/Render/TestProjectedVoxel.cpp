@@ -3,6 +3,7 @@
 // Levels of detail of volumes whose voxels are no cubes.
 #include "Core/Random.h"
 #include "Core/Render/Rays/ProjectedVoxel.h"
+#include "Core/Render/Rays/RayGeometry.h"
 #include "Testing/Core/Render/VoxelScene.h"
 
 #include <glm/gtc/constants.hpp>

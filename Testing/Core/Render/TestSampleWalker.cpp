@@ -3,6 +3,7 @@
 // Where samples are, against what the macro-cells and the levels of detail say point by point.
 #include "Core/Parallel.h"
 #include "Core/Random.h"
+#include "Core/Render/MacroCells/Majorants.h"
 #include "Core/Render/Marching/SampleWalker.h"
 #include "Testing/Core/Render/Scene.h"
 
