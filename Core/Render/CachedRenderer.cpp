@@ -248,7 +248,7 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Dra
 {
   UnfinishedPicture& unfinished = this->Unfinished.of(scene.frame.view);
   const std::unique_ptr<KeptPicture> kept = std::move(unfinished.kept);
-  MarchedTiles tiles = kept && kept->isOf(scene) && kept->has(call.output)
+  MarchedTiles tiles = kept && kept->isOf(scene.frame) && kept->has(call.output)
                            ? kept->take(call.output)
                            : MarchedTiles(scene.frame.width, scene.frame.height);
   // Whoever takes from this picture what it has will do so again.
@@ -269,7 +269,7 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Dra
       return statistics;
     }
     if (call.limit.endsWithin(0) || call.limit.endsWithin(tiles.secondsToMarch(*scene.bricks))) {
-      unfinished.kept = std::make_unique<KeptPicture>(scene, std::move(tiles), call.output);
+      unfinished.kept = std::make_unique<KeptPicture>(scene.frame, std::move(tiles), call.output);
       return statistics;
     }
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Bricks/CachedScene.h"
 #include "Core/Render/MarchedTiles.h"
 #include "Core/Render/PictureCopy.h"
 #include "Core/Render/Scene/KeptFrame.h"
@@ -14,16 +13,13 @@ namespace inr {
 class KeptPicture
 {
 public:
-  KeptPicture(const CachedScene& scene, MarchedTiles marched, const PassOutput& output)
-      : Picture(scene.frame), SamplesChosen(AreSamplesChosen(scene)), Tiles(std::move(marched)),
-        Pixels(output)
+  KeptPicture(const Frame& picture, MarchedTiles marched, const PassOutput& output)
+      : Picture(picture), Tiles(std::move(marched)), Pixels(output)
   {}
 
-  /// Whether its rays take the same samples, as far as there are bricks.
-  bool isOf(const CachedScene& scene) const
-  {
-    return this->SamplesChosen == AreSamplesChosen(scene) && this->Picture.isOf(scene.frame);
-  }
+  /// Whether its rays take the same samples, as far as there are bricks. Those of a tolerance are
+  /// chosen for the frame, and before they are, it has another scale of its levels.
+  bool isOf(const Frame& picture) const { return this->Picture.isOf(picture); }
   /// Whether there is all that `output` takes.
   bool has(const PassOutput& output) const { return this->Pixels.isEnoughFor(output); }
   /// That, once: the pixels to `output`, and the tiles.
@@ -34,14 +30,7 @@ public:
   }
 
 private:
-  /// For a tolerance: there is one choice for each frame, and none until the field is measured.
-  static bool AreSamplesChosen(const CachedScene& scene)
-  {
-    return scene.settings.cellSampling != nullptr;
-  }
-
   KeptFrame Picture;
-  bool SamplesChosen;
   MarchedTiles Tiles;
   PictureCopy Pixels;
 };

@@ -246,7 +246,7 @@ LevelChoice Renderer::Implementation::chooseLevels(const Frame& frame, const Dra
   if (choice.final) {
     settings.cellSampling = this->Levels->sampling();
   } else {
-    choice.frame.levelOfDetailScale = 1.0;
+    choice.frame.levelOfDetailScale = 1.0; // what tells it from the one with chosen samples
   }
   return choice;
 }

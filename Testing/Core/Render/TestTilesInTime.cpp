@@ -40,7 +40,7 @@ inr::Image Whole(inr::RendererOptions options, inr::Frame frame)
   return image;
 }
 
-/// Calls until a picture has something everywhere, after which the rest may be quick.
+/// Calls until a picture of 25 tiles has something everywhere, after which the rest may be quick.
 int Finish(inr::Renderer& renderer, const inr::Frame& frame, inr::Image& image)
 {
   int blank = 0;
@@ -94,6 +94,20 @@ TEST(TilesInTime, EndWithThePictureThatIsMadeAtOnce)
     EXPECT_GT(Finish(scene.renderer, Lit(), image), 1);
     EXPECT_EQ(image.pixels, Whole(options, Lit()).pixels);
   }
+}
+
+/// Each call reaches some, whatever has come meanwhile of what others lack.
+TEST(TilesInTime, AreReachedBeforeAnyIsMarchedAgain)
+{
+  inr::RendererOptions options = SmallBricks();
+  options.cache.maximumRequests = 1; // so that tiles lack bricks for long
+  RecordedScene scene(options, Waves, Dims);
+  inr::Image image;
+  int calls = 1;
+  while (scene.renderer.render(Lit(), image, nullptr, Slowly).blank) {
+    ASSERT_LE(++calls, 5); // of 25 tiles, eight and more
+  }
+  EXPECT_GT(calls, 1);
 }
 
 TEST(TilesInTime, DoSoOfSamplesThatAreChosenForATolerance)
