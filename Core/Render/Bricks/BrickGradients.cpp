@@ -94,43 +94,60 @@ int BrickGradients::find(const SampleBatch& batch, const BrickKey* bricks, const
                          glm::vec3* gradients)
 {
   const Wish wish{missing, contribution, requests};
+  GradientBatch& inner = this->Inner;
+  this->Kernel.differentiate(this->Format, batch, which, count, inner);
   for (int axis = 0; axis < 3; ++axis) {
-    float values[SampleBatch::Capacity];
-    float offsets[SampleBatch::Capacity];
-    for (const int step : {-1, 1}) {
-      count = this->moveSamples(batch, bricks, which, count, {axis, step}, wish);
-      if (count == 0) {
-        return 0;
-      }
-      this->Kernel.sample(this->Format, this->Moved, count);
-      if (step < 0) {
-        std::copy_n(this->Moved.value, count, values);
-        std::copy_n(this->Offsets, count, offsets);
-      }
+    int rims[SampleBatch::Capacity]; // of `which`
+    int samples[SampleBatch::Capacity];
+    int others = 0;
+    for (int k = 0; k < count; ++k) {
+      rims[others] = k;
+      samples[others] = which[k];
+      others += (inner.inside[k] >> axis & 1) == 0 ? 1 : 0;
     }
-    this->differentiate(batch, bricks, which, count, axis, values, offsets, gradients);
+    float found[SampleBatch::Capacity];
+    const int known =
+        others > 0 ? this->findAtRims(batch, bricks, samples, others, axis, wish, found) : 0;
+    for (int k = 0; k < known; ++k) {
+      inner.along[axis][rims[k]] = found[k];
+    }
+    count = known < others ? rims[known] : count;
+  }
+  int source = -1;
+  glm::vec3 scale(0.0f);
+  for (int k = 0; k < count; ++k) {
+    const int path = batch.path[which[k]];
+    if (path != source) {
+      scale = this->Bricks.cache().hierarchy().scale(IdOf(bricks[path]).level);
+      source = path;
+    }
+    gradients[k] = scale * glm::vec3(inner.along[0][k], inner.along[1][k], inner.along[2][k]);
   }
   this->Found += count;
   return count;
 }
 
-void BrickGradients::differentiate(const SampleBatch& batch, const BrickKey* bricks,
-                                   const int* which, int count, int axis, const float* values,
-                                   const float* offsets, glm::vec3* gradients) const
+int BrickGradients::findAtRims(const SampleBatch& batch, const BrickKey* bricks, const int* which,
+                               int count, int axis, const Wish& wish, float* differences)
 {
-  int source = -1;
-  float scale = 0;
-  for (int k = 0; k < count; ++k) {
-    const int path = batch.path[which[k]];
-    if (path != source) {
-      const int level = IdOf(bricks[path]).level;
-      scale = static_cast<float>(this->Bricks.cache().hierarchy().scale(level)[axis]);
-      source = path;
+  float values[SampleBatch::Capacity];
+  float offsets[SampleBatch::Capacity];
+  for (const int step : {-1, 1}) {
+    count = this->moveSamples(batch, bricks, which, count, {axis, step}, wish);
+    if (count == 0) {
+      return 0;
     }
-    const float length = this->Offsets[k] - offsets[k];
-    const float difference = this->Moved.value[k] - values[k];
-    gradients[k][axis] = length > 0.0f ? difference / length * scale : 0.0f;
+    this->Kernel.sample(this->Format, this->Moved, count);
+    if (step < 0) {
+      std::copy_n(this->Moved.value, count, values);
+      std::copy_n(this->Offsets, count, offsets);
+    }
   }
+  for (int k = 0; k < count; ++k) {
+    const float length = this->Offsets[k] - offsets[k];
+    differences[k] = length > 0.0f ? (this->Moved.value[k] - values[k]) / length : 0.0f;
+  }
+  return count;
 }
 
 } // namespace inr

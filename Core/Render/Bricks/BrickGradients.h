@@ -57,17 +57,18 @@ private:
     float high;
   };
 
+  /// Along one axis, of samples whose neighbours may lie in other bricks there, or beyond the
+  /// volume. Of how many that was possible.
+  int findAtRims(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count,
+                 int axis, const Wish& wish, float* differences);
   Inside insideOf(BrickKey brick, const Move& move) const;
   bool movePath(const Move& move, const Wish& wish, BrickKey brick, bool crosses,
                 BrickPath& path) const;
   int moveSamples(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count,
                   const Move& move, const Wish& wish);
-  /// By what was found below, `values` at `offsets`, and above.
-  void differentiate(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count,
-                     int axis, const float* values, const float* offsets,
-                     glm::vec3* gradients) const;
 
-  SampleBatch Moved{};                  ///< the samples one voxel along
+  GradientBatch Inner{};                ///< of the samples, along axes whose rims are not near
+  SampleBatch Moved{};                  ///< samples one voxel along
   float Offsets[SampleBatch::Capacity]; ///< by how many voxels really, at the rim of the volume
   const SufficientBricks& Bricks;
   BrickFormat Format;

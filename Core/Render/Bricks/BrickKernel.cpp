@@ -5,78 +5,15 @@
 
 #include "Core/Inference/Lanes.h"
 #include "Core/Render/Bricks/FrontToBack.h"
+#include "Core/Render/Bricks/GradientSamples.h"
 #include "Core/Render/Bricks/IntegralCompositing.h"
 #include "Core/Render/Bricks/SampleLayout.h"
+#include "Core/Render/Bricks/StoredVoxels.h"
 
 namespace inr {
 namespace INR_ISA {
 
 namespace {
-
-struct AxisLocation
-{
-  Ints cell;
-  Floats weight;
-};
-
-AxisLocation Locate(const float* places, int lastCell)
-{
-  const Floats place = Load(places);
-  Ints cell = __builtin_convertvector(place, Ints); // not negative, so truncation is floor
-  const Ints last = lastCell - Ints{};
-  cell = cell < last ? cell : last;
-  return {cell, place - __builtin_convertvector(cell, Floats)};
-}
-
-/// Voxels as they are stored: of each lane one and its neighbour along x.
-struct FloatVoxels
-{
-  using Stored = float;
-  float first[LaneCount];
-  float second[LaneCount];
-
-  void load(int lane, const float* from)
-  {
-    this->first[lane] = from[0];
-    this->second[lane] = from[1];
-  }
-  Floats mix(Floats weight) const;
-};
-
-/// Both voxels come in one load, which is what makes integers faster than floats.
-template <typename Word, typename Voxel> struct PackedVoxels
-{
-  using Stored = Voxel;
-  static constexpr int Bits = 8 * sizeof(Voxel);
-  std::uint32_t both[LaneCount];
-
-  void load(int lane, const Voxel* from)
-  {
-    Word word;
-    std::memcpy(&word, from, sizeof(word));
-    this->both[lane] = word;
-  }
-  Floats mix(Floats weight) const;
-};
-
-using ShortVoxels = PackedVoxels<std::uint32_t, std::uint16_t>;
-using ByteVoxels = PackedVoxels<std::uint16_t, std::uint8_t>;
-
-Floats Mix(Floats a, Floats b, Floats weight) { return MultiplyAdd(b - a, weight, a); }
-
-Floats FloatVoxels::mix(Floats weight) const
-{
-  return Mix(Load(this->first), Load(this->second), weight);
-}
-
-template <typename Word, typename Voxel> Floats PackedVoxels<Word, Voxel>::mix(Floats weight) const
-{
-  Ints words;
-  std::memcpy(&words, this->both, sizeof(words));
-  const Ints mask = ((1 << Bits) - 1) - Ints{};
-  return Mix(__builtin_convertvector(words & mask, Floats),
-             __builtin_convertvector((Ints)((UInts)words >> Bits), Floats), weight);
-}
 
 /// Stored values, interpolated, of LaneCount samples from k on.
 template <typename Voxels>
@@ -100,8 +37,8 @@ Floats Interpolate(const BrickFormat& format, const SampleBatch& batch, const Lo
     rows[2].load(lane, from + dz);
     rows[3].load(lane, from + dz + dy);
   }
-  const Floats front = Mix(rows[0].mix(x.weight), rows[1].mix(x.weight), y.weight);
-  const Floats back = Mix(rows[2].mix(x.weight), rows[3].mix(x.weight), y.weight);
+  const Floats front = Mix(rows[0].pair().mix(x.weight), rows[1].pair().mix(x.weight), y.weight);
+  const Floats back = Mix(rows[2].pair().mix(x.weight), rows[3].pair().mix(x.weight), y.weight);
   return Mix(front, back, z.weight);
 }
 
@@ -341,8 +278,8 @@ int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opa
 
 } // namespace
 
-const BrickKernel Bricks = {FindShown, FindShownOnTwo, SampleRuns,
-                            Sample,    Composite,      CompositeIntegrated};
+const BrickKernel Bricks = {FindShown,     FindShownOnTwo, SampleRuns,         Sample,
+                            Differentiate, Composite,      CompositeIntegrated};
 
 } // namespace INR_ISA
 } // namespace inr

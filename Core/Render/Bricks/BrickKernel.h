@@ -89,6 +89,14 @@ struct SampleBatch
   float opacity[Room]; ///< out of `composite`: accumulated before the sample
 };
 
+/// Of samples, how the field differs along the axes.
+struct GradientBatch
+{
+  alignas(CacheLineBytes) float along[3][SampleBatch::Room]; ///< per voxel of the sample's level
+  /// Bit a: all that takes along axis a is in the sample's brick. Else `along` says nothing there.
+  std::int32_t inside[SampleBatch::Room];
+};
+
 /// What a ray has gathered.
 struct RayColor
 {
@@ -119,6 +127,11 @@ struct BrickKernel
 
   /// Finds the trilinear values of the first `count` samples, by `path` and `along`.
   void (*sample)(const BrickFormat& format, SampleBatch& batch, int count);
+
+  /// Central differences, one voxel to either side, of samples which[0 .. count), which rise, of a
+  /// batch.
+  void (*differentiate)(const BrickFormat& format, const SampleBatch& batch, const int* which,
+                        int count, GradientBatch& gradients);
 
   /// Composites `count` samples front to back until transmittance falls to `opaque`; returns how
   /// many were used. Adds to `clamped` those outside their range.

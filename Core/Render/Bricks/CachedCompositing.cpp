@@ -64,19 +64,19 @@ void CachedMarcher::compositeLast(CachedRay& state)
 
 void CachedMarcher::compositeColor(CachedRay& state, const glm::vec4& color, float length, double t)
 {
-  this->addLight(state, color, OpacityOver(length, color.w), t);
+  if (this->addLight(state, color, OpacityOver(length, color.w))) {
+    state.halfOpaqueAt = t;
+  }
 }
 
-void CachedMarcher::addLight(CachedRay& state, const glm::vec4& color, float opacity, double t)
+bool CachedMarcher::addLight(CachedRay& state, const glm::vec4& color, float opacity)
 {
   const double weight = state.color.transmittance * opacity;
   for (int channel = 0; channel < 3; ++channel) {
     state.color.rgb[channel] += weight * color[channel];
   }
   state.color.transmittance -= weight;
-  if (state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f) {
-    state.halfOpaqueAt = t;
-  }
+  return state.halfOpaqueAt < 0 && state.color.transmittance <= 0.5f;
 }
 
 void CachedMarcher::clampToRanges()
@@ -100,12 +100,21 @@ double CachedMarcher::lengthOf(int sample) const
 
 int CachedMarcher::findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const
 {
+  const ColorLookup& lookup = this->Scene.colors;
+  const StepLookup& steps = this->Scene.steps->lookup();
+  const int whole = this->Placed.count - (this->Placed.lastLength > 0 ? 1 : 0);
   double transmittance = state.color.transmittance;
   int k = 0;
   for (; k < this->Placed.count && transmittance > OpaqueTransmittance; ++k) {
-    colors[k] = this->Scene.colors.at(this->Batch.value[k]);
-    opacities[k] =
-        colors[k].w > 0.0f ? OpacityOver(static_cast<float>(this->lengthOf(k)), colors[k].w) : 0.0f;
+    const float value = this->Batch.value[k];
+    if (k < whole) {
+      const float place = lookup.logarithmic ? lookup.coordinate(value) : value;
+      colors[k] = ColorOver(steps, this->Batch.length[k], place);
+    } else { // of a length of its own
+      colors[k] = lookup.at(value);
+      colors[k].w = OpacityOver(static_cast<float>(this->lengthOf(k)), colors[k].w);
+    }
+    opacities[k] = colors[k].w;
     transmittance -= transmittance * opacities[k];
   }
   return k;

@@ -109,14 +109,10 @@ void CachedMarcher::advanceShaded(CachedRay& state)
   float opacities[SampleBatch::Capacity];
   int known = integrates ? this->findIntegrated(state, colors, opacities)
                          : this->findOpacities(state, colors, opacities);
-  double t[SampleBatch::Capacity];
+  known = this->shade(state, known, colors);
   for (int k = 0; k < known; ++k) {
-    t[k] = this->timeOf(state, k);
-  }
-  known = this->shade(state, known, t, colors);
-  for (int k = 0; k < known; ++k) {
-    if (opacities[k] > 0.0f) {
-      this->addLight(state, colors[k], opacities[k], t[k]);
+    if (opacities[k] > 0.0f && this->addLight(state, colors[k], opacities[k])) {
+      state.halfOpaqueAt = this->timeOf(state, k);
     }
   }
   if (integrates) { // no further than what is lit: it goes on from there
@@ -127,12 +123,18 @@ void CachedMarcher::advanceShaded(CachedRay& state)
   }
 }
 
-int CachedMarcher::shade(const CachedRay& state, int count, const double* t, glm::vec4* colors)
+int CachedMarcher::shade(const CachedRay& state, int count, glm::vec4* colors)
 {
+  const bool isLitFromPlaces = this->Scene.shading->view().knowsPlaces();
+  double t[SampleBatch::Capacity];
+  for (int k = 0; isLitFromPlaces && k < count; ++k) {
+    t[k] = this->timeOf(state, k);
+  }
   const bool stops = this->Missing == OnMiss::Stop;
   const SampleShader::Request request{
       state.ray, stops ? BrickGradients::Missing::Stop : BrickGradients::Missing::OneSided,
-      static_cast<float>(state.color.transmittance), this->Placed.bricks, t};
+      static_cast<float>(state.color.transmittance), this->Placed.bricks,
+      isLitFromPlaces ? t : nullptr};
   const std::size_t asked = this->Notes.requests.entries().size();
   const int known = this->Shader->shade(this->Batch, count, request, this->Notes.requests, colors);
   if (!stops) {

@@ -64,12 +64,13 @@ private:
   int findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const;
   /// The same of what has the colours of all values that it passes, and until a brick is not there.
   int findIntegrated(CachedRay& state, glm::vec4* colors, float* opacities);
-  /// Lights the first `count` samples, which are at `t`; for how many of them that was possible.
-  int shade(const CachedRay& state, int count, const double* t, glm::vec4* colors);
+  /// Lights the first `count` samples; for how many of them that was possible.
+  int shade(const CachedRay& state, int count, glm::vec4* colors);
   /// What is known of the field behind a sample of the batch.
   KnownValue knownBehind(int sample) const;
   void compositeColor(CachedRay& state, const glm::vec4& color, float length, double t);
-  void addLight(CachedRay& state, const glm::vec4& color, float opacity, double t);
+  /// Whether light was halved by that, and not before.
+  bool addLight(CachedRay& state, const glm::vec4& color, float opacity);
   void project(CachedRay& state);
   void finishProjection(CachedRay& state) const;
   bool isDone(const CachedRay& state) const;

@@ -26,8 +26,9 @@ int SampleShader::shade(const SampleBatch& batch, int count, const Request& requ
   const glm::dvec3 toEye = lighting.toEye(request.ray);
   for (int k = 0; k < found; ++k) {
     glm::vec4& color = colors[visible[k]];
-    const glm::vec3 lit = lighting.shade(glm::vec3(color), toEye,
-                                         request.ray.at(request.t[visible[k]]), gradients[k]);
+    const glm::dvec3 index =
+        request.t != nullptr ? request.ray.at(request.t[visible[k]]) : glm::dvec3(0.0);
+    const glm::vec3 lit = lighting.shade(glm::vec3(color), toEye, index, gradients[k]);
     color = glm::vec4(lit, color.w);
   }
   return found < seen ? visible[found] : count;

@@ -24,7 +24,7 @@ public:
     BrickGradients::Missing missing;
     float transmittance;    ///< of the ray so far
     const BrickKey* bricks; ///< of the batch's paths
-    const double* t;        ///< of the samples
+    const double* t;        ///< of the samples; null unless ShadingView::knowsPlaces()
   };
 
   /// Lights `colors`, straight RGB and opacity per unit distance of the first `count` samples of

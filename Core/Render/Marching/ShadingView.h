@@ -32,6 +32,9 @@ struct ShadingView
     return -glm::normalize(glm::dmat3(this->toWorld) * ray.direction);
   }
 
+  /// Whether it matters where a sample is.
+  INR_HOST_DEVICE bool knowsPlaces() const { return this->lightCount > this->constantCount; }
+
   /// See Shading.
   INR_HOST_DEVICE glm::vec3 shade(const glm::vec3& color, const glm::dvec3& toEye,
                                   const glm::dvec3& index, const glm::vec3& gradient) const
@@ -42,11 +45,11 @@ struct ShadingView
     if (!(steepness > 0)) {
       return result;
     }
-    const glm::dvec3 normal = across / steepness;
+    const glm::dvec3 normal = across * (1.0 / steepness);
     for (int k = 0; k < this->constantCount; ++k) {
       result += this->lit(color, toEye, normal, this->constant[k]);
     }
-    if (this->lightCount > this->constantCount) {
+    if (this->knowsPlaces()) {
       const glm::dvec3 world(this->toWorld * glm::dvec4(index, 1.0));
       for (int k = this->constantCount; k < this->lightCount; ++k) {
         result += this->lit(color, toEye, normal, IlluminationAt(this->lights[k], world));
