@@ -8,8 +8,8 @@
  * type. Only those bricks of voxels are decoded that the file's macro-cells say a surface may run
  * through, and where a surface leaves them the bricks that it goes on in: it has no holes but where
  * it meets the volume's faces. A piece that lies wholly where the ranges of the file know nothing
- * of it stays unseen; ranges taken from all voxels, as vtkINRWriter stores them, miss none of
- * level 0.
+ * of it stays unseen; ranges taken from all decoded voxels, as vtkINRWriter stores them of up to
+ * 2^28, miss none of level 0.
  *
  * The points have the isovalue as scalars and, unless told otherwise, normals towards smaller
  * values. In parallel each process makes its share of the bricks.
@@ -52,9 +52,9 @@ public:
   ///@}
 
   ///@{
-  /// Resolution level, 0 (the native grid) to 30; beyond the coarsest level that has two voxels per
-  /// axis, that one. -1 (default) = the finest one that takes at most MaximumSamples, or the
-  /// coarsest.
+  /// Resolution level, 0 (the reader's grid) to 30; beyond the last level that has two voxels per
+  /// axis, or is one brick of eight or more, that one. -1 (default) = the finest one that takes at
+  /// most MaximumSamples, or the coarsest.
   vtkSetClampMacro(Level, int, -1, 30);
   vtkGetMacro(Level, int);
   ///@}
@@ -69,7 +69,7 @@ public:
 
   ///@{
   /// MiB that the surfaces may take while they are made; beyond that there is an error and an empty
-  /// output. Default 2048, some 30 million triangles.
+  /// output. Default 2048, some 40 million triangles.
   vtkSetClampMacro(MemoryLimit, int, 1, VTK_INT_MAX);
   vtkGetMacro(MemoryLimit, int);
   ///@}

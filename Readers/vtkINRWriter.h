@@ -121,13 +121,13 @@ public:
 
   ///@{
   /// MiB for an input that is not in memory yet, and its training. What would fill more than half
-  /// of it is never read as a whole but in pieces, two or three times, and the default model is
-  /// made to fit; a warning says where that made it smaller. An input that is in memory, or fits,
-  /// is trained as a whole by a model of any size, which the limit does not change. Sources often
-  /// do not tell of all their arrays: where four times of what one tells would fill more than half
-  /// of the limit, it is asked for one voxel first. 0 (default) = half of the machine's memory, or
-  /// of what a batch system or container lets the process have of it. Several processes share it on
-  /// each machine.
+  /// of it is never read as a whole but in pieces, two or three times (more through filters that
+  /// need neighbours), and the default model is made to fit; a warning says where that made it
+  /// smaller. An input that is in memory, or fits, is trained as a whole by a model of any size,
+  /// which the limit does not change. Sources often do not tell of all their arrays: where four
+  /// times of what one tells would fill more than half of the limit, it is asked for one voxel
+  /// first. 0 (default) = half of the machine's memory, or of what a batch system or container lets
+  /// the process have of it. Several processes share it on each machine.
   ///
   ///     writer = servermanager.writers.INRWriter(Input=source, FileName="model.inr",
   ///                                              MemoryLimit=1024)

@@ -35,8 +35,7 @@ struct NativeGrid
   }
 };
 
-/// The grid of a coarser level, see inr::VoxelsAtLevel, whose voxels are means over those of the
-/// native one: it fills the same space.
+/// The grid of a coarser level, see inr::VoxelsAtLevel: it fills the same space.
 struct LevelGrid
 {
   LevelGrid(const NativeGrid& native, int level);

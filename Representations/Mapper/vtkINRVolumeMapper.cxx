@@ -203,7 +203,7 @@ bool vtkINRVolumeMapper::GetConverged() const { return this->Self->Painter.last(
 double vtkINRVolumeMapper::GetCacheHitRate() const
 {
   const inr::PaintedFrame& last = this->Self->Painter.last();
-  if (last.rgba.pixels.empty()) {
+  if (last.rgba.pixels.empty() && !last.converged) {
     return 0;
   }
   return last.statistics.hitRate();

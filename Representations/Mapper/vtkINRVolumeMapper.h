@@ -253,7 +253,8 @@ public:
    * them, as instantvnr and cINR write them and as a reader's ScaleFactor above 1 makes them, are
    * as with 0. It needs the cache: CacheMode NETWORK_ONLY does without. It has to know the field
    * where that can be seen, which the first picture waits for: up to ten times as long as decoding
-   * that; where it is more than some 450 million voxels, all are of the full resolution. Rays end
+   * that; where it is more than some 450 million voxels, it goes by the ranges of macro-cells
+   * alone, and most are of the full resolution. Rays end
    * at 0.999 of opacity, so below 0.3 it cannot be kept in opaque media.
    */
   vtkSetClampMacro(ErrorTolerance, double, -1.0, 255.0);
@@ -490,10 +491,11 @@ public:
   ///@{
   /**
    * About the last frame and the cache: whether it was shown and every sample came from the level
-   * it asked for and, of path tracing, SamplesPerPixel were taken (false before the first frame and
-   * when one is refused or aborted); the part of the samples that did (0 to 1; 1 where the view
-   * misses the volume, for nothing is missing, and 0 when nothing was drawn); and the memory in MiB
-   * that the caches of all mappers of the process have in use now (0 while this one has none).
+   * it asked for or, of CACHE_ONLY, the best that a full cache has, and, of path tracing,
+   * SamplesPerPixel were taken (false before the first frame and when one is refused or aborted);
+   * the part of the samples that did (0 to 1; 1 where the view misses the volume, for nothing is
+   * missing, and 0 when nothing was drawn); and the memory in MiB that the caches of all mappers of
+   * the process have in use now (0 while this one has none).
    */
   bool GetConverged() const;
   double GetCacheHitRate() const;

@@ -37,6 +37,8 @@ public:
   static vtkMTimeType GetLatestShownMTime();
   /// Whether the renderer has had this drawn since then; else it is out of sight.
   bool GetDrawn() const { return this->Drawn.GetMTime() > this->Shown.GetMTime(); }
+  /// Whether that is so, in a view that was drawn.
+  bool GetOutOfSight() const { return this->Shown.GetMTime() > 0 && !this->GetDrawn(); }
   bool GetDrawnHere() const { return this->DrawnHere; }
   ///@}
 

@@ -3,6 +3,7 @@
 
 #include "FrameStatus.h"
 #include "SharedDrawing.h"
+#include "vtkINRLODVolume.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
@@ -27,6 +28,12 @@ namespace {
 constexpr double Margin = 8; // pixels
 constexpr int LargestFont = 14;
 constexpr int SmallestFont = 7; ///< that can be read
+
+std::string NameOf(vtkINRVolumeMapper* mapper)
+{
+  const char* array = mapper->GetArrayName();
+  return array && *array ? array : "volume";
+}
 
 std::string LevelsOf(const inr::FrameStatus& status)
 {
@@ -88,10 +95,20 @@ vtkINRStatusActor::vtkINRStatusActor()
   this->PickableOff();
 }
 
+void vtkINRStatusActor::SetVolume(vtkINRLODVolume* volume, vtkINRVolumeMapper* mapper)
+{
+  this->StatusVolume = volume;
+  this->StatusMapper = mapper;
+}
+
 std::string vtkINRStatusActor::GetText()
 {
   vtkINRVolumeMapper* mapper = this->StatusMapper;
-  return mapper ? this->TextOf(inr::StatusOf(mapper)) : std::string();
+  if (!mapper) {
+    return {};
+  }
+  return this->StatusVolume->GetOutOfSight() ? NameOf(mapper) + ": out of sight"
+                                             : this->TextOf(inr::StatusOf(mapper));
 }
 
 std::string vtkINRStatusActor::TextOf(const inr::FrameStatus& status)
@@ -100,10 +117,9 @@ std::string vtkINRStatusActor::TextOf(const inr::FrameStatus& status)
   if (!status.drawn) {
     return {};
   }
-  const char* array = mapper->GetArrayName();
   std::ostringstream text;
   text.imbue(std::locale::classic());
-  text << std::fixed << (array && *array ? array : "volume") << ": " << LevelsOf(status) << ", "
+  text << std::fixed << NameOf(mapper) << ": " << LevelsOf(status) << ", "
        << ProgressOf(status, mapper) << "\n";
   text << ClampedOf(status) << "cache " << std::setprecision(0) << status.cacheMiB << " MiB, ";
   if (status.processes > 1) {

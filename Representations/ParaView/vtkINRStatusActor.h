@@ -17,6 +17,7 @@
 
 #include <string> // for return value
 
+class vtkINRLODVolume;
 class vtkINRVolumeMapper;
 class vtkMultiProcessController;
 class vtkRenderWindow;
@@ -32,15 +33,16 @@ public:
   vtkTypeMacro(vtkINRStatusActor, vtkTextActor);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Whose picture it is about; it must outlive this.
-  void SetVolumeMapper(vtkINRVolumeMapper* mapper) { this->StatusMapper = mapper; }
+  /// What it is about, and whose pictures; they must outlive this.
+  void SetVolume(vtkINRLODVolume* volume, vtkINRVolumeMapper* mapper);
 
   /// Those that draw a part of `window` each, and then must draw this at the same time; null when
   /// one draws it all. Of several, the bounds are everywhere while the window is drawn, as ParaView
   /// composes what lies within them; else nowhere, or cameras would be set to see all of them.
   void SetProcesses(vtkMultiProcessController* processes, vtkRenderWindow* window);
 
-  /// Two lines on the mapper's latest picture in this process; empty when it has drawn none.
+  /// Two lines on the mapper's latest picture in this process, or one where the volume is out of
+  /// sight; empty when it has drawn none.
   std::string GetText();
 
   /// Nothing: the picture comes later in the frame.
@@ -63,6 +65,7 @@ private:
   /// Makes letters as large as the view is wide enough for.
   void FitInto(vtkViewport* viewport);
 
+  vtkINRLODVolume* StatusVolume = nullptr;
   vtkINRVolumeMapper* StatusMapper = nullptr;
   vtkMultiProcessController* Processes = nullptr;
   vtkWeakPointer<vtkRenderWindow> Window;

@@ -68,7 +68,7 @@ vtkINRVolumeRepresentation::vtkINRVolumeRepresentation()
   this->Actor->SetProperty(this->Property);
   this->Actor->SetLODMapper(this->OutlineMapper);
   this->Refinement = std::make_unique<inr::PictureRefinement>(*this->GetMapper());
-  this->Status->SetVolumeMapper(this->GetMapper());
+  this->Status->SetVolume(this->GetVolume(), this->GetMapper());
   this->Status->VisibilityOff();
 }
 
@@ -101,7 +101,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
   } else if (request == vtkPVView::REQUEST_RENDER()) {
     this->Refinement->begin(*vtkPVRenderView::SafeDownCast(this->GetView()));
     this->TakeDelivery(in);
-    static_cast<vtkINRLODVolume*>(this->Actor.Get())->Show(this->DrawsHere());
+    this->GetVolume()->Show(this->DrawsHere());
     this->UpdateMapper();
     this->ReportColouring();
     this->UpdateStatus();
@@ -322,6 +322,11 @@ void vtkINRVolumeRepresentation::SetVisibility(bool on)
 void vtkINRVolumeRepresentation::UpdateStatus()
 {
   this->Status->SetVisibility(this->ShowStatus && this->IsShown());
+}
+
+vtkINRLODVolume* vtkINRVolumeRepresentation::GetVolume()
+{
+  return static_cast<vtkINRLODVolume*>(this->Actor.Get());
 }
 
 vtkINRVolumeMapper* vtkINRVolumeRepresentation::GetMapper()

@@ -20,6 +20,7 @@
 #include <memory> // for Refinement
 #include <string> // for LastProblem
 
+class vtkINRLODVolume;
 class vtkINRStatusActor;
 class vtkINRVolumeMapper;
 class vtkMultiProcessController;
@@ -117,6 +118,7 @@ private:
   vtkINRVolumeRepresentation(const vtkINRVolumeRepresentation&) = delete;
   void operator=(const vtkINRVolumeRepresentation&) = delete;
 
+  vtkINRLODVolume* GetVolume();
   vtkINRVolumeMapper* GetMapper();
   void UpdateStatus();
   void FindOthers();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What vtkINRVolumeRepresentation hands on to its mapper, and what it tells of it.
 #include "PictureRefinement.h"
+#include "vtkINRLODVolume.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkINRVolumeRepresentation.h"
 
@@ -125,19 +126,23 @@ void vtkINRVolumeRepresentation::SetShownElsewhere(bool on)
 
 bool vtkINRVolumeRepresentation::GetConverged()
 {
-  return this->IsShown() && this->GetMapper()->GetConverged() && !this->Refinement->goesOn();
+  const bool isComplete = this->GetVolume()->GetOutOfSight() ||
+                          (this->GetMapper()->GetConverged() && !this->Refinement->goesOn());
+  return this->IsShown() && isComplete;
 }
 
 double vtkINRVolumeRepresentation::GetCacheHitRate()
 {
-  return this->IsShown() ? this->GetMapper()->GetCacheHitRate() : 0.0;
+  const bool isOutOfSight = this->GetVolume()->GetOutOfSight();
+  return this->IsShown() ? (isOutOfSight ? 1.0 : this->GetMapper()->GetCacheHitRate()) : 0.0;
 }
 
 double vtkINRVolumeRepresentation::GetCacheUsed() { return this->GetMapper()->GetCacheUsed(); }
 
 double vtkINRVolumeRepresentation::GetFrameTime()
 {
-  return this->IsShown() ? this->GetMapper()->GetFrameTime() : 0.0;
+  const bool isDrawn = this->IsShown() && !this->GetVolume()->GetOutOfSight();
+  return isDrawn ? this->GetMapper()->GetFrameTime() : 0.0;
 }
 
 const char* vtkINRVolumeRepresentation::GetBackendInUse()

@@ -158,6 +158,18 @@ def converged():
     return display.GetPropertyValue("Converged") == 1 and rate == 1
 
 
+# What is out of sight, the renderer does not draw; there is nothing to wait for.
+check(converged(), "a complete picture is not said to be one")
+view.GetActiveCamera().Yaw(180)
+picture(view, "status-away")
+(actor,) = actors()
+check(actor.GetInput() == ARRAY + ": out of sight", "out of sight it says", actor.GetInput())
+display.UpdatePropertyInformation()
+found = [display.GetPropertyValue(name) for name in ("Converged", "CacheHitRate", "FrameTime")]
+check(found == [1, 1, 0], "of what is out of sight it is told", found)
+view.GetActiveCamera().Yaw(180)
+picture(view, "status-back")
+
 # Nothing is said of a picture that is not shown any more.
 check(converged() and actors(), "a complete picture is not said to be one")
 simple.ColorBy(display, None)  # which no volume can be drawn in

@@ -71,9 +71,10 @@ int SampleLengths(int levels);
 
 /// A colour table with its opacities corrected for samples of 1, 3, 2, 6, ... steps:
 /// 1 - (1 - opacity)^length. Between the entries of the colour table as many are put as linear
-/// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows. Opacity near 1,
-/// which short samples leave more steeply than rows can follow, is marked as steep: see StepLookup.
-/// Entries are floats: what lets through less than 2^-25 is opaque.
+/// interpolation needs to follow the power within 2e-4 of it, up to 2^14 rows, which may end within
+/// twice that. Opacities above 1/2 in samples shorter than a unit distance are followed within
+/// 1e-2, and where they are left more steeply, marked as steep: see StepLookup. Entries are floats:
+/// what lets through less than 2^-25 is opaque.
 class StepTable
 {
 public:

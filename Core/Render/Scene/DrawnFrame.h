@@ -5,9 +5,9 @@
 
 namespace inr {
 
-/// The frame as it is drawn, through a cache or not. What such a picture does not depend on is the
-/// same in all of them, as far as that can be told from the frame: a tolerance that a picture is
-/// drawn without still tells two of them apart.
+/// The frame as it is drawn, through a cache or not. Much of what such a picture does not depend on
+/// is the same in all of them; not the seed of one that has no random offsets, nor a tolerance that
+/// it is drawn without: two that differ in that are told apart.
 Frame AsItIsDrawn(Frame frame, bool cached);
 
 } // namespace inr

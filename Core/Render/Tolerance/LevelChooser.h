@@ -19,7 +19,8 @@ namespace inr {
 ///
 /// CellMeasurement finds what samples of cells get wrong, PixelErrors what that does to a pixel,
 /// LookAhead how much of it each cell may do. Cells that no ray of LookAhead meets have every
-/// sample, from the full resolution, as have those that would take too long to measure.
+/// sample, from the full resolution. Where measuring would take too long, samples are judged by the
+/// ranges of their cells alone.
 class LevelChooser
 {
 public:

@@ -52,13 +52,14 @@ class CheckpointFile
 {
 public:
   /// Reads all but the arrays. Throws Error(CannotRead), Error(Malformed) for what is no checkpoint
-  /// or a broken one, Error(Unsupported) for one of a later version.
+  /// or a broken one, Error(InvalidModel) for one whose header lacks something, Error(Unsupported)
+  /// for one of a later version.
   explicit CheckpointFile(const std::string& path);
 
   const TrainingIdentity& identity() const { return this->Identity; }
   const TrainingState& state() const { return this->State; }
 
-  /// Fills the arrays, once it has found all of the file right. Throws Error(Malformed) when its
+  /// Fills the arrays, once it has found them right. Throws Error(Malformed) when its
   /// arrays are others or broken; then nothing has changed.
   void load(const StateArrays& arrays) const;
 

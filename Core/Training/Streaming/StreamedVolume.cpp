@@ -37,15 +37,16 @@ BlockGrid BlocksFor(const VolumeReader& reader, std::int64_t mostVoxels, int pro
   return blocks;
 }
 
-/// One bar in each of `count` equal parts of them all.
+/// One bar in each of `count` parts of them all, which are as equal as can be: no bar twice.
 std::vector<std::int64_t> ChooseBars(std::int64_t bars, std::int64_t count, std::uint64_t seed)
 {
   const std::uint64_t stream = StreamSeed(seed, RandomStream::Bars);
   std::vector<std::int64_t> chosen;
   for (std::int64_t k = 0; k < count; ++k) {
+    const std::int64_t first = k * bars / count;
+    const std::int64_t size = (k + 1) * bars / count - first;
     const double within = RandomUnit(stream, static_cast<std::uint64_t>(k));
-    const double share = (static_cast<double>(k) + within) / static_cast<double>(count);
-    chosen.push_back(static_cast<std::int64_t>(share * static_cast<double>(bars)));
+    chosen.push_back(first + static_cast<std::int64_t>(within * static_cast<double>(size)));
   }
   return chosen;
 }

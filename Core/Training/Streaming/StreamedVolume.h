@@ -51,7 +51,8 @@ public:
   /// Lets the pool be trained from; the share `rereads` of it is to be read again.
   SamplePool& begin(double rereads);
 
-  /// The largest share that leaves not more than three times the volume to be read in all.
+  /// The largest share that leaves not more than three times the volume to be read in all, as far
+  /// as the survey has left that and but for what is read around the bars of the quality.
   double mostRereads() const;
 
   /// Reads the block again that the pool wants, or waits a moment when there is none. Throws

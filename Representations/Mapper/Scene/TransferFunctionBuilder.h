@@ -10,10 +10,11 @@ class vtkVolumeProperty;
 namespace inr {
 
 /// Samples the colour (RGB or gray) and the scalar opacity function of component 0 into one table
-/// over the union of their node ranges; logarithmic when the colour function is. The table has
-/// 1,025 to 16,385 entries, as many as the closest pair of nodes asks for; where it asks for more,
-/// up to 64 times as many, they are means of what is between them. Outside that range both
-/// functions are constant: their end values, nothing when their clamping is off.
+/// over the union of their node ranges; logarithmic when the colour function is, unless opacities
+/// of negative values vary. The table has 1,025 to 16,385 entries, as many as the closest pair of
+/// nodes asks for; where it asks for more, up to 64 times as many, they are means of what is
+/// between them. Outside that range both functions are constant: their end values, nothing when
+/// their clamping is off.
 TransferFunction BuildTransferFunction(vtkVolumeProperty* property);
 
 /// The table of the last property seen, rebuilt when one of its two functions changed.
