@@ -318,7 +318,8 @@ TEST(BrickLoader, IsPausedAndAskedWhileItsSourceIsBeingMade)
   EXPECT_TRUE(answered);
   source->made = true;
   other.join();
-  EXPECT_EQ(loader.begun(), 0); // paused meanwhile: it is not begun
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(source->calls, 0); // paused meanwhile: nothing is begun
   loader.loadFor(Forever);
   EXPECT_EQ(Receive(loader).size(), 3u);
 }

@@ -96,18 +96,34 @@ TEST(TilesInTime, EndWithThePictureThatIsMadeAtOnce)
   }
 }
 
-/// Each call reaches some, whatever has come meanwhile of what others lack.
-TEST(TilesInTime, AreReachedBeforeAnyIsMarchedAgain)
+/// All bricks at once: whatever a tile has shown, it is to be marched again.
+inr::RendererOptions AllAtOnce()
 {
   inr::RendererOptions options = SmallBricks();
-  options.cache.maximumRequests = 1; // so that tiles lack bricks for long
-  RecordedScene scene(options, Waves, Dims);
+  options.cache.maximumRequests = 100000;
+  return options;
+}
+
+TEST(TilesInTime, AreReachedBeforeAnyIsMarchedAgain)
+{
+  RecordedScene scene(AllAtOnce(), Waves, Dims);
   inr::Image image;
   int calls = 1;
   while (scene.renderer.render(Lit(), image, nullptr, Slowly).blank) {
-    ASSERT_LE(++calls, 5); // of 25 tiles, eight and more
+    ASSERT_LE(++calls, 4); // of 25 tiles, eight and more
   }
   EXPECT_GT(calls, 1);
+}
+
+TEST(TilesInTime, AreCompleteWhenAllAreMarchedAgain)
+{
+  RecordedScene scene(AllAtOnce(), Waves, Dims);
+  inr::Image image;
+  int calls = 0;
+  while (!scene.renderer.render(Lit(), image, nullptr, Slowly).complete) {
+    ASSERT_LE(++calls, 40);
+  }
+  EXPECT_EQ(image.pixels, Whole(AllAtOnce(), Lit()).pixels);
 }
 
 TEST(TilesInTime, DoSoOfSamplesThatAreChosenForATolerance)
