@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
+#include "Readers/Extents.h"
 #include "Readers/Grid/LevelSampler.h"
 #include "Readers/Grid/NativeGrid.h"
 #include "Readers/Grid/Scalars.h"
@@ -144,7 +145,7 @@ int vtkINRDecode::RequestData(vtkInformation*, vtkInformationVector**,
   try {
     int extent[6];
     outInfo->Get(Pipeline::UPDATE_EXTENT(), extent);
-    if (extent[1] < extent[0] || extent[3] < extent[2] || extent[5] < extent[4]) {
+    if (IsEmpty(extent)) {
       return 1; // RequestInformation has said why, or there are more processes than voxels
     }
     vtkNew<vtkInformation> step; // the pipeline knows the grid of one time step only

@@ -68,15 +68,6 @@ std::array<int, 6> RequestedPiece(vtkInformation* outInfo, int ghostLevels)
                      outInfo->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()), ghostLevels);
 }
 
-bool IsWithin(const std::array<int, 6>& extent, const glm::ivec3& dims)
-{
-  bool within = true;
-  for (int axis = 0; axis < 3; ++axis) {
-    within = within && extent[2 * axis] >= 0 && extent[2 * axis + 1] < dims[axis];
-  }
-  return within;
-}
-
 // Whether an upstream file may have been made of more voxels than it tells: training out of core
 // stores at most 1,024 along an axis.
 bool MayHideVoxels(const inr::Model& header)
@@ -324,7 +315,9 @@ void vtkINRReader::ReadData(vtkInformation* outInfo)
   if (IsEmpty(extent.data())) { // more processes than cells
     return;
   }
-  if (!IsWithin(extent, this->Internal->Grid.dims)) { // no fault of the file's
+  int whole[6];
+  WholeExtent(this->Internal->Grid.dims, whole);
+  if (!Contains(whole, extent.data())) { // no fault of the file's
     vtkErrorMacro("The extent that was asked for is not within the grid, which has "
                   << this->Internal->Grid.dims.x << " x " << this->Internal->Grid.dims.y << " x "
                   << this->Internal->Grid.dims.z << " points; ask for a part of these.");

@@ -14,13 +14,6 @@ namespace {
 
 constexpr vtkIdType PieceSize = vtkIdType{1} << 22;
 
-void RequireReached(int result)
-{
-  if (result == 0) {
-    throw inr::Error(inr::ErrorCode::CannotRead, "the other processes cannot be reached");
-  }
-}
-
 /// How many processes have this key; one at least, since it is one's.
 std::int64_t CountOf(std::uint64_t key, const std::vector<std::uint64_t>& keys)
 {

@@ -48,11 +48,12 @@ unsigned ButtonsAfter(unsigned long event, unsigned before)
   }
 }
 
-bool ShowsInteraction(vtkRenderWindow* window)
+} // namespace
+
+bool IsInteractive(vtkRenderWindow* window)
 {
   return window && window->GetDesiredUpdateRate() >= ImageReduction::StillRate;
 }
-} // namespace
 
 RefinementTimer::RefinementTimer(std::function<bool()> mayRefine, std::function<void()> begin)
     : MayRefine(std::move(mayRefine)), Begin(std::move(begin))
@@ -141,7 +142,7 @@ bool RefinementTimer::isBusy() const
   // VTK's styles have the rate of interactive pictures as long as a button is down; ParaView says
   // so by events.
   vtkRenderWindow* window = this->Interactor->GetRenderWindow();
-  return this->Interacting || !window || ShowsInteraction(window);
+  return this->Interacting || !window || IsInteractive(window);
 }
 
 // ParaView 5.11's selections by mouse begin as an interaction and end without a word: to the view,
@@ -198,7 +199,7 @@ void RefinementTimer::fire()
   }
   this->Begin();
   interactor->Render(); // which may delete the mapper, and this
-  if (!life.expired() && !this->Interacting && ShowsInteraction(interactor->GetRenderWindow())) {
+  if (!life.expired() && !this->Interacting && IsInteractive(interactor->GetRenderWindow())) {
     // The view believes in an interaction that was forgotten before this observed any.
     interactor->InvokeEvent(vtkCommand::EndInteractionEvent);
     interactor->Render();

@@ -14,6 +14,10 @@ class vtkRenderWindowInteractor;
 
 namespace inr {
 
+/// Whether the application wants a picture of a window, which may be null, soon, as while the
+/// camera moves.
+bool IsInteractive(vtkRenderWindow* window);
+
 /// Has a window rendered again a moment later, through its interactor: that way it is the
 /// application that renders, with everything it does around a picture, and only when its event loop
 /// is idle. Waits while somebody interacts with the window or the application says that it is busy.

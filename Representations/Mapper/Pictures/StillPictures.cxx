@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Pictures/StillPictures.h"
 
-#include "Representations/Mapper/Pictures/ImageReduction.h"
-
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 
 #include <algorithm>
 
 namespace inr {
-
-bool IsInteractive(vtkRenderWindow* window)
-{
-  return window->GetDesiredUpdateRate() >= ImageReduction::StillRate;
-}
 
 double TimeLimit(vtkRenderer* renderer, const PaintSettings& settings)
 {

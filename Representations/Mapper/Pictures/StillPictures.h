@@ -14,9 +14,6 @@ class vtkRenderer;
 
 namespace inr {
 
-/// Whether the application wants a picture soon, as while the camera moves.
-bool IsInteractive(vtkRenderWindow* window);
-
 /// Seconds for a picture, or for what a click selects of one; 0: as many as it takes.
 double TimeLimit(vtkRenderer* renderer, const PaintSettings& settings);
 

@@ -17,13 +17,6 @@ namespace {
 
 constexpr vtkIdType Piece = vtkIdType{1} << 26; ///< values at once: MPI counts bytes in 32 bits
 
-void RequireSuccess(int succeeded)
-{
-  if (succeeded == 0) {
-    throw Error(ErrorCode::CannotRead, "the other processes cannot be reached");
-  }
-}
-
 } // namespace
 
 PictureGroup::PictureGroup(vtkMultiProcessController* controller, std::vector<int> order)
@@ -51,7 +44,7 @@ int PictureGroup::largest(int said) const
 {
   int found = said;
   if (!this->isAlone()) {
-    RequireSuccess(this->Controller->AllReduce(&said, &found, 1, vtkCommunicator::MAX_OP));
+    RequireReached(this->Controller->AllReduce(&said, &found, 1, vtkCommunicator::MAX_OP));
   }
   return found;
 }
@@ -83,7 +76,7 @@ void PictureGroup::reduce(std::vector<float>& values, Reduction how) const
   const auto count = static_cast<vtkIdType>(values.size());
   const int operation = how == Reduction::Sum ? vtkCommunicator::SUM_OP : vtkCommunicator::MIN_OP;
   for (vtkIdType begin = 0; begin < count; begin += Piece) {
-    RequireSuccess(this->Controller->AllReduce(values.data() + begin, reduced.data() + begin,
+    RequireReached(this->Controller->AllReduce(values.data() + begin, reduced.data() + begin,
                                                std::min(Piece, count - begin), operation));
   }
   values.swap(reduced);
@@ -104,7 +97,7 @@ Image PictureGroup::whole(const Image& part) const
   this->together([&] { sum = part; });
   const auto count = static_cast<vtkIdType>(part.pixels.size());
   for (vtkIdType begin = 0; !this->isAlone() && begin < count; begin += Piece) {
-    RequireSuccess(this->Controller->Reduce(part.pixels.data() + begin, sum.pixels.data() + begin,
+    RequireReached(this->Controller->Reduce(part.pixels.data() + begin, sum.pixels.data() + begin,
                                             std::min(Piece, count - begin), vtkCommunicator::SUM_OP,
                                             this->drawer()));
   }
@@ -117,9 +110,9 @@ void PictureGroup::tellAll(std::vector<int>& numbers) const
     return;
   }
   int count = this->draws() ? static_cast<int>(numbers.size()) : 0;
-  RequireSuccess(this->Controller->Broadcast(&count, 1, this->drawer()));
+  RequireReached(this->Controller->Broadcast(&count, 1, this->drawer()));
   this->together([&] { numbers.resize(static_cast<std::size_t>(count)); });
-  RequireSuccess(count == 0 ||
+  RequireReached(count == 0 ||
                  this->Controller->Broadcast(numbers.data(), count, this->drawer()) != 0);
 }
 
@@ -130,7 +123,7 @@ std::vector<unsigned char> PictureGroup::gather(const std::vector<unsigned char>
   if (this->isAlone()) {
     return own;
   }
-  RequireSuccess(this->Controller->Gather(own.data(), all.data(),
+  RequireReached(this->Controller->Gather(own.data(), all.data(),
                                           static_cast<vtkIdType>(own.size()), this->drawer()));
   return all;
 }
