@@ -7,6 +7,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace test::shading {
 
 inr::Light Sun(const glm::dvec3& direction, const glm::vec3& color = glm::vec3(1))
@@ -76,6 +78,32 @@ TEST(Shading, FollowsTheFormulaWhateverTheVolumesShape)
   EXPECT_EQ(shading.view().shade(color, shading.view().toEye(ray), {}, glm::vec3(0)), 0.3f * color);
 }
 
+TEST(Shading, KnowsWhereLightsAre)
+{
+  inr::Frame frame;
+  frame.shading = inr::Material{0.3f, 0.5f, 0.7f, 5.0f};
+  inr::Light lamp;
+  lamp.kind = inr::LightKind::Point;
+  lamp.position = {4, -3, 20};
+  lamp.color = glm::vec3(0.8f, 1.0f, 0.5f);
+  frame.lights = {lamp};
+  const inr::Shading shading(frame);
+  inr::Ray ray;
+  ray.direction = glm::dvec3(0.3, 0.2, 1.0);
+  const glm::dvec3 toEye = -glm::normalize(ray.direction);
+  const glm::vec3 color(0.2f, 0.6f, 1.0f);
+  const glm::vec3 gradient(-1, 2, 0.5f);
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(gradient));
+  for (const glm::dvec3& index : {glm::dvec3(1, 2, 3), glm::dvec3(-7, 5, 30)}) {
+    const glm::dvec3 truth =
+        Truth(*frame.shading, glm::dvec3(color), normal, glm::normalize(lamp.position - index),
+              toEye, glm::dvec3(lamp.color));
+    const glm::vec3 shaded =
+        shading.view().shade(color, shading.view().toEye(ray), index, gradient);
+    EXPECT_LT(glm::length(glm::dvec3(shaded) - truth), 1e-6);
+  }
+}
+
 TEST(Shading, OfARampIsThatOfItsDirection)
 {
   const glm::i64vec3 dims(20, 20, 20);
@@ -104,6 +132,24 @@ TEST(Shading, ThroughTheCacheEqualsThatOverTheDenseVoxels)
                      EXPECT_GT(inr::ImagePsnr(cached, dense), 75);
                      EXPECT_LT(inr::ImageMaximumError(cached, dense), 2e-2f);
                    });
+}
+
+TEST(Shading, DoesSoWithColoursOnALogarithmicScale)
+{
+  const glm::i64vec3 dims(33, 46, 21);
+  const Voxels voxels(dims, Waves);
+  inr::TransferFunction colours = Colours();
+  colours.logarithmic = true;
+  colours.low = 0.02;
+  inr::Renderer dense = FieldRenderer(
+      dims, [&](const glm::vec3& u) { return voxels.at(u); }, {}, 2);
+  inr::Renderer cached = CachedRenderer(dims, Waves, Options(inr::CachePrecision::Float32, 9));
+  dense.setTransferFunction(colours);
+  cached.setTransferFunction(colours);
+  const inr::Frame frame = Lit(glm::dvec3(dims));
+  const inr::Image truth = Render(dense, frame);
+  EXPECT_GT(*std::max_element(truth.pixels.begin(), truth.pixels.end()), 0.3f);
+  EXPECT_GT(inr::ImagePsnr(Render(cached, frame), truth), 60);
 }
 
 TEST(Shading, WithoutLightButAmbientIsNone)
