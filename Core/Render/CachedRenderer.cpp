@@ -139,7 +139,8 @@ FrameStatistics CachedRenderer::render(const MarchJob& job, const Majorants& maj
   const MarchSettings& settings = job.settings;
   this->Work = {};
   std::optional<Refinement>& refined = this->Unfinished.of(frame.view).refined;
-  if (refined && call.limit.isLimited() && refined->continues(frame, call.output)) {
+  const bool isLimited = call.limit.isLimited();
+  if (refined && isLimited && refined->continues(frame, call.output)) {
     try {
       return this->refine(*refined, call);
     } catch (const std::bad_alloc&) { // in the midst of its rays: nobody knows how far they are
@@ -147,7 +148,9 @@ FrameStatistics CachedRenderer::render(const MarchJob& job, const Majorants& maj
       throw;
     }
   }
-  refined.reset();
+  if (isLimited) { // else it is captured, and what is on the screen goes on afterwards
+    refined.reset();
+  }
   const auto steps = this->stepsFor(job.colors, settings.step * settings.unitsPerT);
   const BrickCache& cache = this->Store->cache();
   const auto blocks = this->blocksFor(colors, settings, majorants.rangesHold());
@@ -181,7 +184,6 @@ FrameStatistics CachedRenderer::renderFrame(const CachedScene& scene, const Draw
 
 FrameStatistics CachedRenderer::renderComplete(const CachedScene& scene, const DrawCall& call)
 {
-  this->Unfinished.forget(scene.frame.view);
   CompletePass pass(scene);
   double marching = 0;
   while (true) {
@@ -244,13 +246,27 @@ FrameStatistics CachedRenderer::march(const CachedScene& scene, MarchedTiles& ti
   return statistics;
 }
 
+MarchedTiles CachedRenderer::tilesFor(const CachedScene& scene, const DrawCall& call)
+{
+  const Frame& frame = scene.frame;
+  const std::unique_ptr<KeptPicture> kept = std::move(this->Unfinished.of(frame.view).kept);
+  const bool goesOn = kept && kept->has(call.output) && kept->isOf(frame);
+  const bool isOver = kept && kept->has(call.output) && !goesOn && kept->isBefore(frame);
+  if (goesOn || isOver) {
+    kept->copyTo(call.output);
+  }
+  return goesOn ? kept->take() : MarchedTiles(frame.width, frame.height, isOver);
+}
+
+void CachedRenderer::keep(const CachedScene& scene, MarchedTiles tiles, const DrawCall& call)
+{
+  this->Unfinished.of(scene.frame.view).kept =
+      std::make_unique<KeptPicture>(scene.frame, std::move(tiles), call.output);
+}
+
 FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const DrawCall& call)
 {
-  UnfinishedPicture& unfinished = this->Unfinished.of(scene.frame.view);
-  const std::unique_ptr<KeptPicture> kept = std::move(unfinished.kept);
-  MarchedTiles tiles = kept && kept->isOf(scene.frame) && kept->has(call.output)
-                           ? kept->take(call.output)
-                           : MarchedTiles(scene.frame.width, scene.frame.height);
+  MarchedTiles tiles = this->tilesFor(scene, call);
   // Whoever takes from this picture what it has will do so again.
   const bool contested = this->Store->hasLostSince(tiles.latestFrame.value_or(this->Latest));
   while (true) {
@@ -265,11 +281,11 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Dra
       return statistics;
     }
     if (!fits && !statistics.blank) { // should the same be asked for again
-      unfinished.refined.emplace(scene, call.output);
+      this->Unfinished.of(scene.frame.view).refined.emplace(scene, call.output);
       return statistics;
     }
     if (call.limit.endsWithin(0) || call.limit.endsWithin(tiles.secondsToMarch(*scene.bricks))) {
-      unfinished.kept = std::make_unique<KeptPicture>(scene.frame, std::move(tiles), call.output);
+      this->keep(scene, std::move(tiles), call);
       return statistics;
     }
   }
@@ -277,27 +293,35 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Dra
 
 FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const DrawCall& call)
 {
+  MarchedTiles tiles = this->tilesFor(scene, call);
   // Whoever takes from this picture what it has will do so again.
-  bool full = call.limit.isLimited() && this->Store->hasLostSince(this->Latest);
-  const WorkLimit none(0, false); // each time all of it, as nothing is kept
+  bool full =
+      call.limit.isLimited() && this->Store->hasLostSince(tiles.latestFrame.value_or(this->Latest));
   while (true) {
     RequestRanking requests;
-    MarchedTiles tiles(scene.frame.width, scene.frame.height);
-    FrameStatistics statistics =
-        this->march(scene, tiles, {call.output, none, call.keepGoing}, requests);
+    FrameStatistics statistics = this->march(scene, tiles, call, requests);
+    const bool isWhole = tiles.areUpToDate(*scene.bricks); // else there was no time for it
     const std::int64_t room = this->room();
     // Not down to the last brick: fewer and fewer come in for all that they replace.
-    full = full || room <= this->Store->capacity() / 64;
-    statistics.complete = full || requests.empty();
-    if (!statistics.complete) {
+    const bool lacksRoom = full || room <= this->Store->capacity() / 64;
+    const bool isLast = lacksRoom && !tiles.haveAsked; // with what there is
+    statistics.complete = isWhole && (isLast || requests.empty());
+    if (statistics.complete) {
+      return statistics;
+    }
+    if (isWhole && lacksRoom) {
+      tiles = MarchedTiles(scene.frame.width, scene.frame.height, true);
+    } else if (isWhole) {
       // Nothing goes that is shown, so every place of the picture only gets finer.
       const std::int64_t most = call.limit.isLimited()
                                     ? std::min<std::int64_t>(room, this->Options.maximumRequests)
                                     : room;
       full = this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking),
                                 call.limit, call.keepGoing);
+      tiles.haveAsked = true;
     }
-    if (statistics.complete || call.limit.endsWithin(statistics.marchSeconds)) {
+    if (!isWhole || call.limit.endsWithin(tiles.secondsToMarch(*scene.bricks))) {
+      this->keep(scene, std::move(tiles), call);
       return statistics;
     }
   }

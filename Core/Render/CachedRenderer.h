@@ -92,6 +92,9 @@ private:
   RequestRanking inSteps(const RequestRanking& requests, std::int64_t room) const;
   std::vector<BrickPart> partsOf(const std::vector<BrickKey>& keys) const;
   FrameStatistics renderComplete(const CachedScene& scene, const DrawCall& call);
+  /// Those to go on with, and their pixels, or new ones.
+  MarchedTiles tilesFor(const CachedScene& scene, const DrawCall& call);
+  void keep(const CachedScene& scene, MarchedTiles tiles, const DrawCall& call);
   FrameStatistics renderInTime(const CachedScene& scene, const DrawCall& call);
   FrameStatistics renderWhatFits(const CachedScene& scene, const DrawCall& call);
   /// Those tiles that are due, as far as the bricks are there.

@@ -20,14 +20,18 @@ public:
   /// Whether its rays take the same samples, as far as there are bricks. Those of a tolerance are
   /// chosen for the frame, and before they are, it has another scale of its levels.
   bool isOf(const Frame& picture) const { return this->Picture.isOf(picture); }
+  /// Whether it shows the same as far as there was time, by other samples: before they were chosen.
+  bool isBefore(const Frame& picture) const
+  {
+    Frame before = picture;
+    before.levelOfDetailScale = this->Picture.frame().levelOfDetailScale;
+    return picture.errorTolerance && this->Tiles.areReached() && this->Picture.isOf(before);
+  }
   /// Whether there is all that `output` takes.
   bool has(const PassOutput& output) const { return this->Pixels.isEnoughFor(output); }
-  /// That, once: the pixels to `output`, and the tiles.
-  MarchedTiles take(const PassOutput& output)
-  {
-    this->Pixels.copyTo(output);
-    return std::move(this->Tiles);
-  }
+  void copyTo(const PassOutput& output) const { this->Pixels.copyTo(output); }
+  /// The tiles, once.
+  MarchedTiles take() { return std::move(this->Tiles); }
 
 private:
   KeptFrame Picture;

@@ -20,8 +20,8 @@ bool IsThere(const Request& request, const SufficientBricks& bricks)
 
 } // namespace
 
-MarchedTiles::MarchedTiles(int width, int height)
-    : Tiles(width, height), Marched(static_cast<std::size_t>(this->Tiles.count()))
+MarchedTiles::MarchedTiles(int width, int height, bool over)
+    : Tiles(width, height), Over(over), Marched(static_cast<std::size_t>(this->Tiles.count()))
 {}
 
 void MarchedTiles::MarchedTile::update(CachedMarcher& marcher)
@@ -93,7 +93,7 @@ std::vector<char> MarchedTiles::marchDue(const CachedScene& scene, OnMiss onMiss
       MarchTile(scene, marcher, this->Tiles.tile(due[k]), call.keepGoing, call.output);
       tile.update(marcher);
       marched[k] = 1;
-    } else if (tile.pass == 0) {
+    } else if (tile.pass == 0 && !this->Over) {
       WriteEmpty(this->Tiles.tile(due[k]), call.output);
     }
   });
@@ -129,7 +129,7 @@ FrameStatistics MarchedTiles::march(const CachedScene& scene, OnMiss onMiss, con
     this->SecondsToReach +=
         timer.seconds() * static_cast<double>(reached) / static_cast<double>(count);
   }
-  sum.blank = this->Reached < this->Tiles.count();
+  sum.blank = !this->areReached();
   sum.complete = count == static_cast<std::int64_t>(due.size()) && requests.empty();
   sum.marchSeconds = this->wholeSeconds();
   return sum;

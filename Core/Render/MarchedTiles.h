@@ -18,20 +18,28 @@ namespace inr {
 class MarchedTiles
 {
 public:
-  /// Of which none has been marched.
-  MarchedTiles(int width, int height);
+  /// Of which none has been marched. `over`: pixels that show the same already.
+  MarchedTiles(int width, int height, bool over = false);
 
   /// When it was last marched, in the time of the store; nothing: it was not.
   std::optional<std::uint64_t> latestFrame;
+  /// Whether bricks were asked for that they missed: some may show more by now, and what they have
+  /// used before keeps its place in the cache.
+  bool haveAsked = false;
 
+  /// Whether all show something.
+  bool areReached() const { return this->Over || this->Reached == this->Tiles.count(); }
+  /// Whether none is to be marched by now.
+  bool areUpToDate(const SufficientBricks& bricks) const { return this->due(bricks).empty(); }
   /// What marching those may take that are due by now, judged by the time that others took.
   double secondsToMarch(const SufficientBricks& bricks) const;
   /// Marches those tiles that were not yet, then those for which enough has come of what they
   /// missed, as many as PassClock lets begin; the others' pixels are in the output already or, of
-  /// those that were never marched, let everything through. What tiles still miss is added to
-  /// `requests`, in the order of the tiles. Of the whole picture, but for the work, which is that
-  /// of this time; complete where all is marched and nothing is missed. Throws Error(Cancelled)
-  /// when the call's `keepGoing` says so, see ForEachTile; tiles are then to be thrown away.
+  /// those that were never marched, show what they are over, or let everything through. What tiles
+  /// still miss is added to `requests`, in the order of the tiles. Of the whole picture, but for
+  /// the work, which is that of this time; complete where all is marched and nothing is missed.
+  /// Throws Error(Cancelled) when the call's `keepGoing` says so, see ForEachTile; tiles are then
+  /// to be thrown away.
   FrameStatistics march(const CachedScene& scene, OnMiss onMiss, const Arena& arena,
                         const DrawCall& call, RequestRanking& requests);
 
@@ -65,6 +73,7 @@ private:
   double wholeSeconds() const;
 
   Tiling Tiles;
+  bool Over;
   std::vector<MarchedTile> Marched;
   int Pass = 0;              ///< the latest
   std::int64_t Reached = 0;  ///< tiles that were ever marched

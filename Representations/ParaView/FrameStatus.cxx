@@ -22,6 +22,7 @@ FrameStatus StatusOf(vtkINRVolumeMapper* mapper)
   status.hitRate = mapper->GetCacheHitRate();
   status.clamped = static_cast<double>(mapper->GetNumberOfClampedSamples());
   status.paths = static_cast<double>(mapper->GetNumberOfPaths());
+  status.reduction = mapper->GetImageReduction();
   status.cacheMiB = mapper->GetCacheUsed();
   status.seconds = mapper->GetFrameTime();
   return status;
@@ -36,17 +37,18 @@ FrameStatus StatusOfAll(const FrameStatus& own, vtkMultiProcessController* proce
                                    own.clamped};
   // What is least is the most of its opposite.
   constexpr double none = -std::numeric_limits<double>::max();
-  const std::array<double, 7> most{own.drawn ? 1.0 : 0.0,
+  const std::array<double, 8> most{own.drawn ? 1.0 : 0.0,
                                    own.converged ? 0.0 : 1.0,
                                    own.finest >= 0 ? -static_cast<double>(own.finest) : none,
                                    static_cast<double>(own.coarsest),
                                    own.samples > 0 ? -own.paths : none,
                                    own.seconds,
-                                   own.samples > 0 ? none : own.hitRate};
+                                   own.samples > 0 ? none : own.hitRate,
+                                   static_cast<double>(own.reduction)};
   std::array<double, 4> allSums{};
-  std::array<double, 7> allMost{};
+  std::array<double, 8> allMost{};
   processes->AllReduce(sums.data(), allSums.data(), 4, vtkCommunicator::SUM_OP);
-  processes->AllReduce(most.data(), allMost.data(), 7, vtkCommunicator::MAX_OP);
+  processes->AllReduce(most.data(), allMost.data(), 8, vtkCommunicator::MAX_OP);
   FrameStatus all;
   all.drawn = allMost[0] > 0;
   all.converged = allMost[1] <= 0;
@@ -55,6 +57,7 @@ FrameStatus StatusOfAll(const FrameStatus& own, vtkMultiProcessController* proce
   all.samples = allSums[0];
   all.hitRate = allSums[0] > 0 ? allSums[1] / allSums[0] : allMost[6];
   all.paths = allMost[4] > none ? -allMost[4] : 0;
+  all.reduction = static_cast<int>(allMost[7]);
   all.cacheMiB = allSums[2];
   all.clamped = allSums[3];
   all.seconds = allMost[5];

@@ -17,6 +17,7 @@ struct FrameStatus
   double hitRate = 0;  ///< part of the samples that came from the level they asked for
   double clamped = 0;  ///< samples that were moved into their macro-cell's range
   double paths = 0;    ///< through each pixel
+  int reduction = 1;   ///< of the picture's width and height
   double cacheMiB = 0; ///< of all processes
   double seconds = 0;  ///< of the slowest one
   int processes = 1;

@@ -55,6 +55,9 @@ std::string ProgressOf(const inr::FrameStatus& status, vtkINRVolumeMapper* mappe
     text += ", " + std::to_string(static_cast<std::int64_t>(status.paths)) + " of " +
             std::to_string(mapper->GetSamplesPerPixel()) + " paths";
   }
+  if (status.reduction > 1) {
+    text += ", 1 of " + std::to_string(status.reduction * status.reduction) + " pixels";
+  }
   return text + (status.converged ? "" : " ...");
 }
 

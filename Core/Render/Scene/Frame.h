@@ -114,7 +114,7 @@ struct Frame
   /// each pixel may take longer: through the CPU's cache, what has none through some pixels after
   /// twice the limit, and a quarter of a second at least, lets everything through there (see
   /// FrameStatistics::blank). 0: as long as it takes to be complete. Without a cache rays take no
-  /// notice of it, nor do they within CacheOptions::onlyWhatFits, and paths end between two rounds.
+  /// notice of it, and paths end between two rounds.
   double timeLimit = 0;
 
   /// Offsets of the samples along their rays, but for preIntegration, extremes and isosurfaces, and

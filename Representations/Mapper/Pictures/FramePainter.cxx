@@ -326,9 +326,7 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
     blank = reduction < ImageReduction::Largest && !this->Group.all(!coarse.statistics.blank);
   }
   picture.depict(depicted);
-  fine.rgba = coarse.rgba;
-  fine.depth = coarse.depth;
-  fine.reduction = coarse.reduction;
+  job.picture.showCoarser();
   return here;
 }
 

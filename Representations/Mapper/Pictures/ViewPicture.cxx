@@ -7,7 +7,9 @@ namespace inr {
 
 void ViewPicture::begin()
 {
-  this->Before = std::exchange(this->Last, {});
+  this->Before = this->Fine ? std::move(*this->Fine) : std::exchange(this->Last, {});
+  this->Fine.reset();
+  this->Last = {};
   this->Scene.reset();
 }
 
@@ -50,6 +52,26 @@ ViewPicture& ViewPicture::coarser()
     this->Coarser = std::make_unique<ViewPicture>(NobodysPicture);
   }
   return *this->Coarser;
+}
+
+void ViewPicture::showCoarser()
+{
+  const PaintedFrame& coarse = this->Coarser->last();
+  PaintedFrame shown;
+  shown.rgba = coarse.rgba;
+  shown.depth = coarse.depth;
+  shown.reduction = coarse.reduction;
+  shown.statistics = coarse.statistics;
+  // But it is this one that is in the making.
+  shown.statistics.complete = false;
+  shown.statistics.blank = true;
+  shown.statistics.paths = this->Last.statistics.paths;
+  shown.statistics.seconds = this->Last.statistics.seconds;
+  shown.statistics.marchSeconds = this->Last.statistics.marchSeconds;
+  shown.statistics.work = this->Last.statistics.work;
+  shown.backend = this->Last.backend;
+  shown.depthRead = this->Last.depthRead;
+  this->Fine = std::exchange(this->Last, std::move(shown));
 }
 
 void ViewPicture::outdate()

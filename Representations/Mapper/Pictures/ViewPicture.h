@@ -69,8 +69,10 @@ public:
   /// For when everything has changed: it is a picture of nothing that there is.
   void outdate();
 
-  /// One with fewer pixels, shown until there is something for all of this one's.
+  /// One with fewer pixels, to be shown until there is something for all of this one's.
   ViewPicture& coarser();
+  /// Shows that. What there is of this one is kept until the next one begins.
+  void showCoarser();
 
   /// That the window be drawn again, to go on with this picture; and that this is being done.
   bool requested = false;
@@ -79,8 +81,9 @@ public:
 private:
   int Number;
   PaintedFrame Last;
-  PaintedFrame Before;           ///< until there is another
-  std::optional<PictureKey> Key; ///< of what was drawn last, if it is complete
+  std::optional<PaintedFrame> Fine; ///< the last picture made, where a coarser one is shown
+  PaintedFrame Before;              ///< until there is another
+  std::optional<PictureKey> Key;    ///< of what was drawn last, if it is complete
   std::optional<PictureKey> Scene;
   std::uint64_t Surroundings = 0;
   std::unique_ptr<ViewPicture> Coarser;

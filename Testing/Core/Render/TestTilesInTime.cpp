@@ -2,8 +2,10 @@
 //
 // Pictures whose rays take longer than there is time for: they are made tile by tile, over several
 // calls.
+#include "Core/Image/Metrics.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Testing/Core/Render/RecordingField.h"
+#include "Testing/Core/Render/ToleranceScene.h"
 
 #include <gtest/gtest.h>
 
@@ -96,6 +98,19 @@ TEST(TilesInTime, EndWithThePictureThatIsMadeAtOnce)
   }
 }
 
+TEST(TilesInTime, DoSoOfWhatFits)
+{
+  inr::RendererOptions options = SmallBricks();
+  options.cache.onlyWhatFits = true;
+  RecordedScene scene(options, Waves, Dims);
+  inr::Image image;
+  EXPECT_GT(Finish(scene.renderer, Lit(), image), 0);
+  EXPECT_EQ(image.pixels, Whole(options, Lit()).pixels);
+  options.cache.bytes = 300000; // where that is not all
+  RecordedScene small(options, Waves, Dims);
+  EXPECT_GT(Finish(small.renderer, Lit(), image), 0);
+}
+
 /// All bricks at once: whatever a tile has shown, it is to be marched again.
 inr::RendererOptions AllAtOnce()
 {
@@ -137,6 +152,24 @@ TEST(TilesInTime, DoSoOfSamplesThatAreChosenForATolerance)
   inr::Image image;
   EXPECT_GT(Finish(scene.renderer, frame, image), 1);
   EXPECT_EQ(image.pixels, Whole(SmallBricks(), frame).pixels);
+}
+
+TEST(TilesInTime, TakeThePlaceOfThoseBeforeSamplesWereChosen)
+{
+  inr::Renderer renderer = MakeRenderer();
+  inr::Frame frame = FrameWith(4.0);
+  frame.timeLimit = 1e-3;
+  inr::Image image;
+  inr::FrameStatistics last = renderer.render(frame, image); // some cells are measured
+  EXPECT_FALSE(last.complete);
+  for (int call = 0; call < 2000 && !last.complete; ++call) {
+    EXPECT_FALSE(last.blank) << call;
+    last = renderer.render(frame, image, nullptr, Slowly);
+  }
+  EXPECT_TRUE(last.complete);
+  inr::Renderer unhurried = MakeRenderer();
+  frame.timeLimit = 0;
+  EXPECT_LE(inr::ImageMaximumError(image, Draw(unhurried, frame).picture), 2e-3f);
 }
 
 TEST(TilesInTime, AreThoseOfEachViewThatGoesOn)
