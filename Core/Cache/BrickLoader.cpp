@@ -125,7 +125,7 @@ bool BrickLoader::inferOne(std::unique_lock<std::mutex>& lock)
     lock.unlock(); // an accelerator may be in the making, for seconds
     const std::int64_t atOnce = this->Source->bricksAtOnce(); // read once: it may change
     lock.lock();
-    if (this->Ended || this->isAtRest()) {
+    if (this->Ended || this->isAtRest() || this->withLayersLeft() != nullptr) {
       return true; // to look again
     }
     if (atOnce > 0) {

@@ -47,7 +47,8 @@ public:
   }
 
   /// Bricks that are best inferred together, by one call of infer; 0: layers, on any number of
-  /// threads at once. It may change at any time: a device may fail.
+  /// threads at once. It may change at any time, as a device may fail, and take seconds, while
+  /// one is made ready.
   virtual std::int64_t bricksAtOnce() const { return 0; }
 
   /// All layers of `count` bricks, one brick after the other.

@@ -2,8 +2,9 @@
 //
 // Samples that go through the network together; see Lanes.h for what may be in here. A strip is as
 // wide as a tile of results that stays in registers, and all its layers stay in the first-level
-// cache, up to some 256 neurons. Tile registers take two in turn: while one's results are on their way through memory, the
-// other's are made (with one alone, bricks of small networks took 1.15 times as long).
+// cache, up to some 256 neurons. Tile registers take two in turn: while one's results are on their
+// way through memory, the other's are made (with one alone, bricks of small networks took 1.15
+// times as long).
 #pragma once
 
 #include "Core/Inference/Lanes.h"

@@ -43,6 +43,15 @@ std::shared_ptr<BrickStore> StoreFor(const CachedField& of, const CacheOptions& 
   });
 }
 
+/// What of bricks is to be loaded for a scene: where samples are chosen for a tolerance, whole
+/// ones, as it will look at more of them later.
+std::vector<BrickPart> PartsFor(const CachedScene& scene, const std::vector<BrickKey>& keys)
+{
+  return scene.frame.errorTolerance.value_or(0) > 0
+             ? std::vector<BrickPart>(keys.begin(), keys.end())
+             : scene.bricks->wanted(keys);
+}
+
 } // namespace
 
 CachedRenderer::CachedRenderer(const CachedField& field, const CacheOptions& options,
@@ -114,16 +123,6 @@ RequestRanking CachedRenderer::inSteps(const RequestRanking& requests, std::int6
   });
 }
 
-std::vector<BrickPart> CachedRenderer::partsOf(const std::vector<BrickKey>& keys) const
-{
-  std::vector<BrickPart> parts;
-  parts.reserve(keys.size());
-  for (const BrickKey key : keys) {
-    parts.emplace_back(key, this->LoadsWhole ? BlockSet::all() : this->Bricks->wanted(key));
-  }
-  return parts;
-}
-
 void CachedRenderer::forgetColors()
 {
   this->Unfinished.reset();
@@ -156,7 +155,6 @@ FrameStatistics CachedRenderer::render(const MarchJob& job, const Majorants& maj
   const auto blocks = this->blocksFor(colors, settings, majorants.rangesHold());
   // With samples chosen for a tolerance; until these are, less is enough.
   const bool looksFurther = settings.looksAtBothEnds() || settings.cellSampling != nullptr;
-  this->LoadsWhole = frame.errorTolerance.value_or(0) > 0;
   std::optional<int> reach;
   if (blocks != nullptr && !looksFurther) {
     reach = job.shading != nullptr ? 1 : 0; // gradients
@@ -214,7 +212,7 @@ void CachedRenderer::loadForPass(CompletePass& pass, const RequestRanking& reque
     keys = {keys.back()};
   }
   const BrickStore::Loaded loaded =
-      this->Store->load(this->partsOf(keys), this->Threads, keepGoing);
+      this->Store->load(PartsFor(pass.scene(), keys), this->Threads, keepGoing);
   if (loaded.full && pass.isAlone()) {
     // A batch of one ray's samples has used all that there is and waits for more: its first sample
     // can have what it needs when the others have nothing.
@@ -225,14 +223,14 @@ void CachedRenderer::loadForPass(CompletePass& pass, const RequestRanking& reque
   }
 }
 
-bool CachedRenderer::loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
+bool CachedRenderer::loadForFrame(std::vector<BrickPart> parts, const WorkLimit& limit,
                                   const std::function<bool()>& keepGoing, double part)
 {
   if (limit.isTimed()) {
-    this->Store->loadFor(limit.secondsForLoading(part), this->partsOf(keys), this->Threads);
+    this->Store->loadFor(limit.secondsForLoading(part), std::move(parts), this->Threads);
     return false;
   }
-  return this->Store->load(this->partsOf(keys), this->Threads, keepGoing).full;
+  return this->Store->load(std::move(parts), this->Threads, keepGoing).full;
 }
 
 FrameStatistics CachedRenderer::march(const CachedScene& scene, MarchedTiles& tiles,
@@ -275,8 +273,9 @@ FrameStatistics CachedRenderer::renderInTime(const CachedScene& scene, const Dra
     const std::int64_t room = this->room();
     const bool fits = !contested && requests.count() <= room;
     const std::int64_t most = std::min<std::int64_t>(room, this->Options.maximumRequests);
-    this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking),
-                       call.limit, call.keepGoing);
+    const RequestRanking wanted = this->inSteps(requests, room);
+    this->loadForFrame(PartsFor(scene, wanted.ranked(most, this->Options.ranking)), call.limit,
+                       call.keepGoing);
     if (statistics.complete) {
       return statistics;
     }
@@ -316,7 +315,8 @@ FrameStatistics CachedRenderer::renderWhatFits(const CachedScene& scene, const D
       const std::int64_t most = call.limit.isLimited()
                                     ? std::min<std::int64_t>(room, this->Options.maximumRequests)
                                     : room;
-      full = this->loadForFrame(this->inSteps(requests, room).ranked(most, this->Options.ranking),
+      const RequestRanking wanted = this->inSteps(requests, room);
+      full = this->loadForFrame(PartsFor(scene, wanted.ranked(most, this->Options.ranking)),
                                 call.limit, call.keepGoing);
       tiles.haveAsked = true;
     }

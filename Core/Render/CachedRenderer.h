@@ -69,7 +69,8 @@ public:
   const std::shared_ptr<BrickStore>& sharedStore() const { return this->Store; }
 
 private:
-  /// A view's latest picture, where it is not complete: one of these or none.
+  /// A view's latest picture, where it is not complete: one of these or none. Its pixels, some 20
+  /// bytes each, and tables are beside the cache, until the view is drawn again or many others are.
   struct UnfinishedPicture
   {
     /// Where there was no time for all of it, or it lacks bricks that the cache has room for.
@@ -90,7 +91,6 @@ private:
   /// Where there is no room for so many bricks, the level that is not on the way, which takes an
   /// eighth of it, in place of the next finer one, unless it is there.
   RequestRanking inSteps(const RequestRanking& requests, std::int64_t room) const;
-  std::vector<BrickPart> partsOf(const std::vector<BrickKey>& keys) const;
   FrameStatistics renderComplete(const CachedScene& scene, const DrawCall& call);
   /// Those to go on with, and their pixels, or new ones.
   MarchedTiles tilesFor(const CachedScene& scene, const DrawCall& call);
@@ -105,7 +105,7 @@ private:
   void loadForPass(CompletePass& pass, const RequestRanking& requests, std::int64_t most,
                    const std::function<bool()>& keepGoing);
   /// Whether the cache is found to be full. `part`: see WorkLimit::secondsForLoading.
-  bool loadForFrame(const std::vector<BrickKey>& keys, const WorkLimit& limit,
+  bool loadForFrame(std::vector<BrickPart> parts, const WorkLimit& limit,
                     const std::function<bool()>& keepGoing, double part = 0.25);
   /// Bricks that may come without any of the present frame having to go.
   std::int64_t room() const;
@@ -126,7 +126,6 @@ private:
   std::shared_ptr<const StepTable> Steps;
   std::shared_ptr<const BlockVisibility> Blocks;
   std::shared_ptr<const SufficientBricks> Bricks;
-  bool LoadsWhole = false; ///< as it will look at more later
   PerView<UnfinishedPicture> Unfinished;
   PathShortage Shortage; ///< of the latest path-traced picture
 };

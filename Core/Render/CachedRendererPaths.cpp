@@ -14,7 +14,6 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
                                        const std::function<bool()>& keepGoing)
 {
   this->Unfinished.forget(round.tracer.frame().view); // of its rays
-  this->LoadsWhole = false;
   const bool hides = majorants.rangesHold() && colors.hidesAny();
   const SufficientBricks& bricks =
       *this->bricksFor(majorants, hides ? std::optional<int>(0) : std::nullopt);
@@ -62,8 +61,8 @@ void CachedRenderer::loadForPaths(const RequestRanking& requests, bool again,
   const bool some = limit.isLimited() || this->Shortage.lacks();
   const std::int64_t most = std::min(room, some ? this->Options.maximumRequests : room);
   // Paths see of new bricks only what they come upon in another round, which takes its time.
-  this->loadForFrame(requests.ranked(most, this->Options.ranking), limit, keepGoing,
-                     again ? 0.5 : 0.25);
+  this->loadForFrame(this->Bricks->wanted(requests.ranked(most, this->Options.ranking)), limit,
+                     keepGoing, again ? 0.5 : 0.25);
   // What does not fit is not worth loading for one path: paths come back to it from everywhere.
   if (requests.count() > room) {
     this->Shortage.note();

@@ -48,7 +48,7 @@ std::string LevelsOf(const inr::FrameStatus& status)
 
 std::string ProgressOf(const inr::FrameStatus& status, vtkINRVolumeMapper* mapper)
 {
-  // Rounded down: 100 % means all.
+  // Rounded down: 100 % means all, of those that were taken for the picture that is shown.
   const int percent = static_cast<int>(std::floor(100 * status.hitRate));
   std::string text = std::to_string(percent) + " % there";
   if (mapper->GetRenderMode() == vtkINRVolumeMapper::PATH_TRACING) {

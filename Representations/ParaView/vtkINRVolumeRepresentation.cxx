@@ -214,7 +214,7 @@ void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
     vtkImageData* image = this->Model->receive(vtkPolyData::SafeDownCast(carrier));
     this->VolumeMapper->SetInputDataObject(image);
     const bool others = AreSeveral(vtkMultiProcessController::GetGlobalController());
-    this->Actor->SetEnableLOD(image || others ? 0 : 1); // the outline, where nobody draws more
+    this->Actor->SetEnableLOD(image || others ? 0 : 1); // the outline; of several, each has part of it
     this->ReportShared(image && vtkINRDataArray::FindIn(image->GetPointData()));
   } catch (const std::exception& problem) {
     vtkErrorMacro(<< problem.what());

@@ -42,6 +42,7 @@ public:
   /// rays that wait have used. Few: fewer tiles go on. None: the first ray does, alone until it has
   /// come further; the last request is then for its next sample.
   void crowd(std::int64_t loaded);
+  const CachedScene& scene() const { return this->Scene; }
   bool isAlone() const { return this->Alone; }
   bool done() const { return this->Active.empty() && this->Next == this->Tiles.count(); }
   const FrameStatistics& statistics() const { return this->Statistics; }

@@ -27,7 +27,7 @@ public:
     const double* t;        ///< of the samples; null unless ShadingView::knowsPlaces()
   };
 
-  /// Lights `colors`, straight RGB and opacity per unit distance of the first `count` samples of
+  /// Lights `colors`, straight RGB and opacity of the first `count` samples of
   /// `batch`. Returns for how many of them that was possible: fewer only with Missing::Stop.
   int shade(const SampleBatch& batch, int count, const Request& request, RequestList& requests,
             glm::vec4* colors);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "Core/Cache/BrickCache.h"
+#include "Core/Cache/BrickPart.h"
 #include "Core/Render/Bricks/VisibleBlocks.h"
 
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace inr {
 
@@ -31,6 +33,15 @@ public:
   BlockSet wanted(BrickKey key) const
   {
     return this->Wanted ? this->Wanted->of(key) : BlockSet::all();
+  }
+  std::vector<BrickPart> wanted(const std::vector<BrickKey>& keys) const
+  {
+    std::vector<BrickPart> parts;
+    parts.reserve(keys.size());
+    for (const BrickKey key : keys) {
+      parts.emplace_back(key, this->wanted(key));
+    }
+    return parts;
   }
   bool wantsAll() const { return !this->Wanted; }
   /// Voxels around what can be seen, see VisibleBlocks; 0 where all is wanted.

@@ -63,18 +63,18 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   this->Group = settings.group;
   ViewPicture& picture = this->Pictures.of(renderer, volume);
   picture.begin();
-  // Processes that draw together do so where nothing is to be seen, too.
-  if (this->Group.all(IsBehindCamera(renderer, volume->GetBounds()))) {
-    picture.last().converged = true;
-    this->Stills.followUp(picture, renderer->GetRenderWindow(), settings); // nothing goes on
-    return {};
-  }
   Frame frame;
   std::string problem;
   this->Group.together([&] { problem = this->prepare(mapper, renderer, volume, settings, frame); });
   if (!this->Group.all(problem.empty())) {
     this->Stills.followUp(picture, renderer->GetRenderWindow(), settings); // nothing goes on
     return problem;
+  }
+  // Processes that draw together do so where nothing is to be seen, too.
+  if (this->Group.all(IsBehindCamera(renderer, volume->GetBounds()))) {
+    picture.last().converged = true;
+    this->Stills.followUp(picture, renderer->GetRenderWindow(), settings);
+    return {};
   }
   frame = AsItIsDrawn(std::move(frame), settings.renderer.cached);
   frame.view = picture.number();

@@ -5,10 +5,9 @@
 #include <vtkMatrix4x4.h>
 #include <vtkRenderer.h>
 
-#include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
-#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace inr {
 
@@ -24,26 +23,29 @@ Viewport GetViewport(vtkRenderer* renderer)
   return result;
 }
 
-glm::dmat4 ClipToWorld(vtkRenderer* renderer)
+namespace {
+
+glm::dmat4 WorldToClip(vtkRenderer* renderer)
 {
   // Not GetCompositeProjectionTransformMatrix: that one is for picking and leaves out stereo.
   vtkCamera* camera = renderer->GetActiveCamera();
   const glm::dmat4 projection =
       ToGlm(camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1, 1));
-  return glm::inverse(projection * ToGlm(camera->GetModelViewTransformMatrix()));
+  return projection * ToGlm(camera->GetModelViewTransformMatrix());
 }
+
+} // namespace
+
+glm::dmat4 ClipToWorld(vtkRenderer* renderer) { return glm::inverse(WorldToClip(renderer)); }
 
 bool IsBehindCamera(vtkRenderer* renderer, const double bounds[6])
 {
-  vtkCamera* camera = renderer->GetActiveCamera();
-  const glm::dvec3 eye = glm::make_vec3(camera->GetPosition());
-  const glm::dvec3 forward = glm::make_vec3(camera->GetDirectionOfProjection());
-  const bool seesBehind = camera->GetClippingRange()[0] < 0; // by parallel rays
-  bool behind = !seesBehind;
+  const glm::dmat4 toClip = WorldToClip(renderer);
+  bool behind = true;
   for (int corner = 0; behind && corner < 8; ++corner) {
-    const glm::dvec3 at(bounds[corner & 1], bounds[2 + (corner >> 1 & 1)],
-                        bounds[4 + (corner >> 2)]);
-    behind = glm::dot(at - eye, forward) < 0;
+    const glm::dvec4 at(bounds[corner & 1], bounds[2 + (corner >> 1 & 1)],
+                        bounds[4 + (corner >> 2)], 1.0);
+    behind = (toClip * at).w < 0; // always 1 of parallel rays
   }
   return behind;
 }

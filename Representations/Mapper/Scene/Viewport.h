@@ -23,7 +23,8 @@ Viewport GetViewport(vtkRenderer* renderer);
 /// Inverse of what the renderer's camera does, stereo shear and tiles included.
 glm::dmat4 ClipToWorld(vtkRenderer* renderer);
 
-/// Whether the renderer's camera has all that is within these bounds behind it.
+/// Whether the renderer's camera has all that is within these bounds behind it. None of parallel
+/// rays has.
 bool IsBehindCamera(vtkRenderer* renderer, const double bounds[6]);
 
 /// The pixel of the viewport in which the centre of one lies of a smaller image over it, both by

@@ -324,6 +324,33 @@ TEST(BrickLoader, IsPausedAndAskedWhileItsSourceIsBeingMade)
   EXPECT_EQ(Receive(loader).size(), 3u);
 }
 
+/// An accelerator that takes its time to say that there is none.
+class SlowlyRefused : public CountingSource
+{
+public:
+  std::int64_t bricksAtOnce() const override
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return 0;
+  }
+};
+
+TEST(BrickLoader, HasAllThreadsOnTheFirstBrickWhoeverIsAsked)
+{
+  const auto source = std::make_shared<SlowlyRefused>();
+  source->delay = std::chrono::milliseconds(3);
+  inr::BrickLoader loader(source, 8, 100);
+  loader.resume();
+  loader.request(Whole(Bricks(5, 40)));
+  std::int64_t most = 0;
+  for (int look = 0; look < 40; ++look) {
+    most = std::max(most, loader.begun());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_GT(most, 0);
+  EXPECT_LE(most, 3); // one that is finished, one at work, one that is begun
+}
+
 TEST_P(BrickLoaderTest, OfBricksThatFailTogetherNoneComes)
 {
   const auto source = std::make_shared<TogetherSource>();

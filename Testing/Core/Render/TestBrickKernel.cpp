@@ -229,7 +229,6 @@ TEST_P(BrickKernels, LayOutRuns)
   EXPECT_GT(second, 1000);
 }
 
-// Of each sample on one of two paths, exactly where it then is.
 /// By samples one voxel to either side, in double; nothing where one may be beyond a rim.
 std::optional<double> Difference(const Voxels& voxels, const inr::BrickPath& path, double along,
                                  int axis)
@@ -292,6 +291,7 @@ TEST_P(BrickKernels, DifferentiateWhereThereIsNoRim)
   }
 }
 
+// Of each sample on one of two paths, exactly where it then is.
 TEST_P(BrickKernels, FindWhichSamplesOnTwoPathsMayShowSomething)
 {
   const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));

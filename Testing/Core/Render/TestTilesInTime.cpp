@@ -33,7 +33,7 @@ bool Slowly()
   return true;
 }
 
-inr::Image Whole(inr::RendererOptions options, inr::Frame frame)
+inr::Image Whole(const inr::RendererOptions& options, inr::Frame frame)
 {
   RecordedScene scene(options, Waves, Dims);
   frame.timeLimit = 0;

@@ -7,8 +7,12 @@
 #include "Testing/Core/RandomModel.h"
 
 #include <vtkActor2D.h>
+#include <vtkCamera.h>
+#include <vtkCullerCollection.h>
+#include <vtkNew.h>
 #include <vtkPlane.h>
 #include <vtkProperty.h>
+#include <vtkTransform.h>
 #include <vtkVolumeProperty.h>
 
 #include <gtest/gtest.h>
@@ -20,6 +24,29 @@
 namespace {
 
 using test::OneVolume;
+
+/// What is behind the eye may be in front of it as the camera turns it, or on another wall of a
+/// cave.
+TEST(Frames, ShowWhatTheCameraTurnsToTheFront)
+{
+  OneVolume front;
+  const inr::Image seen = front.scene.capture();
+  OneVolume turned;
+  vtkCamera* camera = turned.renderer->GetActiveCamera();
+  camera->Yaw(180);
+  turned.renderer->GetCullers()->RemoveAllItems(); // as processes that draw together do
+  camera->SetClippingRange(front.renderer->GetActiveCamera()->GetClippingRange());
+  const inr::Image away = turned.scene.capture();
+  EXPECT_EQ(*std::max_element(away.pixels.begin(), away.pixels.end()), 0);
+  EXPECT_TRUE(turned.mapper->GetConverged());
+  const double* eye = camera->GetPosition();
+  vtkNew<vtkTransform> about;
+  about->Translate(eye);
+  about->RotateWXYZ(180, camera->GetViewUp());
+  about->Translate(-eye[0], -eye[1], -eye[2]);
+  camera->SetModelTransformMatrix(about->GetMatrix());
+  EXPECT_GT(inr::ImagePsnr(turned.scene.capture(), seen), 60);
+}
 
 TEST(Frames, SayWhatTheyTook)
 {
