@@ -9,6 +9,7 @@
 #include "Core/Render/Marching/StepTable.h"
 #include "Core/Render/Scene/ColorTable.h"
 #include "Testing/Core/Kernels.h"
+#include "Testing/Core/Render/KernelBricks.h"
 
 #include <gtest/gtest.h>
 
@@ -16,76 +17,11 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace test::brick_kernel {
 
-constexpr int Dims[3] = {7, 6, 5};
-constexpr int Bricks = 4;
-constexpr int BlockEdge = 2; // of 3 x 3 x 2 blocks
-
-struct Voxels
-{
-  inr::BrickFormat format;
-  std::vector<unsigned char> bytes;
-  std::vector<double> values; ///< as they are stored
-  int perBrick = Dims[0] * Dims[1] * Dims[2];
-};
-
-Voxels MakeVoxels(inr::VoxelBytes bytes)
-{
-  Voxels voxels;
-  voxels.format = {bytes,
-                   Dims[0],
-                   Dims[0] * Dims[1],
-                   {Dims[0] - 2, Dims[1] - 2, Dims[2] - 2},
-                   1.0f / BlockEdge,
-                   {2, 2, 1}};
-  const auto size = static_cast<std::size_t>(bytes);
-  voxels.bytes.resize(static_cast<std::size_t>(Bricks * voxels.perBrick) * size + 64);
-  for (int k = 0; k < Bricks * voxels.perBrick; ++k) {
-    const float value = inr::RandomUnit(1, static_cast<std::uint64_t>(k));
-    const auto word =
-        static_cast<std::uint32_t>(value * std::ldexp(1.0f, 8 * static_cast<int>(size % 4)));
-    unsigned char* to = voxels.bytes.data() + static_cast<std::size_t>(k) * size;
-    if (bytes == inr::VoxelBytes::Four) {
-      std::memcpy(to, &value, size);
-      voxels.values.push_back(value);
-    } else {
-      std::memcpy(to, &word, size); // little endian, as all that kernels are built for
-      voxels.values.push_back(word);
-    }
-  }
-  return voxels;
-}
-
-float Random(float low, float high)
-{
-  static std::uint64_t counter = 0;
-  return low + (high - low) * inr::RandomUnit(2, ++counter);
-}
-
-int RandomInt(int low, int high)
-{
-  return static_cast<int>(Random(0, 0.9999f) * static_cast<float>(high - low + 1)) + low;
-}
-
-inr::BrickPath RandomPath(const Voxels& voxels)
-{
-  inr::BrickPath path;
-  const int brick = RandomInt(0, Bricks - 1);
-  path.voxels = voxels.bytes.data() + static_cast<std::size_t>(brick * voxels.perBrick) *
-                                          static_cast<std::size_t>(voxels.format.bytes);
-  path.base = Random(-1, 1);
-  path.quantum = voxels.format.bytes == inr::VoxelBytes::Four ? 1.0f : Random(0, 1e-3f);
-  for (int axis = 0; axis < 3; ++axis) {
-    path.origin[axis] = Random(-1, 5);
-    path.direction[axis] = Random(-0.1f, 0.2f);
-    path.last[axis] = static_cast<float>(RandomInt(1, Dims[axis] - 1));
-  }
-  return path;
-}
+using namespace kernel_bricks;
 
 /// Of 64, so many that are set.
 std::uint64_t RandomBits(int count)
@@ -132,33 +68,6 @@ inr::SampleRun RandomRun(int count, int paths)
   run.low = Random(-1, 0);
   run.high = Random(0, 1);
   return run;
-}
-
-double Trilinear(const Voxels& voxels, const inr::BrickPath& path, double along)
-{
-  const auto offset = static_cast<const unsigned char*>(path.voxels) - voxels.bytes.data();
-  const auto first = static_cast<int>(offset) / static_cast<int>(voxels.format.bytes);
-  int cell[3];
-  double weight[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double place =
-        std::clamp<double>(path.origin[axis] + along * path.direction[axis], 0, path.last[axis]);
-    cell[axis] = std::min(static_cast<int>(place), Dims[axis] - 2);
-    weight[axis] = place - cell[axis];
-  }
-  double sum = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double share = 1;
-    int at[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const int up = corner >> axis & 1;
-      at[axis] = cell[axis] + up;
-      share *= up != 0 ? weight[axis] : 1 - weight[axis];
-    }
-    const int index = at[0] + Dims[0] * (at[1] + Dims[1] * at[2]);
-    sum += share * voxels.values[static_cast<std::size_t>(first + index)];
-  }
-  return path.base + path.quantum * sum;
 }
 
 /// Checks the samples of a run, which begin at `at` in the batch; how many were on the second path.
@@ -227,68 +136,6 @@ TEST_P(BrickKernels, LayOutRuns)
     }
   }
   EXPECT_GT(second, 1000);
-}
-
-/// By samples one voxel to either side, in double; nothing where one may be beyond a rim.
-std::optional<double> Difference(const Voxels& voxels, const inr::BrickPath& path, double along,
-                                 int axis)
-{
-  const double place = path.origin[axis] + along * path.direction[axis];
-  if (place < 1 || place >= path.last[axis] - 1) {
-    return std::nullopt;
-  }
-  inr::BrickPath before = path;
-  inr::BrickPath behind = path;
-  before.origin[axis] -= 1;
-  behind.origin[axis] += 1;
-  return (Trilinear(voxels, behind, along) - Trilinear(voxels, before, along)) / 2;
-}
-
-TEST_P(BrickKernels, DifferentiateWhereThereIsNoRim)
-{
-  const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
-  for (const inr::VoxelBytes bytes :
-       {inr::VoxelBytes::One, inr::VoxelBytes::Two, inr::VoxelBytes::Four}) {
-    const Voxels voxels = MakeVoxels(bytes);
-    const auto batch = std::make_unique<inr::SampleBatch>();
-    const auto gradients = std::make_unique<inr::GradientBatch>();
-    int inside = 0;
-    for (int trial = 0; trial < 200; ++trial) {
-      const int count = RandomInt(1, inr::SampleBatch::Capacity);
-      std::vector<int> which;
-      for (int k = 0; k < count; ++k) {
-        batch->paths[k] = RandomPath(voxels);
-        batch->path[k] = k > 0 && RandomInt(0, 3) > 0 ? batch->path[k - 1] : k;
-        batch->along[k] = Random(0, 20);
-        if (RandomInt(0, 2) > 0) {
-          which.push_back(k);
-        }
-      }
-      if (which.empty()) {
-        continue;
-      }
-      const auto chosen = static_cast<int>(which.size());
-      kernel.differentiate(voxels.format, *batch, which.data(), chosen, *gradients);
-      for (int k = 0; k < chosen; ++k) {
-        const inr::BrickPath& path = batch->paths[batch->path[which[k]]];
-        const double steepest = path.quantum * (bytes == inr::VoxelBytes::Four ? 1.0 : 65536.0);
-        for (int axis = 0; axis < 3; ++axis) {
-          const double along = batch->along[which[k]];
-          const std::optional<double> truth = Difference(voxels, path, along, axis);
-          const double place = path.origin[axis] + along * path.direction[axis];
-          const double fromRim =
-              std::min(std::abs(place - 1), std::abs(place - path.last[axis] + 1));
-          const bool isInside = (gradients->inside[k] >> axis & 1) != 0;
-          EXPECT_TRUE(isInside == truth.has_value() || fromRim < 1e-5) << place;
-          if (isInside && truth) {
-            ++inside;
-            EXPECT_NEAR(gradients->along[axis][k], *truth, 1e-5 * std::max(1.0, steepest));
-          }
-        }
-      }
-    }
-    EXPECT_GT(inside, 3000);
-  }
 }
 
 // Of each sample on one of two paths, exactly where it then is.
