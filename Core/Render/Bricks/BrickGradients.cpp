@@ -130,8 +130,8 @@ int BrickGradients::find(const SampleBatch& batch, const BrickKey* bricks, const
 int BrickGradients::findAtRims(const SampleBatch& batch, const BrickKey* bricks, const int* which,
                                int count, int axis, const Wish& wish, float* differences)
 {
-  float values[SampleBatch::Capacity];
-  float offsets[SampleBatch::Capacity];
+  float values[SampleBatch::Capacity] = {};
+  float offsets[SampleBatch::Capacity] = {};
   for (const int step : {-1, 1}) {
     count = this->moveSamples(batch, bricks, which, count, {axis, step}, wish);
     if (count == 0) {
