@@ -14,7 +14,8 @@ reader = simple.OpenDataFile(MODEL)
 display = simple.Show(reader, view)
 look_at(view)
 LINES = re.compile(
-    r"(\w+): levels? (\d+)(?: to (\d+))?, (\d+) % there(?:, (\d+) of (\d+) paths)?( \.\.\.)?\n"
+    r"(\w+): levels? (\d+)(?: to (\d+))?, (\d+) % there(?:, (\d+) of (\d+) paths)?"
+    r"(?:, 1 of (?:4|16|64|256|1024|4096) pixels)?( \.\.\.)?\n"
     r"(?:(\d+\.\d\d) % moved into range, )?cache (\d+) MiB, CPU [\w ]+, \d+ threads?, \d+ ms$"
 )
 
@@ -91,10 +92,13 @@ display.Deterministic = 1
 view.SMProxy.InteractiveRender()
 _, finest, coarsest, percent, _, _, more, _, _ = status()
 check(int(percent) < 100 and more, "an unfinished picture's")
+(actor,) = actors()
+check(", 1 of 16 pixels ..." in actor.GetInput(), "it has a sixteenth of the pixels:", actor.GetInput())
 check(int(finest) > 0, "level 0 was never loaded")
 picture(view, "status-still")
 _, finest, coarsest, percent, _, _, more, _, _ = status()
 check((finest, coarsest, percent, more) == ("0", None, "100", None), "all of level 0")
+check("pixels" not in actor.GetInput(), "it has all pixels:", actor.GetInput())
 display.LevelOfDetailScale = 8
 picture(view, "status-still")
 check(int(status()[1]) > 0, "level 0 where coarser ones do")
