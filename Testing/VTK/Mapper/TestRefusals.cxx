@@ -223,7 +223,7 @@ TEST_F(Refusals, AnArrayThatIsNotThere)
 TEST_F(Refusals, AnArrayOfTheWholeDataSet)
 {
   this->mapper->SetScalarMode(VTK_SCALAR_MODE_USE_FIELD_DATA);
-  this->mapper->SelectScalarArray("INRMaximumError"); // as a reader's image has one
+  this->mapper->SelectScalarArray("INRRatio"); // as a reader's image has one
   this->expectRefused("no point scalars");
 }
 
