@@ -90,12 +90,10 @@ int BrickGradients::moveSamples(const SampleBatch& batch, const BrickKey* bricks
 }
 
 int BrickGradients::find(const SampleBatch& batch, const BrickKey* bricks, const int* which,
-                         int count, Missing missing, float contribution, RequestList& requests,
-                         glm::vec3* gradients)
+                         int count, Missing missing, float contribution, RequestList& requests)
 {
   const Wish wish{missing, contribution, requests};
-  GradientBatch& inner = this->Inner;
-  this->Kernel.differentiate(this->Format, batch, which, count, inner);
+  this->Kernel.differentiate(this->Format, batch, which, count, this->Latest);
   for (int axis = 0; axis < 3; ++axis) {
     int rims[SampleBatch::Capacity]; // of `which`
     int samples[SampleBatch::Capacity];
@@ -103,16 +101,24 @@ int BrickGradients::find(const SampleBatch& batch, const BrickKey* bricks, const
     for (int k = 0; k < count; ++k) {
       rims[others] = k;
       samples[others] = which[k];
-      others += (inner.inside[k] >> axis & 1) == 0 ? 1 : 0;
+      others += (this->Latest.inside[k] >> axis & 1) == 0 ? 1 : 0;
     }
     float found[SampleBatch::Capacity];
     const int known =
         others > 0 ? this->findAtRims(batch, bricks, samples, others, axis, wish, found) : 0;
     for (int k = 0; k < known; ++k) {
-      inner.along[axis][rims[k]] = found[k];
+      this->Latest.along[axis][rims[k]] = found[k];
     }
     count = known < others ? rims[known] : count;
   }
+  this->scaleToFinest(batch, bricks, which, count);
+  this->Found += count;
+  return count;
+}
+
+void BrickGradients::scaleToFinest(const SampleBatch& batch, const BrickKey* bricks,
+                                   const int* which, int count)
+{
   int source = -1;
   glm::vec3 scale(0.0f);
   for (int k = 0; k < count; ++k) {
@@ -121,10 +127,10 @@ int BrickGradients::find(const SampleBatch& batch, const BrickKey* bricks, const
       scale = this->Bricks.cache().hierarchy().scale(IdOf(bricks[path]).level);
       source = path;
     }
-    gradients[k] = scale * glm::vec3(inner.along[0][k], inner.along[1][k], inner.along[2][k]);
+    for (int axis = 0; axis < 3; ++axis) {
+      this->Latest.along[axis][k] *= scale[axis];
+    }
   }
-  this->Found += count;
-  return count;
 }
 
 int BrickGradients::findAtRims(const SampleBatch& batch, const BrickKey* bricks, const int* which,

@@ -26,12 +26,19 @@ public:
   /// What a neighbouring brick that is not there means.
   enum class Missing { OneSided, Stop };
 
-  /// Gradients of samples which[0 .. count), which rise, of `batch`, per voxel of level 0 along
-  /// each axis. bricks[p] is the brick of path p. Returns how many were found, fewer than `count`
-  /// only with Missing::Stop. Bricks that were not there come out of `requests`; `contribution` is
-  /// what each is worth.
+  /// Finds those of samples which[0 .. count), which rise, of `batch`. bricks[p] is the brick of
+  /// path p. Returns how many were found, fewer than `count` only with Missing::Stop. Bricks that
+  /// were not there come out of `requests`; `contribution` is what each is worth.
   int find(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count,
-           Missing missing, float contribution, RequestList& requests, glm::vec3* gradients);
+           Missing missing, float contribution, RequestList& requests);
+
+  /// Of the samples found last, per voxel of level 0.
+  const GradientBatch& latest() const { return this->Latest; }
+  glm::vec3 latest(int sample) const
+  {
+    const auto& along = this->Latest.along;
+    return {along[0][sample], along[1][sample], along[2][sample]};
+  }
 
   std::int64_t found() const { return this->Found; } ///< so far
 
@@ -67,7 +74,10 @@ private:
   int moveSamples(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count,
                   const Move& move, const Wish& wish);
 
-  GradientBatch Inner{};                ///< of the samples, along axes whose rims are not near
+  /// Multiplies the latest ones' first `count`, per voxel of the sampled level.
+  void scaleToFinest(const SampleBatch& batch, const BrickKey* bricks, const int* which, int count);
+
+  GradientBatch Latest{};
   SampleBatch Moved{};                  ///< samples one voxel along
   float Offsets[SampleBatch::Capacity]; ///< by how many voxels really, at the rim of the volume
   const SufficientBricks& Bricks;

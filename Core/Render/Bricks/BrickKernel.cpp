@@ -4,6 +4,7 @@
 #include "Core/Render/Bricks/BrickKernel.h"
 
 #include "Core/Inference/Lanes.h"
+#include "Core/Render/Bricks/DiffuseShading.h"
 #include "Core/Render/Bricks/FrontToBack.h"
 #include "Core/Render/Bricks/GradientSamples.h"
 #include "Core/Render/Bricks/IntegralCompositing.h"
@@ -278,8 +279,8 @@ int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opa
 
 } // namespace
 
-const BrickKernel Bricks = {FindShown,     FindShownOnTwo, SampleRuns,         Sample,
-                            Differentiate, Composite,      CompositeIntegrated};
+const BrickKernel Bricks = {FindShown,     FindShownOnTwo, SampleRuns, Sample,
+                            Differentiate, Light,          Composite,  CompositeIntegrated};
 
 } // namespace INR_ISA
 } // namespace inr

@@ -5,6 +5,7 @@
 #include "Core/Inference/InstructionSet.h"
 #include "Core/Render/Bricks/BrickPath.h"
 #include "Core/Render/Marching/ColorLookups.h"
+#include "Core/Render/Marching/DiffuseLights.h"
 
 #include <cstdint>
 
@@ -97,6 +98,12 @@ struct GradientBatch
   std::int32_t inside[SampleBatch::Room];
 };
 
+/// Of samples, what their colours are multiplied with.
+struct LightBatch
+{
+  alignas(CacheLineBytes) float rgb[3][SampleBatch::Room];
+};
+
 /// What a ray has gathered.
 struct RayColor
 {
@@ -132,6 +139,11 @@ struct BrickKernel
   /// batch.
   void (*differentiate)(const BrickFormat& format, const SampleBatch& batch, const int* which,
                         int count, GradientBatch& gradients);
+
+  /// Lights the first `count` samples by their gradients per voxel of level 0: to a millionth of
+  /// the light, where these can tell a direction; others get the ambient part.
+  void (*light)(const DiffuseLights& lights, const GradientBatch& gradients, int count,
+                LightBatch& light);
 
   /// Composites `count` samples front to back until transmittance falls to `opaque`; returns how
   /// many were used. Adds to `clamped` those outside their range.

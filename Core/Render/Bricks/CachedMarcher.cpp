@@ -18,7 +18,8 @@ CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
         scene.settings.preIntegrated->kernelLookup(scene.settings.step * scene.settings.unitsPerT);
   }
   if (scene.shading != nullptr && !scene.settings.projector.findsSurfaces()) {
-    this->Shader.emplace(*scene.shading, BrickGradients(*scene.bricks, scene.format, scene.kernel));
+    this->Shader.emplace(*scene.shading, BrickGradients(*scene.bricks, scene.format, scene.kernel),
+                         scene.kernel);
   }
 }
 

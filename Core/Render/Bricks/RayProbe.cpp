@@ -53,8 +53,10 @@ bool RayProbe::findGradient(float contribution, RequestList& requests, glm::vec3
   const int first = 0;
   const auto missing =
       this->Stops ? BrickGradients::Missing::Stop : BrickGradients::Missing::OneSided;
-  return this->Gradients.find(this->Batch, &this->Brick, &first, 1, missing, contribution, requests,
-                              &gradient) == 1;
+  const bool found = this->Gradients.find(this->Batch, &this->Brick, &first, 1, missing,
+                                          contribution, requests) == 1;
+  gradient = this->Gradients.latest(0);
+  return found;
 }
 
 } // namespace inr

@@ -18,20 +18,40 @@ int SampleShader::shade(const SampleBatch& batch, int count, const Request& requ
   if (seen == 0) {
     return count;
   }
-  glm::vec3 gradients[SampleBatch::Capacity];
   const int found =
       std::min(seen, this->Gradients.find(batch, request.bricks, visible, seen, request.missing,
-                                          request.transmittance, requests, gradients));
-  const ShadingView& lighting = this->Lighting.view();
-  const glm::dvec3 toEye = lighting.toEye(request.ray);
-  for (int k = 0; k < found; ++k) {
-    glm::vec4& color = colors[visible[k]];
-    const glm::dvec3 index =
-        request.t != nullptr ? request.ray.at(request.t[visible[k]]) : glm::dvec3(0.0);
-    const glm::vec3 lit = lighting.shade(glm::vec3(color), toEye, index, gradients[k]);
-    color = glm::vec4(lit, color.w);
+                                          request.transmittance, requests));
+  if (this->Lighting.diffuse() != nullptr) {
+    this->multiply(visible, found, colors);
+  } else {
+    this->shadeEach(visible, found, request, colors);
   }
   return found < seen ? visible[found] : count;
+}
+
+void SampleShader::multiply(const int* which, int count, glm::vec4* colors)
+{
+  this->Kernel.light(*this->Lighting.diffuse(), this->Gradients.latest(), count, this->Light);
+  for (int k = 0; k < count; ++k) {
+    glm::vec4& color = colors[which[k]];
+    for (int channel = 0; channel < 3; ++channel) {
+      color[channel] *= this->Light.rgb[channel][k];
+    }
+  }
+}
+
+void SampleShader::shadeEach(const int* which, int count, const Request& request,
+                             glm::vec4* colors) const
+{
+  const ShadingView& lighting = this->Lighting.view();
+  const glm::dvec3 toEye = lighting.toEye(request.ray);
+  for (int k = 0; k < count; ++k) {
+    glm::vec4& color = colors[which[k]];
+    const glm::dvec3 index =
+        request.t != nullptr ? request.ray.at(request.t[which[k]]) : glm::dvec3(0.0);
+    const glm::vec3 lit = lighting.shade(glm::vec3(color), toEye, index, this->Gradients.latest(k));
+    color = glm::vec4(lit, color.w);
+  }
 }
 
 } // namespace inr

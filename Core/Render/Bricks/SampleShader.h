@@ -13,8 +13,8 @@ namespace inr {
 class SampleShader
 {
 public:
-  SampleShader(const Shading& shading, const BrickGradients& gradients)
-      : Lighting(shading), Gradients(gradients)
+  SampleShader(const Shading& shading, const BrickGradients& gradients, const BrickKernel& kernel)
+      : Lighting(shading), Gradients(gradients), Kernel(kernel)
   {}
 
   /// How a ray's samples are looked at.
@@ -35,8 +35,14 @@ public:
   std::int64_t gradients() const { return this->Gradients.found(); } ///< so far
 
 private:
+  /// Those which[0 .. count) of the colours, whose gradients were found.
+  void multiply(const int* which, int count, glm::vec4* colors);
+  void shadeEach(const int* which, int count, const Request& request, glm::vec4* colors) const;
+
   const Shading& Lighting;
   BrickGradients Gradients;
+  const BrickKernel& Kernel;
+  LightBatch Light{};
 };
 
 } // namespace inr
