@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/CudaAccelerator.h"
 
-#include "CUDA/Engine.h"
+#include "CUDA/Render/Renderers.h"
 
 #include <algorithm>
 #include <mutex>
@@ -28,51 +28,64 @@ public:
 
   std::shared_ptr<const Evaluator> makeEvaluator(const ModelPointer& model) const override
   {
-    return MakeEvaluator(this->uploaded(model));
+    return MakeEvaluator(this->uploaded(model).copy);
   }
 
   std::shared_ptr<const BrickSource> makeBrickSource(const ModelPointer& model,
                                                      const Hierarchy& hierarchy) const override
   {
-    return MakeBrickSource(this->uploaded(model), hierarchy);
+    return MakeBrickSource(this->uploaded(model).copy, hierarchy);
   }
 
   std::shared_ptr<AcceleratedRenderer> makeRenderer(const ModelPointer& model,
                                                     const glm::i64vec3& dims,
                                                     const CacheOptions& options) const override
   {
-    return MakeRenderer(this->uploaded(model), dims, options);
+    const Uploaded uploaded = this->uploaded(model);
+    return MakeRenderer(uploaded.copy, *uploaded.stores, dims, options);
   }
 
   std::shared_ptr<AcceleratedRenderer> makeNetworkRenderer(const ModelPointer& model) const override
   {
-    return MakeNetworkRenderer(this->uploaded(model));
+    return MakeNetworkRenderer(this->uploaded(model).copy);
   }
 
 private:
-  /// One copy for all that is made of a model.
-  std::shared_ptr<const DeviceModel> uploaded(const ModelPointer& model) const
+  struct Uploaded
+  {
+    std::shared_ptr<const DeviceModel> copy;
+    std::shared_ptr<DeviceStores> stores;
+  };
+  /// As long as there is the copy.
+  struct Known
+  {
+    std::weak_ptr<const Model> model;
+    std::weak_ptr<const DeviceModel> copy;
+    std::shared_ptr<DeviceStores> stores; ///< which know of caches, but keep none
+  };
+
+  /// The same for all that is made of a model.
+  Uploaded uploaded(const ModelPointer& model) const
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
-    const auto isGone = [](const auto& entry) { return entry.second.expired(); };
-    this->Uploaded.erase(std::remove_if(this->Uploaded.begin(), this->Uploaded.end(), isGone),
-                         this->Uploaded.end());
-    for (const auto& entry : this->Uploaded) {
-      std::shared_ptr<const DeviceModel> copy = entry.second.lock();
-      if (copy && entry.first.lock() == model) {
-        return copy;
+    const auto isGone = [](const Known& entry) { return entry.copy.expired(); };
+    this->Entries.erase(std::remove_if(this->Entries.begin(), this->Entries.end(), isGone),
+                        this->Entries.end());
+    for (const Known& entry : this->Entries) {
+      std::shared_ptr<const DeviceModel> copy = entry.copy.lock();
+      if (copy && entry.model.lock() == model) {
+        return {copy, entry.stores};
       }
     }
-    std::shared_ptr<const DeviceModel> copy = UploadModel(model, this->Where, this->Kind);
-    this->Uploaded.emplace_back(model, copy);
-    return copy;
+    const Uploaded made{UploadModel(model, this->Where, this->Kind), MakeStores()};
+    this->Entries.push_back({model, made.copy, made.stores});
+    return made;
   }
 
   Device Where;
   Precision Kind;
   mutable std::mutex Mutex; ///< guards what follows
-  mutable std::vector<std::pair<std::weak_ptr<const Model>, std::weak_ptr<const DeviceModel>>>
-      Uploaded;
+  mutable std::vector<Known> Entries;
 };
 
 // The process may end, or this library go, with or without somebody holding one.

@@ -2,7 +2,7 @@
 //
 // What takes the place of the GPU's part in a build without a CUDA compiler.
 #include "CUDA/CudaTrainer.h"
-#include "CUDA/Engine.h"
+#include "CUDA/Render/Renderers.h"
 #include "Core/Error.h"
 
 namespace inr {
@@ -28,8 +28,11 @@ std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const DeviceM
   Refuse();
 }
 
+std::shared_ptr<DeviceStores> MakeStores() { Refuse(); }
+
 std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>&,
-                                                  const glm::i64vec3&, const CacheOptions&)
+                                                  DeviceStores&, const glm::i64vec3&,
+                                                  const CacheOptions&)
 {
   Refuse();
 }

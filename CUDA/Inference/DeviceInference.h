@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "CUDA/Cache/DeviceCache.h"
 #include "CUDA/Device/Machine.h"
 #include "CUDA/Inference/PlannedModel.h"
 
@@ -28,8 +27,6 @@ public:
                                 machine.stream());
   }
 };
-
-extern template class DeviceCache<GpuMachine, DeviceInference>;
 
 } // namespace cuda
 } // namespace inr

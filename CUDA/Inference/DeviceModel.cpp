@@ -2,7 +2,6 @@
 #include "CUDA/Inference/DeviceModel.h"
 
 #include "CUDA/Device/Launch.h"
-#include "CUDA/Render/DeviceStores.h"
 
 #include <algorithm>
 #include <utility>
@@ -93,7 +92,7 @@ DeviceModel::FloatCopy::FloatCopy(const Model& model, int device, const Stream& 
 }
 
 DeviceModel::DeviceModel(ModelPointer model, const Device& device, Precision precision)
-    : Source(std::move(model)), Where(device), Stores(std::make_unique<DeviceStores>())
+    : Source(std::move(model)), Where(device)
 {
   const CurrentDevice current(device.ordinal);
   const bool half = precision == Precision::Half;
@@ -115,8 +114,6 @@ DeviceModel::DeviceModel(ModelPointer model, const Device& device, Precision pre
   CheckedLayout(*this->Source); // throws where it is not valid
   this->Plain.emplace(*this->Source, device.ordinal, stream);
 }
-
-DeviceModel::~DeviceModel() = default;
 
 LaunchPlan DeviceModel::plan(bool bricks) const
 {

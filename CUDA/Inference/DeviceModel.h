@@ -2,9 +2,9 @@
 #pragma once
 
 #include "CUDA/Device/Runtime.h"
-#include "CUDA/Engine.h"
 #include "CUDA/Inference/Kernels/BrickKernels.h"
 #include "CUDA/Inference/PackedModel.h"
+#include "CUDA/Inference/UploadedModel.h"
 
 #include <optional>
 
@@ -20,16 +20,10 @@ struct LaunchPlan
   std::int64_t scratch; ///< floats that plain kernels want, for all of these blocks
 };
 
-class DeviceStores;
-
 class DeviceModel
 {
 public:
   DeviceModel(ModelPointer model, const Device& device, Precision precision);
-  ~DeviceModel();
-
-  /// What its renderers share.
-  DeviceStores& stores() const { return *this->Stores; }
 
   const ModelPointer& source() const { return this->Source; }
   const Device& device() const { return this->Where; }
@@ -113,7 +107,6 @@ private:
   std::optional<FusedCopy<HalfNumbers>> Half; ///< one of the three
   std::optional<FusedCopy<FloatNumbers>> Wide;
   std::optional<FloatCopy> Plain;
-  std::unique_ptr<DeviceStores> Stores;
 };
 
 } // namespace cuda

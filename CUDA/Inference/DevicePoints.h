@@ -3,7 +3,6 @@
 
 #include "CUDA/Device/Machine.h"
 #include "CUDA/Inference/PlannedModel.h"
-#include "CUDA/Render/NetworkRenderer.h"
 
 #include <memory>
 #include <utility>
@@ -27,8 +26,6 @@ public:
                                 machine.stream());
   }
 };
-
-extern template class NetworkRenderer<GpuMachine, DevicePoints>;
 
 } // namespace cuda
 } // namespace inr

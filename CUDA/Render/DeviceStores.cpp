@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/Render/DeviceStores.h"
 
-#include "CUDA/Engine.h"
+#include "CUDA/Render/Renderers.h"
 
 #include <algorithm>
 
@@ -40,12 +40,14 @@ std::shared_ptr<GpuStore> DeviceStores::storeFor(const std::shared_ptr<const Dev
   return store;
 }
 
+std::shared_ptr<DeviceStores> MakeStores() { return std::make_shared<DeviceStores>(); }
+
 std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>& model,
-                                                  const glm::i64vec3& dims,
+                                                  DeviceStores& stores, const glm::i64vec3& dims,
                                                   const CacheOptions& options)
 {
   return std::make_shared<DeviceRenderer<GpuMachine, GpuCache>>(
-      model->stores().storeFor(model, dims, options), options);
+      stores.storeFor(model, dims, options), options);
 }
 
 } // namespace cuda

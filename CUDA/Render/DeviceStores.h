@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "CUDA/Inference/DeviceInference.h"
+#include "CUDA/Cache/GpuCache.h"
 #include "CUDA/Render/DeviceRenderer.h"
+#include "CUDA/Render/DeviceStore.h"
 
 #include <memory>
 #include <mutex>
@@ -11,7 +12,6 @@
 namespace inr {
 namespace cuda {
 
-using GpuCache = DeviceCache<GpuMachine, DeviceInference>;
 using GpuStore = DeviceStore<GpuMachine, GpuCache>;
 
 extern template class DeviceRenderer<GpuMachine, GpuCache>;

@@ -3,7 +3,7 @@
 // Where the kernels run in a test: on the host, and on this machine's GPU where there is one.
 #pragma once
 
-#include "CUDA/Engine.h"
+#include "CUDA/Render/Renderers.h"
 #include "Testing/CUDA/Emulated.h"
 
 #include <gtest/gtest.h>

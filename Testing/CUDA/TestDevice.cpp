@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What is said of GPUs and of models that they cannot have.
-#include "CUDA/Engine.h"
 #include "CUDA/Inference/Kernels/BrickInputs.h"
 #include "CUDA/Inference/PackedModel.h"
+#include "CUDA/Render/Renderers.h"
 #include "Core/Error.h"
 #include "Testing/Core/RandomModel.h"
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CUDA/Cache/DeviceCache.h"
-
-#include "CUDA/Inference/DeviceInference.h"
+#include "CUDA/Cache/GpuCache.h"
 
 namespace inr {
 namespace cuda {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/Inference/DevicePoints.h"
-
-#include "CUDA/Engine.h"
+#include "CUDA/Render/NetworkRenderer.h"
+#include "CUDA/Render/Renderers.h"
 
 namespace inr {
 namespace cuda {

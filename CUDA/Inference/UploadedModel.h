@@ -4,8 +4,7 @@
 #include "CUDA/Device/Device.h"
 #include "CUDA/Inference/Precision.h"
 #include "Core/Cache/BrickSource.h"
-#include "Core/Render/Acceleration/AcceleratedRenderer.h"
-#include "Core/Render/CachedRenderer.h"
+#include "Core/Inference/Evaluator.h"
 
 #include <memory>
 
@@ -29,16 +28,6 @@ std::shared_ptr<const Evaluator> MakeEvaluator(std::shared_ptr<const DeviceModel
 /// The same otherwise.
 std::shared_ptr<const BrickSource> MakeBrickSource(std::shared_ptr<const DeviceModel> model,
                                                    const Hierarchy& hierarchy);
-
-/// What draws pictures of the model, shown with so many voxels: cache, rays and paths are on the
-/// GPU. Renderers that could share a cache do. Throws Error(Device) where the GPU fails or has too
-/// little memory.
-std::shared_ptr<AcceleratedRenderer> MakeRenderer(const std::shared_ptr<const DeviceModel>& model,
-                                                  const glm::i64vec3& dims,
-                                                  const CacheOptions& options);
-/// The same straight from its network.
-std::shared_ptr<AcceleratedRenderer>
-MakeNetworkRenderer(const std::shared_ptr<const DeviceModel>& model);
 
 } // namespace cuda
 } // namespace inr
