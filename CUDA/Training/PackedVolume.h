@@ -4,7 +4,7 @@
 #include "CUDA/Training/Kernels/TrainDraw.h"
 #include "Core/Training/Samples/SampleSource.h"
 #include "Core/Training/Samples/StratifiedPositions.h"
-#include "Core/Training/Scalars.h"
+#include "Core/Training/Volume/Scalars.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -4,8 +4,8 @@
 #include "Core/Model/Model.h"
 #include "Core/Training/Checkpoint/CheckpointOptions.h"
 #include "Core/Training/Descent/TrainingAccelerator.h"
-#include "Core/Training/Volume.h"
-#include "Core/Training/VolumeReader.h"
+#include "Core/Training/Volume/Volume.h"
+#include "Core/Training/Volume/VolumeReader.h"
 
 #include <cstdint>
 #include <functional>

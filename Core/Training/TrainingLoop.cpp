@@ -4,8 +4,9 @@
 #include "Core/Error.h"
 #include "Core/NumberText.h"
 #include "Core/Training/Descent/GradientDescent.h"
-#include "Core/Training/NoMemory.h"
 #include "Core/Training/Quantise.h"
+#include "Core/Training/Runtime/LearningRate.h"
+#include "Core/Training/Runtime/NoMemory.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,11 +5,11 @@
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Training/Checkpoint/CheckpointKeeper.h"
 #include "Core/Training/Descent/Descent.h"
-#include "Core/Training/Parallel/TrainingGroup.h"
 #include "Core/Training/Quality/PsnrEstimate.h"
+#include "Core/Training/Runtime/TrainingClock.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
 #include "Core/Training/StepPlan.h"
 #include "Core/Training/Trainer.h"
-#include "Core/Training/TrainingClock.h"
 
 #include <cstdint>
 #include <functional>

@@ -10,11 +10,11 @@
 #include "Core/Model/Quantised.h"
 #include "Core/NumberText.h"
 #include "Core/Timer.h"
-#include "Core/Training/Checkpoint/TrainingIdentity.h"
 #include "Core/Training/Descent/AcceleratedDescent.h"
-#include "Core/Training/NoMemory.h"
 #include "Core/Training/Quality/Ssim.h"
 #include "Core/Training/Quantise.h"
+#include "Core/Training/Runtime/NoMemory.h"
+#include "Core/Training/TrainingIdentity.h"
 #include "Core/Training/TrainingLoop.h"
 
 #include <Imath/half.h>

@@ -3,8 +3,8 @@
 
 #include "Core/Training/Checkpoint/Checkpoint.h"
 #include "Core/Training/Checkpoint/CheckpointKeeper.h"
-#include "Core/Training/Parallel/TrainingGroup.h"
 #include "Core/Training/Quality/PsnrEstimate.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
 #include "Core/Training/Samples/BatchSource.h"
 #include "Core/Training/Trainer.h"
 

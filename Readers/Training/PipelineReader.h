@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/VolumeReader.h"
+#include "Core/Training/Volume/VolumeReader.h"
 #include "Readers/Training/TrainingInput.h"
 
 #include <vtkSmartPointer.h>

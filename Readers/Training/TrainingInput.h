@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Model/Model.h"
-#include "Core/Training/Volume.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <vtkSmartPointer.h>
 

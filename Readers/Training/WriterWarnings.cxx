@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a vtkINRWriter tells of a model that is not what its user may take it for.
-#include "Core/Training/Quality/TargetReport.h"
+#include "Core/Training/TargetReport.h"
 #include "Readers/Training/WriterInternals.h"
 
 void vtkINRWriter::WarnOfWhole(const std::string& why)

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "Core/Error.h"
-#include "Core/Training/Volume.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <fstream>
 #include <iterator>

@@ -5,7 +5,7 @@
 
 #include "Core/Inference/Evaluator.h"
 #include "Core/Training/Quality/Quality.h"
-#include "Core/Training/Scalars.h"
+#include "Core/Training/Volume/Scalars.h"
 
 #include <glm/common.hpp>
 

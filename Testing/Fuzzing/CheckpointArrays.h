@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/StateArray.h"
+#include "Core/Training/Runtime/StateArray.h"
 
 #include <cstdint>
 #include <vector>

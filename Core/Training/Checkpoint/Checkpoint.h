@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Model/InputFile.h"
-#include "Core/Training/StateArray.h"
+#include "Core/Training/Runtime/StateArray.h"
 
 #include <cstdint>
 #include <map>

@@ -3,7 +3,7 @@
 
 #include "Core/Training/Checkpoint/Checkpoint.h"
 #include "Core/Training/Checkpoint/CheckpointOptions.h"
-#include "Core/Training/TrainingClock.h"
+#include "Core/Training/Runtime/TrainingClock.h"
 
 #include <optional>
 #include <string>

@@ -3,6 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/NumberText.h"
+#include "Core/Training/Runtime/LearningRate.h"
 
 #include <algorithm>
 #include <cmath>

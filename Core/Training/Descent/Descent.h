@@ -3,9 +3,9 @@
 
 #include "Core/AlignedVector.h"
 #include "Core/Inference/ModelView.h"
+#include "Core/Training/Runtime/StateArray.h"
+#include "Core/Training/Runtime/StopCheck.h"
 #include "Core/Training/Samples/BatchSource.h"
-#include "Core/Training/StateArray.h"
-#include "Core/Training/StopCheck.h"
 
 #include <cstdint>
 #include <optional>

@@ -5,10 +5,11 @@
 #include "Core/Inference/ModelView.h"
 #include "Core/Parallel.h"
 #include "Core/Training/Descent/Descent.h"
+#include "Core/Training/Descent/GradientExchange.h"
 #include "Core/Training/Descent/GridGradient.h"
 #include "Core/Training/Descent/Optimiser.h"
 #include "Core/Training/Descent/TrainKernel.h"
-#include "Core/Training/Parallel/GradientExchange.h"
+#include "Core/Training/Runtime/LearningRate.h"
 #include "Core/Training/Samples/BatchSource.h"
 
 #include <cstdint>

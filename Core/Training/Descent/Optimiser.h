@@ -8,8 +8,8 @@
 namespace inr {
 
 /// What is written into checkpoints: one by another optimiser would not go on to the same model. To
-/// be changed with any of the numbers in here, in Optimiser.cpp, AdamSchedule.{h,cpp} and
-/// NewtonSchulz.h.
+/// be changed with any of the numbers in here, in Optimiser.cpp, LearningRate.h,
+/// AdamSchedule.{h,cpp} and NewtonSchulz.h.
 constexpr const char* OptimiserName =
     "orthogonalised momentum, 0.95, 8 to 40 / sqrt t, up to 128; Adam, 0.9, 0.99 to 0.999";
 
@@ -19,18 +19,6 @@ constexpr float WeightDecay = 1e-6f;
 
 /// Share of a layer's momentum that every update keeps.
 constexpr float MomentumKept = 0.95f;
-
-/// Learning rate over a training of planned length: constant at first, then falling in a straight
-/// line to a low one, at which it stays. A function of step and plan alone, so that a run stopped
-/// by the clock can be repeated.
-struct LearningRate
-{
-  float initial = 1e-2f;
-  float last = 1e-4f;
-  static constexpr std::uint64_t ConstantShare = 10; ///< the first tenth of the planned steps
-
-  float at(std::uint64_t step, std::uint64_t plannedSteps) const;
-};
 
 /// The layers, from the first on, that are updated by orthogonalised momentum: the hidden ones,
 /// unless they are wide. Adam's are the others, of which the last is a single row.

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "Core/Model/Description.h"
+#include "Core/Training/Runtime/StateArray.h"
 #include "Core/Training/Samples/SampleSource.h"
-#include "Core/Training/StateArray.h"
 
 #include <glm/vec3.hpp>
 

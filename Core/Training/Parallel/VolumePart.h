@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/Parallel/TrainingGroup.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
 #include "Core/Training/Samples/SampleSource.h"
-#include "Core/Training/Volume.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <cstdint>
 

@@ -3,9 +3,9 @@
 
 #include "Core/Model/MacroCells.h"
 #include "Core/Parallel.h"
-#include "Core/Training/Parallel/TrainingGroup.h"
-#include "Core/Training/StateArray.h"
-#include "Core/Training/Volume.h"
+#include "Core/Training/Runtime/StateArray.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -3,8 +3,8 @@
 
 #include "Core/Inference/EvaluateKernel.h"
 #include "Core/Parallel.h"
+#include "Core/Training/Runtime/StopCheck.h"
 #include "Core/Training/Samples/SampleSource.h"
-#include "Core/Training/StopCheck.h"
 
 #include <cstdint>
 #include <vector>

@@ -4,7 +4,7 @@
 #include "Core/Error.h"
 #include "Core/GridBox.h"
 #include "Core/Training/Quality/Ssim.h"
-#include "Core/Training/Scalars.h"
+#include "Core/Training/Volume/Scalars.h"
 
 #include <algorithm>
 #include <cmath>

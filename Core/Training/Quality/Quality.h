@@ -2,9 +2,9 @@
 #pragma once
 
 #include "Core/Inference/Evaluator.h"
-#include "Core/Training/Parallel/TrainingGroup.h"
 #include "Core/Training/Quality/CellRanges.h"
-#include "Core/Training/Volume.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <cstdint>
 #include <functional>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "Core/Model/Model.h"
+#include "Core/Training/Runtime/StateArray.h"
+#include "Core/Training/Runtime/StopCheck.h"
 #include "Core/Training/Samples/SampleSource.h"
 #include "Core/Training/Samples/StratifiedPositions.h"
-#include "Core/Training/StateArray.h"
-#include "Core/Training/StopCheck.h"
 
 #include <glm/vec3.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Training/Samples/HalvedCube.h"
-#include "Core/Training/Volume.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <cstdint>
 #include <utility>

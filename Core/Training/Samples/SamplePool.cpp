@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/Samples/SamplePool.h"
 
-#include "Core/Training/Descent/Optimiser.h"
+#include "Core/Training/Runtime/LearningRate.h"
 #include "Core/Training/Samples/RandomStream.h"
 
 #include <algorithm>

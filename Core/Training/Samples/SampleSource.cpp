@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/Samples/SampleSource.h"
 
-#include "Core/Training/Scalars.h"
+#include "Core/Training/Volume/Scalars.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Training/Samples/Trilinear.h"
-#include "Core/Training/Volume.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <glm/vec3.hpp>
 

@@ -4,7 +4,7 @@
 #include "Core/GridBox.h"
 #include "Core/Random.h"
 #include "Core/Training/Samples/Trilinear.h"
-#include "Core/Training/Scalars.h"
+#include "Core/Training/Volume/Scalars.h"
 
 #include <algorithm>
 #include <limits>

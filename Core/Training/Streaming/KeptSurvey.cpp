@@ -4,7 +4,7 @@
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
 #include "Core/Training/Checkpoint/Checkpoint.h"
-#include "Core/Training/Checkpoint/TrainingIdentity.h"
+#include "Core/Training/TrainingIdentity.h"
 
 #include <algorithm>
 #include <filesystem>

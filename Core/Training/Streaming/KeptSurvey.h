@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/Parallel/TrainingGroup.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
 #include "Core/Training/Streaming/StreamedVolume.h"
 #include "Core/Training/Trainer.h"
 #include "Core/Training/TrainingRun.h"

@@ -3,7 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Mebibytes.h"
-#include "Core/Training/Parallel/GradientExchange.h"
+#include "Core/Training/Descent/GradientExchange.h"
 #include "Core/Training/Samples/BatchSource.h"
 #include "Core/Training/Samples/BlockGrid.h"
 #include "Core/Training/TrainingRun.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Error.h"
-#include "Core/Training/NoMemory.h"
 #include "Core/Training/Parallel/ParallelTraining.h"
 #include "Core/Training/ProgressRelay.h"
+#include "Core/Training/Runtime/NoMemory.h"
 #include "Core/Training/Streaming/KeptSurvey.h"
 #include "Core/Training/Streaming/StreamBudget.h"
 #include "Core/Training/Streaming/StreamedVolume.h"

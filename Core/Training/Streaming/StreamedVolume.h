@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/Parallel/TrainingGroup.h"
 #include "Core/Training/Quality/CellRanges.h"
 #include "Core/Training/Quality/PsnrEstimate.h"
 #include "Core/Training/Quality/Quality.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
 #include "Core/Training/Samples/SamplePool.h"
 #include "Core/Training/Streaming/StreamBudget.h"
-#include "Core/Training/VolumeReader.h"
+#include "Core/Training/Volume/VolumeReader.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Random.h"
-#include "Core/Training/Parallel/GradientExchange.h"
+#include "Core/Training/Descent/GradientExchange.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/ThreadGroup.h"
 

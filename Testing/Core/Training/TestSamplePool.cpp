@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a pool gives is what the volume holds, and every region of it equally often.
-#include "Core/Training/Descent/Optimiser.h"
+#include "Core/Training/Runtime/LearningRate.h"
 #include "Core/Training/Samples/SamplePool.h"
 #include "Testing/Core/Training/FieldReader.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // How many steps the learning rate is spread over.
-#include "Core/Training/Descent/Optimiser.h"
+#include "Core/Training/Runtime/LearningRate.h"
 #include "Core/Training/StepPlan.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"

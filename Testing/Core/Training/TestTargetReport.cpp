@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a user is told of a quality that was not reached.
-#include "Core/Training/Quality/TargetReport.h"
+#include "Core/Training/TargetReport.h"
 #include "Testing/Core/RandomModel.h"
 #include "Testing/Core/Training/Fields.h"
 

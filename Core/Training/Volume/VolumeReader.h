@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Training/Volume.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <glm/gtc/type_precision.hpp>
 

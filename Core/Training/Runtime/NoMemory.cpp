@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/NoMemory.h"
+#include "Core/Training/Runtime/NoMemory.h"
 
 namespace inr {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/Volume.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include "Core/GridBox.h"
-#include "Core/Training/Scalars.h"
+#include "Core/Training/Volume/Scalars.h"
 
 #include <algorithm>
 #include <cmath>

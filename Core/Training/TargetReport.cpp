@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/Quality/TargetReport.h"
+#include "Core/Training/TargetReport.h"
 
 #include <cstdio>
 

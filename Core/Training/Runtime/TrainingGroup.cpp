@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/Parallel/TrainingGroup.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
 
 #include "Core/Error.h"
-#include "Core/Training/NoMemory.h"
+#include "Core/Training/Runtime/NoMemory.h"
 
 #include <algorithm>
 #include <exception>

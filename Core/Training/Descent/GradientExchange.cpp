@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/Parallel/GradientExchange.h"
+#include "Core/Training/Descent/GradientExchange.h"
 
 #include "Core/Model/LittleEndian.h"
 #include "Core/Timer.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Training/Checkpoint/TrainingIdentity.h"
+#include "Core/Training/TrainingIdentity.h"
 
 #include "Core/Model/DescriptionJson.h"
 #include "Core/Model/ModelBlobs.h"

@@ -4,7 +4,7 @@
 #include "Core/Model/Description.h"
 #include "Core/Parallel.h"
 #include "Core/Training/Descent/GridGradient.h"
-#include "Core/Training/Parallel/TrainingGroup.h"
+#include "Core/Training/Runtime/TrainingGroup.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Error.h"
-#include "Core/Training/Volume.h"
+#include "Core/Training/Volume/Volume.h"
 
 #include <cmath>
 #include <cstdint>
