@@ -93,15 +93,21 @@ std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer)
   return shown;
 }
 
+void DirectionInWorld(int axis, vtkImageData& image, vtkMatrix4x4& matrix, double way[4])
+{
+  for (int row = 0; row < 3; ++row) {
+    way[row] = image.GetDirectionMatrix()->GetElement(row, axis);
+  }
+  way[3] = 0; // a direction, which is not moved
+  matrix.MultiplyPoint(way, way);
+}
+
 bool IsTurned(vtkImageData* image, vtkMatrix4x4* matrix)
 {
   constexpr double most = 1e-6; // of the volume's size, which no pixel shows
   for (int axis = 0; image && axis < 3; ++axis) {
-    double way[4] = {};
-    for (int row = 0; row < 3; ++row) {
-      way[row] = image->GetDirectionMatrix()->GetElement(row, axis);
-    }
-    matrix->MultiplyPoint(way, way);
+    double way[4];
+    DirectionInWorld(axis, *image, *matrix, way);
     const double longest = std::max({std::abs(way[0]), std::abs(way[1]), std::abs(way[2])});
     if (std::abs(way[0]) + std::abs(way[1]) + std::abs(way[2]) > (1 + most) * longest) {
       return true;

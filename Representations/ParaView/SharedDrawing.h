@@ -26,6 +26,10 @@ bool HasSize(vtkVolume* volume);
 /// The INR volumes that `renderer` shows, in the same order in all processes.
 std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer);
 
+/// Where an axis of an image in a volume with that matrix leads in the world, as long as a unit of
+/// it is there.
+void DirectionInWorld(int axis, vtkImageData& image, vtkMatrix4x4& matrix, double way[4]);
+
 /// Whether the axes of an image in a volume with that matrix are not the world's, so that boxes
 /// along these around its pieces meet. Not of no image.
 bool IsTurned(vtkImageData* image, vtkMatrix4x4* matrix);

@@ -15,9 +15,10 @@ public:
   /// when this was called last, in all processes alike.
   bool update(vtkINRVolumeMapper& mapper, const double piece[6], vtkMatrix4x4& matrix);
 
-  /// Of the box in the world around the piece. Where the volume is turned, so that such boxes meet,
-  /// of the same part of the box around all of it: surfaces would be nobody's between boxes that
-  /// meet and, as all processes draw such a volume together, what each has may be any part.
+  /// The same part of the box in the world around all of it, so that neighbours' boxes meet to the
+  /// last bit: surfaces would be nobody's between boxes that do not, or overlap. It is the box
+  /// around the piece where the volume is not turned and, as all processes draw one that is turned
+  /// together, any part there.
   double* bounds() { return this->Bounds; }
 
 private:
