@@ -63,6 +63,12 @@ def pictures(where, chosen=None):
     make_glass(1)
     glass[3].Visibility = glass[4].Visibility = 0
     take("turned")
+    # Sines of right angles are not 0, and pieces' boxes are to meet all the same.
+    sheet = simple.Show(simple.Plane(Origin=[-20, -20, 41], Point1=[120, -20, 49], Point2=[-20, 120, 37]), view)
+    for angles in ([0, 180, 0], [90, 0, 0], [0, 90, 0]):
+        display.Orientation = angles
+        take(f"turned by {max(angles)} degrees {angles.index(max(angles))}")
+    sheet.Visibility = 0
     look_at(view)
     display.Origin = display.Orientation = [0, 0, 0]
     second = simple.Show(simple.INRReader(FileName=MODEL), view)
