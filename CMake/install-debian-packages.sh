@@ -15,6 +15,7 @@ packages=(
   paraview paraview-dev python3-paraview libdouble-conversion-dev liblz4-dev libopenmpi-dev
   libglew-dev libfreetype-dev libx11-dev libgl-dev libexpat1-dev zlib1g-dev libpng-dev python3-dev
   openmpi-bin libgl1-mesa-dri
+  libqt5svg5 # the icons in ParaView's window
   qttools5-dev qtxmlpatterns5-dev-tools # for the help in ParaView's window
   "${own[@]}" xvfb xauth
 )

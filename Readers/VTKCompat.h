@@ -33,6 +33,16 @@
 #define INR_VTK_ARRAY_CAPACITY Size
 #endif
 
+/// How many values there is room for.
+template <class Array> vtkIdType CapacityOf(const Array& array)
+{
+#ifdef INR_VTK_RESERVE_TUPLES
+  return array.GetCapacity();
+#else
+  return array.GetSize();
+#endif
+}
+
 /// Tables, statistics and writers of text go through arrays by iterators; later by array dispatch.
 #if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 7, 0)
 #define INR_VTK_ARRAY_ITERATORS

@@ -2,6 +2,7 @@
 #include "Readers/Contour/SurfaceBuilder.h"
 
 #include "Readers/MemoryCheck.h"
+#include "Readers/VTKCompat.h"
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
@@ -28,9 +29,8 @@ constexpr double BytesPerShared = 56;
 template <class Array> auto* Grow(Array* array, vtkIdType count)
 {
   const vtkIdType needed = array->GetNumberOfValues() + count;
-  if (needed > array->GetSize()) {
-    RequireRoom(static_cast<std::size_t>(array->GetSize() + needed) *
-                sizeof(typename Array::ValueType));
+  if (const vtkIdType capacity = CapacityOf(*array); needed > capacity) {
+    RequireRoom(static_cast<std::size_t>(capacity + needed) * sizeof(typename Array::ValueType));
   }
   auto* room = array->WritePointer(array->GetNumberOfValues(), count);
   if (!room) {

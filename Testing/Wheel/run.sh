@@ -60,7 +60,8 @@ echo "== Building the wheel"
 rm -rf "$work"/tools "$work"/clean "$work"/test "$work"/*.whl
 python3 -m venv "$work/tools"
 "$work/tools/bin/pip" install -q auditwheel
-"$work/tools/bin/pip" wheel -q --no-deps -w "$work/plain" . -C build-dir="$work/cmake"
+"$work/tools/bin/pip" wheel -q --no-deps -w "$work/plain" . -C build-dir="$work/cmake" \
+  -C cmake.define.INR_WERROR=true
 "$work/tools/bin/auditwheel" repair --exclude 'libvtk*' -w "$work" "$work"/plain/inrvolume-*.whl > "$work/auditwheel.log"
 rm -r "$work/plain"
 wheel=$(ls "$work"/inrvolume-*.whl)
