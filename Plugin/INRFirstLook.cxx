@@ -107,12 +107,11 @@ bool IsKnown(vtkSMDoubleVectorProperty* unitDistance) { return !(unitDistance->G
 /// ParaView's default is about the diagonal of a cell, which makes a volume of 4096^3 look solid
 /// and would follow MaximumGridPoints here. The panel's does not depend on the grid. What somebody
 /// has set, under either name, stays.
-void SetUnitDistance(vtkSMProxy* representation)
+void SetUnitDistance(vtkSMProxy* representation, bool isStock)
 {
   auto* stock = GetDoubles(representation, "ScalarOpacityUnitDistance");
   auto* panel = GetDoubles(representation, "INRUnitDistance");
-  const bool isNew =
-      stock->GetElement(0) == DomainDefault(stock) && panel->GetElement(0) == stock->GetElement(0);
+  const bool isNew = isStock && panel->GetElement(0) == stock->GetElement(0);
   const double wanted = DomainDefault(panel); // below 0 where there are no bounds yet
   if ((isNew || !IsKnown(panel)) && wanted > 0) {
     panel->SetElement(0, wanted);
@@ -125,7 +124,13 @@ void SetUnitDistance(vtkSMProxy* representation)
 
 } // namespace
 
-void INRGiveFirstLook(vtkSMProxy* proxy)
+bool INRIsUnitDistanceStock(vtkSMProxy* representation)
+{
+  auto* stock = GetDoubles(representation, "ScalarOpacityUnitDistance");
+  return stock->GetElement(0) == DomainDefault(stock);
+}
+
+void INRGiveFirstLook(vtkSMProxy* proxy, bool isUnitDistanceStock)
 {
   auto* representation = vtkSMPVRepresentationProxy::SafeDownCast(proxy);
   if (!representation || !INRIsShown(proxy) ||
@@ -137,7 +142,7 @@ void INRGiveFirstLook(vtkSMProxy* proxy)
     if (array && !representation->GetUsingScalarColoring()) {
       ColourBy(representation, array);
     }
-    SetUnitDistance(representation);
+    SetUnitDistance(representation, isUnitDistanceStock || INRIsUnitDistanceStock(representation));
   }
 }
 

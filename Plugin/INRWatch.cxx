@@ -54,6 +54,9 @@ public:
     } else if (property && INRIsShown(representation)) {
       INRPassOn(representation, property);
     }
+    if (property && std::strcmp(property, "ScalarOpacityUnitDistance") == 0) {
+      this->IsUnitDistanceStock = INRIsUnitDistanceStock(representation);
+    }
   }
 
 private:
@@ -70,10 +73,11 @@ private:
       }
       this->WasShown = isShown;
     }
-    INRGiveFirstLook(representation);
+    INRGiveFirstLook(representation, this->IsUnitDistanceStock);
   }
 
-  bool WasShown = false; ///< when it was a volume last
+  bool WasShown = false;            ///< when it was a volume last
+  bool IsUnitDistanceStock = false; ///< since it was set, as by "Restore defaults"
 };
 
 void OnRegister(vtkObject*, unsigned long, void*, void* callData)

@@ -115,6 +115,20 @@ check(stock.ScalarOpacityUnitDistance == before, "the plugin changes stock volum
 check(before < 3, "the plugin changes ParaView's default", before)
 simple.Delete(wavelet)
 
+# "Restore defaults" gives it ParaView's default and another type of representation. That default is no
+# choice, though the grid changes before the volume is shown again.
+reader = simple.OpenDataFile(MODEL)
+display = simple.Show(reader, view)
+chosen = display.INRUnitDistance
+display.SetRepresentationType("Outline")
+display.SMProxy.GetProperty("ScalarOpacityUnitDistance").ResetToDomainDefaults()
+check(display.INRUnitDistance < chosen / 2, "ParaView's default is", display.INRUnitDistance, "not a cell's")
+reader.MaximumGridPoints = 1000
+reader.UpdatePipeline()
+display.SetRepresentationType("INR Volume")
+same(display, chosen)
+simple.Delete(reader)
+
 # What the panel's names were set to while something else was shown counts when the volume is.
 reader = simple.INRReader(FileName=MODEL)
 display = simple.Show(reader, view)
