@@ -11,8 +11,9 @@ find_package(VTK 9.1 QUIET
     RenderingUI RenderingVolumeOpenGL2 TestingRendering WrappingTools Python WrappingPythonCore
   HINTS "${inr_vtk_folder}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/vtk-9.1")
 if (NOT VTK_FOUND)
+  string(REGEX REPLACE "(.+)" " (\\1)" inr_vtk_reason "${VTK_NOT_FOUND_MESSAGE}")
   message(FATAL_ERROR
-    "VTK 9.1 or newer with its development files was not found (${VTK_NOT_FOUND_MESSAGE}).\n"
+    "VTK 9.1 or newer with its development files was not found${inr_vtk_reason}.\n"
     "On Debian 12 run: Testing/fetch-vtk.sh ${inr_vtk_folder}\n"
     "Elsewhere set VTK_DIR to the folder with vtk-config.cmake.")
 endif ()

@@ -51,12 +51,13 @@ Plane PlaneOf(vtkPlane* function)
   const double offset = function->FunctionValue(zero);
   const double length = glm::length(gradient);
   if (!std::isfinite(length) || !std::isfinite(offset)) {
-    throw inr::Error(inr::ErrorCode::InvalidArgument,
-                     "the plane is nowhere; set an Origin and a Normal that are finite");
+    throw inr::Error(
+        inr::ErrorCode::InvalidArgument,
+        "the plane is nowhere; set an Origin and a Normal that are finite and not that large");
   }
   if (!(length > 0.0)) {
     throw inr::Error(inr::ErrorCode::InvalidArgument,
-                     "the plane has no direction; set a Normal other than 0 0 0");
+                     "the plane has no direction; set a Normal other than 0 0 0, or a longer one");
   }
   return {gradient / length, offset / length};
 }

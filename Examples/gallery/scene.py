@@ -24,6 +24,7 @@ WIND = [(0, 0), (0.1, 0), (0.3, 0.3), (0.6, 0.9), (1, 1)]
 def model_file(models, name):
     path = os.path.join(models, name + ".inr")
     if not os.path.exists(path):
+        os.makedirs(models, exist_ok=True)
         volume = simple.OpenDataFile(os.path.join(ROOT, "Testing", "Data", name + ".vti"))
         simple.SaveData(path, proxy=volume, MaximumSteps=4000, TimeLimit=0)
     return path

@@ -9,6 +9,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import __main__
+
+if {"-h", "--help"} & set(sys.argv[1:]):  # of any script that has results
+    print((__main__.__doc__ or "").strip())
+    sys.exit()
+
 FOLDER = Path(__file__).resolve().parent / "results"
 
 
@@ -78,7 +84,10 @@ def last(topic):
 
 
 def write(topic, results, **more):
-    """Writes and returns the path; see path_of. `more` for the context may name a `gpu`."""
+    """Writes and returns the path; see path_of. `more` for the context may name a `gpu`. Ends the
+    script when there is nothing to write, and leaves what is there."""
+    if not results:
+        sys.exit(f"nothing was measured, and no {topic}.json is written: what of? See --help.")
     about = {**CONTEXT, **more}
     path = path_of(topic, about)
     path.parent.mkdir(parents=True, exist_ok=True)

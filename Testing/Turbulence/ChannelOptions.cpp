@@ -69,8 +69,12 @@ TurbulentChannel::Parameters FieldFrom(const Options& options)
 {
   TurbulentChannel::Parameters field;
   field.seed = static_cast<std::uint64_t>(options.integer("--seed", 1));
-  field.octaves = static_cast<int>(std::clamp<std::int64_t>(
-      options.integer("--octaves", field.octaves), -1, 1000)); // judged by the field
+  const std::int64_t octaves = options.integer("--octaves", field.octaves);
+  field.octaves = static_cast<int>(octaves); // judged by the field
+  if (field.octaves != octaves) {
+    throw Error(ErrorCode::InvalidArgument,
+                "a turbulent channel has 1 to 8 octaves, not " + std::to_string(octaves));
+  }
   field.intensity = options.number("--intensity", field.intensity);
   field.time = options.number("--time", field.time);
   return field;

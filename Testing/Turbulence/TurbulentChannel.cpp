@@ -109,7 +109,8 @@ TurbulentChannel::TurbulentChannel(const Parameters& parameters) : Chosen(parame
           "a turbulent channel has 1 to 8 octaves, not " + std::to_string(parameters.octaves));
   Require(parameters.intensity >= 0 && parameters.intensity <= 1,
           "a turbulent channel's intensity is 0 to 1");
-  Require(std::abs(parameters.time) <= 1e6, "a turbulent channel's time is at most 1e6");
+  Require(std::abs(parameters.time) <= 1e6,
+          "a turbulent channel's time is a number from -1e6 to 1e6");
   for (int group = 0; group < Groups; ++group) {
     for (int wave = 0; wave < ChannelWaves; ++wave) {
       this->Modes.push_back(DrawMode(parameters, group, wave));

@@ -37,8 +37,11 @@ inr::RawVolumeFile FileFrom(const inr::Options& options)
     const std::string name = std::string("N") + "XYZ"[axis];
     const std::int64_t size =
         inr::ParseInteger(options.positional()[static_cast<std::size_t>(axis)], name);
-    if (size < 1 || size > mostVoxels / voxels) {
+    if (size < 1) {
       Refuse(name + ": " + std::to_string(size) + " is no size");
+    }
+    if (size > mostVoxels / voxels) {
+      Refuse("NX NY NZ: more than " + std::to_string(mostVoxels) + " voxels");
     }
     file.dims[axis] = size;
     voxels *= size;
