@@ -4,7 +4,7 @@
 #include "Core/Render/Bricks/BrickKernel.h"
 
 #include "Core/Inference/Lanes.h"
-#include "Core/Render/Bricks/DiffuseShading.h"
+#include "Core/Render/Bricks/DirectionalShading.h"
 #include "Core/Render/Bricks/FrontToBack.h"
 #include "Core/Render/Bricks/GradientSamples.h"
 #include "Core/Render/Bricks/IntegralCompositing.h"

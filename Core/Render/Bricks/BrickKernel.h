@@ -5,7 +5,7 @@
 #include "Core/Inference/InstructionSet.h"
 #include "Core/Render/Bricks/BrickPath.h"
 #include "Core/Render/Marching/ColorLookups.h"
-#include "Core/Render/Marching/DiffuseLights.h"
+#include "Core/Render/Marching/DirectionalLights.h"
 
 #include <cstdint>
 
@@ -98,10 +98,11 @@ struct GradientBatch
   std::int32_t inside[SampleBatch::Room];
 };
 
-/// Of samples, what their colours are multiplied with.
+/// Of samples, the light on them: colour * factor + added.
 struct LightBatch
 {
-  alignas(CacheLineBytes) float rgb[3][SampleBatch::Room];
+  alignas(CacheLineBytes) float factor[3][SampleBatch::Room];
+  float added[3][SampleBatch::Room];
 };
 
 /// What a ray has gathered.
@@ -140,10 +141,11 @@ struct BrickKernel
   void (*differentiate)(const BrickFormat& format, const SampleBatch& batch, const int* which,
                         int count, GradientBatch& gradients);
 
-  /// Lights the first `count` samples by their gradients per voxel of level 0: to a millionth of
-  /// the light, where these can tell a direction; others get the ambient part.
-  void (*light)(const DiffuseLights& lights, const GradientBatch& gradients, int count,
-                LightBatch& light);
+  /// Lights the first `count` samples by their gradients per voxel of level 0, seen from a world
+  /// unit vector's direction. Where gradients tell no direction, there is ambient light only. Of
+  /// the light, `factor` is off by some 2^-20 at most, `added` by that times the specular power.
+  void (*light)(const DirectionalLights& lights, const float (&toEye)[3],
+                const GradientBatch& gradients, int count, LightBatch& light);
 
   /// Composites `count` samples front to back until transmittance falls to `opaque`; returns how
   /// many were used. Adds to `clamped` those outside their range.

@@ -21,21 +21,25 @@ int SampleShader::shade(const SampleBatch& batch, int count, const Request& requ
   const int found =
       std::min(seen, this->Gradients.find(batch, request.bricks, visible, seen, request.missing,
                                           request.transmittance, requests));
-  if (this->Lighting.diffuse() != nullptr) {
-    this->multiply(visible, found, colors);
+  if (this->Lighting.directional() != nullptr) {
+    this->shadeAll(visible, found, request, colors);
   } else {
     this->shadeEach(visible, found, request, colors);
   }
   return found < seen ? visible[found] : count;
 }
 
-void SampleShader::multiply(const int* which, int count, glm::vec4* colors)
+void SampleShader::shadeAll(const int* which, int count, const Request& request, glm::vec4* colors)
 {
-  this->Kernel.light(*this->Lighting.diffuse(), this->Gradients.latest(), count, this->Light);
+  const glm::vec3 direction(this->Lighting.view().toEye(request.ray));
+  const float toEye[3] = {direction.x, direction.y, direction.z};
+  this->Kernel.light(*this->Lighting.directional(), toEye, this->Gradients.latest(), count,
+                     this->Light);
   for (int k = 0; k < count; ++k) {
     glm::vec4& color = colors[which[k]];
     for (int channel = 0; channel < 3; ++channel) {
-      color[channel] *= this->Light.rgb[channel][k];
+      color[channel] =
+          color[channel] * this->Light.factor[channel][k] + this->Light.added[channel][k];
     }
   }
 }

@@ -36,7 +36,8 @@ public:
 
 private:
   /// Those which[0 .. count) of the colours, whose gradients were found.
-  void multiply(const int* which, int count, glm::vec4* colors);
+  void shadeAll(const int* which, int count, const Request& request, glm::vec4* colors);
+  /// The same one after another, by any lights.
   void shadeEach(const int* which, int count, const Request& request, glm::vec4* colors) const;
 
   const Shading& Lighting;

@@ -5,12 +5,22 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace inr {
 
 namespace {
 
 bool IsDirectional(const Light& light) { return light.kind == LightKind::Directional; }
+
+bool HasHighlights(const Material& surface) { return surface.specular > 0.0f; }
+
+bool HasWholePower(const Material& surface)
+{
+  constexpr float most = 128; // VTK's
+  return surface.specularPower == std::floor(surface.specularPower) &&
+         surface.specularPower <= most;
+}
 
 double LargestElement(const glm::dmat3& matrix)
 {
@@ -39,21 +49,28 @@ Shading::Shading(const Frame& frame) : Lights(frame.lights)
   this->View.constantCount = static_cast<int>(this->Constant.size());
   this->View.toWorld = glm::inverse(frame.worldToIndex);
   this->View.gradientToWorld = glm::transpose(glm::dmat3(frame.worldToIndex));
-  if (!this->View.knowsPlaces() && !this->View.hasHighlights()) {
-    this->Diffuse = this->takeDiffuse();
+  const Material& surface = this->View.surface;
+  if (!this->View.knowsPlaces() && (!HasHighlights(surface) || HasWholePower(surface))) {
+    this->Directional = this->takeDirectional();
   }
 }
 
-DiffuseLights Shading::takeDiffuse()
+DirectionalLights Shading::takeDirectional()
 {
   const Material& surface = this->View.surface;
   for (const Illumination& light : this->Constant) {
     const glm::vec3 direction(light.toLight);
-    const glm::vec3 rgb = light.irradiance * static_cast<float>(1.0 / detail::Pi) * surface.diffuse;
-    this->DiffuseEach.push_back({{direction.x, direction.y, direction.z}, {rgb.r, rgb.g, rgb.b}});
+    const glm::vec3 rgb = light.irradiance * static_cast<float>(1.0 / detail::Pi);
+    this->DirectionalEach.push_back(
+        {{direction.x, direction.y, direction.z}, {rgb.r, rgb.g, rgb.b}});
   }
-  DiffuseLights all{
-      this->DiffuseEach.data(), static_cast<int>(this->DiffuseEach.size()), surface.ambient, {}};
+  DirectionalLights all{this->DirectionalEach.data(),
+                        static_cast<int>(this->DirectionalEach.size()),
+                        surface.ambient,
+                        surface.diffuse,
+                        surface.specular,
+                        HasHighlights(surface) ? static_cast<int>(surface.specularPower) : 0,
+                        {}};
   const glm::dmat3& toWorld = this->View.gradientToWorld;
   const double largest = LargestElement(toWorld);
   for (int row = 0; row < 3; ++row) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Marching/DiffuseLights.h"
+#include "Core/Render/Marching/DirectionalLights.h"
 #include "Core/Render/Marching/ShadingView.h"
 #include "Core/Render/Scene/Frame.h"
 
@@ -30,18 +30,21 @@ public:
   /// 0. As long as this lives, or what it is moved to.
   const ShadingView& view() const { return this->View; }
 
-  /// The same for the kernels; null where there are highlights, or lights that are somewhere. As
-  /// long as this lives, or what it is moved to.
-  const DiffuseLights* diffuse() const { return this->Diffuse ? &*this->Diffuse : nullptr; }
+  /// The same for the kernels; null where a light is somewhere, or the power of highlights no
+  /// whole number up to 128. As long as this lives, or what it is moved to.
+  const DirectionalLights* directional() const
+  {
+    return this->Directional ? &*this->Directional : nullptr;
+  }
 
 private:
-  DiffuseLights takeDiffuse();
+  DirectionalLights takeDirectional();
 
   std::vector<Light> Lights;
   std::vector<Illumination> Constant; ///< of the directional lights, which come first
   ShadingView View;
-  std::vector<DiffuseLight> DiffuseEach; ///< where that is all there is
-  std::optional<DiffuseLights> Diffuse;
+  std::vector<DirectionalLight> DirectionalEach; ///< where that is all there is
+  std::optional<DirectionalLights> Directional;
 };
 
 /// None when `frame` is not shaded; projected values have no surface.

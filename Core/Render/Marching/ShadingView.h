@@ -35,9 +35,6 @@ struct ShadingView
   /// Whether it matters where a sample is.
   INR_HOST_DEVICE bool knowsPlaces() const { return this->lightCount > this->constantCount; }
 
-  /// None by ParaView's defaults, and a power is a good part of what a lit sample takes.
-  INR_HOST_DEVICE bool hasHighlights() const { return this->surface.specular > 0.0f; }
-
   /// See Shading.
   INR_HOST_DEVICE glm::vec3 shade(const glm::vec3& color, const glm::dvec3& toEye,
                                   const glm::dvec3& index, const glm::vec3& gradient) const
@@ -72,10 +69,11 @@ private:
            (color * diffuse + glm::vec3(this->highlight(facing, toEye, normal, light.toLight)));
   }
 
+  /// None by ParaView's defaults, and a power is a good part of what a lit sample takes.
   INR_HOST_DEVICE float highlight(double facing, const glm::dvec3& toEye, const glm::dvec3& normal,
                                   const glm::dvec3& toLight) const
   {
-    if (!this->hasHighlights()) {
+    if (!(this->surface.specular > 0.0f)) {
       return 0.0f;
     }
     const double mirrored = 2.0 * facing * glm::dot(normal, toEye) - glm::dot(toLight, toEye);

@@ -31,11 +31,10 @@ inr::Frame Lit(const glm::dvec3& dims, int size)
   return frame;
 }
 
-/// As ParaView has it: neither highlights nor lamps.
+/// Without the lamp, so that kernels shade.
 inr::Frame Sunny(const glm::dvec3& dims, int size)
 {
   inr::Frame frame = Lit(dims, size);
-  frame.shading->specular = 0.0f;
   frame.lights.erase(frame.lights.begin());
   return frame;
 }

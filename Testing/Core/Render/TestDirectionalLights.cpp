@@ -16,20 +16,22 @@
 #include <utility>
 #include <vector>
 
-namespace test::diffuse_lights {
+namespace test::directional_lights {
 
 using namespace kernel_bricks;
 
 constexpr float Nan = std::numeric_limits<float>::quiet_NaN();
+const glm::dvec3 ToEye = glm::normalize(glm::dvec3(0.3, -0.8, 0.5));
+const glm::dvec3 Color(0.2, 0.6, 1.0);
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
 glm::dvec3 RandomVector() { return {Random(-1, 1), Random(-1, 1), Random(-1, 1)}; }
 
-/// Without highlights, lit by suns; a volume with voxels of this shape, turned.
+/// Lit by suns; a volume with voxels of this shape, turned.
 inr::Frame Sunny(int suns, const glm::dvec3& spacing)
 {
   inr::Frame frame;
-  frame.shading = inr::Material{0.2f, 0.6f, 0.0f, 8.0f};
+  frame.shading = inr::Material{0.2f, 0.6f, 0.4f, static_cast<float>(RandomInt(0, 30))};
   for (int k = 0; k < suns; ++k) {
     inr::Light sun;
     sun.direction = RandomVector() * 5.0;
@@ -41,14 +43,21 @@ inr::Frame Sunny(int suns, const glm::dvec3& spacing)
   return frame;
 }
 
-glm::dvec3 Truth(const inr::Frame& frame, const glm::dvec3& gradient)
+/// On colour: see Shading.
+glm::dvec3 Truth(const inr::Frame& frame, const glm::dvec3& color, const glm::dvec3& toEye,
+                 const glm::dvec3& gradient)
 {
   const inr::Material& surface = *frame.shading;
-  const glm::dvec3 across = glm::transpose(glm::dmat3(frame.worldToIndex)) * gradient;
-  glm::dvec3 light(surface.ambient);
+  const glm::dvec3 normal =
+      glm::normalize(glm::transpose(glm::dmat3(frame.worldToIndex)) * gradient);
+  glm::dvec3 light = color * double{surface.ambient};
   for (const inr::Light& sun : frame.lights) {
-    const double facing = glm::dot(glm::normalize(across), glm::normalize(sun.direction));
-    light += double{surface.diffuse} * std::abs(facing) * glm::dvec3(sun.color);
+    const glm::dvec3 toLight = -glm::normalize(sun.direction);
+    const double facing = glm::dot(normal, toLight);
+    const double mirrored = glm::dot(2.0 * facing * normal - toLight, toEye);
+    const double shine = mirrored > 0 ? std::pow(mirrored, double{surface.specularPower}) : 0.0;
+    light += glm::dvec3(sun.color) * (double{surface.diffuse} * std::abs(facing) * color +
+                                      double{surface.specular} * shine);
   }
   return light;
 }
@@ -65,19 +74,32 @@ struct Batches
     }
   }
 
-  glm::dvec3 of(int k) const
+  glm::dvec3 on(const glm::dvec3& color, int k) const
   {
-    return {this->light.rgb[0][k], this->light.rgb[1][k], this->light.rgb[2][k]};
+    glm::dvec3 lit;
+    for (int channel = 0; channel < 3; ++channel) {
+      lit[channel] = color[channel] * double{this->light.factor[channel][k]} +
+                     double{this->light.added[channel][k]};
+    }
+    return lit;
   }
 };
 
-class DiffuseLights : public testing::TestWithParam<std::string>
+class DirectionalLights : public testing::TestWithParam<std::string>
 {
 protected:
+  void light(const inr::Shading& shading, int count, Batches& batches) const
+  {
+    const float toEye[3] = {static_cast<float>(ToEye.x), static_cast<float>(ToEye.y),
+                            static_cast<float>(ToEye.z)};
+    this->Kernel.light(*shading.directional(), toEye, batches.gradients, count, batches.light);
+  }
+
+private:
   const inr::BrickKernel& Kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
 };
 
-TEST_P(DiffuseLights, ShineWhateverTheGradientsAndVoxels)
+TEST_P(DirectionalLights, ShineWhateverTheGradientsAndVoxels)
 {
   const auto batches = std::make_unique<Batches>();
   for (const glm::dvec3& spacing :
@@ -87,7 +109,7 @@ TEST_P(DiffuseLights, ShineWhateverTheGradientsAndVoxels)
       for (int suns = 0; suns < 6; ++suns) {
         const inr::Frame frame = Sunny(suns, spacing);
         const inr::Shading shading(frame);
-        ASSERT_NE(shading.diffuse(), nullptr);
+        ASSERT_NE(shading.directional(), nullptr);
         const int count = RandomInt(1, inr::SampleBatch::Capacity);
         std::vector<glm::vec3> gradients(count);
         for (int k = 0; k < count; ++k) {
@@ -98,17 +120,18 @@ TEST_P(DiffuseLights, ShineWhateverTheGradientsAndVoxels)
           }
           batches->set(k, gradients[k]);
         }
-        this->Kernel.light(*shading.diffuse(), batches->gradients, count, batches->light);
+        this->light(shading, count, *batches);
         for (int k = 0; k < count; ++k) {
-          const glm::dvec3 truth = Truth(frame, glm::dvec3(gradients[k]));
-          EXPECT_LT(glm::length(batches->of(k) - truth), 3e-6) << spacing.x << ' ' << steepness;
+          const glm::dvec3 truth = Truth(frame, Color, ToEye, glm::dvec3(gradients[k]));
+          EXPECT_LT(glm::length(batches->on(Color, k) - truth), 2e-5)
+              << spacing.x << ' ' << steepness;
         }
       }
     }
   }
 }
 
-TEST_P(DiffuseLights, OfWhatHasNoDirectionAreAmbient)
+TEST_P(DirectionalLights, OfWhatHasNoDirectionAreAmbient)
 {
   const inr::Frame frame = Sunny(3, {1.0, 2.0, 0.5});
   const inr::Shading shading(frame);
@@ -120,40 +143,44 @@ TEST_P(DiffuseLights, OfWhatHasNoDirectionAreAmbient)
     batches->set(count++, gradient);
     batches->set(count++, {1, 1, 1}); // neighbours do not mind
   }
-  this->Kernel.light(*shading.diffuse(), batches->gradients, count, batches->light);
-  const glm::dvec3 lit = Truth(frame, glm::dvec3(1.0));
-  const glm::vec3 white(1.0f);
+  this->light(shading, count, *batches);
+  const glm::dvec3 lit = Truth(frame, Color, ToEye, glm::dvec3(1.0));
+  const double ambient = frame.shading->ambient;
   for (int k = 0; k < count; k += 2) {
     const glm::vec3& gradient = none[k / 2];
-    EXPECT_EQ(batches->of(k), glm::dvec3(frame.shading->ambient)) << k;
-    EXPECT_EQ(shading.view().shade(white, {0, 0, 1}, {}, gradient), white * 0.2f) << k;
-    EXPECT_LT(glm::length(batches->of(k + 1) - lit), 3e-6) << k;
+    EXPECT_EQ(batches->on(Color, k), Color * ambient) << k;
+    EXPECT_EQ(shading.view().shade(glm::vec3(1), ToEye, {}, gradient), glm::vec3(0.2f)) << k;
+    EXPECT_LT(glm::length(batches->on(Color, k + 1) - lit), 2e-5) << k;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sets, DiffuseLights, testing::ValuesIn(UsableKernels()),
+INSTANTIATE_TEST_SUITE_P(Sets, DirectionalLights, testing::ValuesIn(UsableKernels()),
                          [](const auto& info) { return info.param; });
 
-TEST(DiffuseLights, AreAllThereIsWithoutHighlightsAndLamps)
+TEST(DirectionalLights, AreAllThereIsWithoutLamps)
 {
   inr::Frame frame = Sunny(2, glm::dvec3(1.0));
-  EXPECT_NE(inr::Shading(frame).diffuse(), nullptr);
-  frame.shading->specular = 0.1f;
-  EXPECT_EQ(inr::Shading(frame).diffuse(), nullptr);
+  const auto areAll = [&] { return inr::Shading(frame).directional() != nullptr; };
+  EXPECT_TRUE(areAll());
+  frame.shading->specularPower = 2.5f; // which squaring does not make
+  EXPECT_FALSE(areAll());
+  frame.shading->specularPower = 1e30f;
+  EXPECT_FALSE(areAll());
   frame.shading->specular = 0.0f;
+  EXPECT_TRUE(areAll());
   frame.lights[1].kind = inr::LightKind::Point;
-  EXPECT_EQ(inr::Shading(frame).diffuse(), nullptr);
+  EXPECT_FALSE(areAll());
 }
 
-TEST(DiffuseLights, StayWhereAShadingIsMovedTo)
+TEST(DirectionalLights, StayWhereAShadingIsMovedTo)
 {
   const inr::Frame frame = Sunny(4, glm::dvec3(1.0));
   inr::Shading first(frame);
-  const inr::DiffuseLight* const lights = first.diffuse()->lights;
+  const inr::DirectionalLight* const lights = first.directional()->lights;
   const inr::Shading moved = std::move(first);
-  ASSERT_NE(moved.diffuse(), nullptr);
-  EXPECT_EQ(moved.diffuse()->lights, lights);
-  EXPECT_EQ(moved.diffuse()->count, 4);
+  ASSERT_NE(moved.directional(), nullptr);
+  EXPECT_EQ(moved.directional()->lights, lights);
+  EXPECT_EQ(moved.directional()->count, 4);
 }
 
-} // namespace test::diffuse_lights
+} // namespace test::directional_lights
