@@ -92,7 +92,7 @@ void LightAt(const DirectionalLights& lights, const float (&toEye)[3],
   for (int channel = 0; channel < 3; ++channel) {
     const Floats factor = MultiplyAdd(diffuse[channel], Spread(lights.diffuse), ambient);
     Store(light.factor[channel] + k, hasNormal ? factor : ambient);
-    Store(light.added[channel] + k, hasNormal ? specular[channel] * lights.specular : Floats{});
+    Store(light.added[channel] + k, specular[channel] * lights.specular); // 0 without a normal
   }
 }
 
