@@ -3,14 +3,14 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
+#include "Readers/Common/StopSignals.h"
+#include "Readers/Common/VTKCompat.h"
 #include "Readers/Contour/BrickContour.h"
 #include "Readers/Contour/BrickQueue.h"
 #include "Readers/Contour/ContourBricks.h"
 #include "Readers/Contour/SurfaceBuilder.h"
 #include "Readers/Grid/LevelSampler.h"
 #include "Readers/Grid/NativeGrid.h"
-#include "Readers/StopSignals.h"
-#include "Readers/VTKCompat.h"
 
 #include <vtkFieldData.h>
 #include <vtkInformation.h>

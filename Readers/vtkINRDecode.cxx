@@ -3,13 +3,13 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
-#include "Readers/Extents.h"
+#include "Readers/Common/Extents.h"
+#include "Readers/Common/MemoryCheck.h"
+#include "Readers/Common/StopSignals.h"
+#include "Readers/Common/VTKCompat.h"
 #include "Readers/Grid/LevelSampler.h"
 #include "Readers/Grid/NativeGrid.h"
 #include "Readers/Grid/Scalars.h"
-#include "Readers/MemoryCheck.h"
-#include "Readers/StopSignals.h"
-#include "Readers/VTKCompat.h"
 
 #include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>

@@ -4,7 +4,7 @@
 #include "Core/Cache/CacheOptions.h"
 #include "Core/Error.h"
 #include "Core/NumberText.h"
-#include "Readers/Extents.h"
+#include "Readers/Common/Extents.h"
 #include "Readers/Grid/NativeGrid.h"
 #include "Readers/Grid/PresentedGrid.h"
 #include "Readers/Grid/RecentModels.h"

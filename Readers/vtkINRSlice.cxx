@@ -3,12 +3,12 @@
 
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
+#include "Readers/Common/MemoryCheck.h"
+#include "Readers/Common/StopSignals.h"
+#include "Readers/Common/VTKCompat.h"
 #include "Readers/Grid/NativeGrid.h"
 #include "Readers/Grid/PlaneGrid.h"
 #include "Readers/Grid/Scalars.h"
-#include "Readers/MemoryCheck.h"
-#include "Readers/StopSignals.h"
-#include "Readers/VTKCompat.h"
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>

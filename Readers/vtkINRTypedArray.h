@@ -9,9 +9,9 @@
 #ifndef vtkINRTypedArray_h
 #define vtkINRTypedArray_h
 
+#include "Readers/Common/VTKCompat.h"
 #include "Readers/Grid/PresentedBricks.h"
 #include "Readers/Grid/PresentedGrid.h"
-#include "Readers/VTKCompat.h"
 #include "vtkINRDataArray.h"
 
 #include <vtkGenericDataArray.h>

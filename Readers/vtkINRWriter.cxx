@@ -3,13 +3,13 @@
 
 #include "Core/AtomicFile.h"
 #include "Core/Error.h"
-#include "Readers/StopSignals.h"
+#include "Readers/Common/StopSignals.h"
 #include "Readers/Training/ControllerGroup.h"
 #include "Readers/Training/ParallelInput.h"
 #include "Readers/Training/RawFiles.h"
 #include "Readers/Training/TrainingInput.h"
 #include "Readers/Training/Upstream.h"
-#include "Readers/Training/WriterInternals.h"
+#include "Readers/vtkINRWriterInternals.h"
 
 #include <vtkAlgorithm.h>
 #include <vtkDataArray.h>
@@ -24,7 +24,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -289,11 +288,7 @@ void vtkINRWriter::WriteInput(const StopSignals& signals)
   this->Train(input, signals, group);
 }
 
-bool vtkINRWriter::IsMask(const char* name)
-{
-  return name && (name == std::string_view(vtkDataSetAttributes::GhostArrayName()) ||
-                  name == std::string_view("vtkValidPointMask")); // by vtkProbeFilter
-}
+bool vtkINRWriter::IsMask(const char* name) { return ::IsMask(name); }
 
 TrainingInput vtkINRWriter::FindInput(vtkDataObject* data)
 {

@@ -26,7 +26,7 @@
 #ifndef vtkINRWriter_h
 #define vtkINRWriter_h
 
-#include "VTKCompat.h"           // for what writers override
+#include "Common/VTKCompat.h"    // for what writers override
 #include "vtkINRReadersModule.h" // for export macro
 
 #include <vtkWriter.h>

@@ -2,7 +2,7 @@
 #include "Readers/Contour/BrickContour.h"
 
 #include "Core/GridBox.h"
-#include "Readers/VTKCompat.h"
+#include "Readers/Common/VTKCompat.h"
 
 #include <glm/common.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Contour/SurfaceBuilder.h"
 
-#include "Readers/MemoryCheck.h"
-#include "Readers/VTKCompat.h"
+#include "Readers/Common/MemoryCheck.h"
+#include "Readers/Common/VTKCompat.h"
 
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>

@@ -3,7 +3,7 @@
 
 #include "Core/Error.h"
 #include "Core/Parallel.h"
-#include "Readers/Processes.h"
+#include "Readers/Common/Processes.h"
 
 #include <vtkMultiProcessController.h>
 

@@ -2,7 +2,7 @@
 #include "Readers/Training/ParallelInput.h"
 
 #include "Core/Error.h"
-#include "Readers/Extents.h"
+#include "Readers/Common/Extents.h"
 
 #include <vtkDataArray.h>
 #include <vtkImageData.h>

@@ -2,8 +2,8 @@
 #include "Readers/Training/PipelineReader.h"
 
 #include "Core/Error.h"
-#include "Readers/Extents.h"
-#include "Readers/StopSignals.h"
+#include "Readers/Common/Extents.h"
+#include "Readers/Common/StopSignals.h"
 #include "Readers/Training/RawFiles.h"
 #include "Readers/Training/Upstream.h"
 

@@ -2,7 +2,7 @@
 #include "Readers/Training/ReadingPlan.h"
 
 #include "Core/Error.h"
-#include "Readers/Extents.h"
+#include "Readers/Common/Extents.h"
 #include "Readers/Training/UndividedSource.h"
 
 #include <vtkAlgorithm.h>

@@ -3,7 +3,6 @@
 
 #include "Core/Error.h"
 #include "Readers/Grid/Scalars.h"
-#include "vtkINRWriter.h"
 
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
@@ -21,6 +20,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -83,7 +83,7 @@ std::vector<vtkAbstractArray*> VolumesAmong(vtkDataSetAttributes& data)
   std::vector<vtkAbstractArray*> volumes;
   for (int k = 0; k < data.GetNumberOfArrays(); ++k) {
     vtkAbstractArray* array = data.GetAbstractArray(k);
-    if (!vtkINRWriter::IsMask(array->GetName())) {
+    if (!IsMask(array->GetName())) {
       volumes.push_back(array);
     }
   }
@@ -91,6 +91,12 @@ std::vector<vtkAbstractArray*> VolumesAmong(vtkDataSetAttributes& data)
 }
 
 } // namespace
+
+bool IsMask(const char* name)
+{
+  return name && (name == std::string_view(vtkDataSetAttributes::GhostArrayName()) ||
+                  name == std::string_view("vtkValidPointMask")); // by vtkProbeFilter
+}
 
 TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
 {
@@ -144,7 +150,7 @@ vtkAbstractArray* DefaultArray(vtkDataSetAttributes& data)
 {
   const std::vector<vtkAbstractArray*> arrays = VolumesAmong(data);
   vtkAbstractArray* active = data.GetScalars();
-  if (active && !vtkINRWriter::IsMask(active->GetName())) {
+  if (active && !IsMask(active->GetName())) {
     return active;
   }
   return arrays.size() == 1 ? arrays.front() : nullptr;

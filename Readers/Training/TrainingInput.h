@@ -22,6 +22,9 @@ struct TrainingInput
   bool showsHidden = false; ///< values of hidden points, of a type that has no NaN, are among them
 };
 
+/// Is an array of this name (may be null) one that tells where others have no values?
+bool IsMask(const char* name);
+
 /// The image's geometry, with the origin at the first point of its extent, its time step, if any,
 /// and the `values`, copied only where they do not lie in memory one after the other or some are of
 /// points that a filter has hidden (as ResampleToImage does outside of a mesh): NaNs take the place

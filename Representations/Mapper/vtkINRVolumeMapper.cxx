@@ -5,7 +5,7 @@
 #include "Core/Error.h"
 #include "Core/Image/Exr.h"
 #include "Core/Render/Scene/FrameStatistics.h"
-#include "Readers/Processes.h"
+#include "Readers/Common/Processes.h"
 #include "Representations/Mapper/Pictures/FramePainter.h"
 #include "Representations/Mapper/Pictures/PaintSettings.h"
 #include "Representations/Mapper/Window/DeferredDrawing.h"

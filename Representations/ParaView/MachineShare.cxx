@@ -3,7 +3,7 @@
 
 #include "Core/Cache/CacheOptions.h"
 #include "Core/Parallel.h"
-#include "Readers/Processes.h"
+#include "Readers/Common/Processes.h"
 #include "vtkMultiProcessController.h"
 #include "vtkType.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PictureRefinement.h"
 
-#include "Readers/Processes.h"
+#include "Readers/Common/Processes.h"
 #include "vtkCommunicator.h"
 #include "vtkINRVolumeMapper.h"
 #include "vtkMultiProcessController.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SharedDrawing.h"
 
-#include "Readers/Processes.h"
+#include "Readers/Common/Processes.h"
 #include "vtkCameraPass.h"
 #include "vtkCommunicator.h"
 #include "vtkINRLODVolume.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumePlacement.h"
 
+#include "Representations/Mapper/Scene/PlacedBox.h"
 #include "SharedDrawing.h"
 #include "vtkBoundingBox.h"
 #include "vtkINRVolumeMapper.h"
@@ -13,19 +14,6 @@
 namespace inr {
 
 namespace {
-
-/// The box in the world around one of the volume; none around none.
-vtkBoundingBox Placed(const double bounds[6], vtkMatrix4x4& matrix)
-{
-  vtkBoundingBox box;
-  for (int corner = 0; vtkBoundingBox(bounds).IsValid() && corner < 8; ++corner) {
-    double at[4] = {bounds[corner & 1], bounds[2 + (corner >> 1 & 1)], bounds[4 + (corner >> 2)],
-                    1};
-    matrix.MultiplyPoint(at, at);
-    box.AddPoint(at);
-  }
-  return box;
-}
 
 /// Of an axis of a volume that is not turned.
 struct Way
@@ -56,7 +44,7 @@ bool VolumePlacement::update(vtkINRVolumeMapper& mapper, const double piece[6],
   double whole[6];
   std::copy_n(piece, 6, whole);
   mapper.GetWholeBounds(whole);
-  Placed(whole, matrix).GetBounds(whole);
+  PlacedBox(whole, matrix).GetBounds(whole);
   double part[6];
   mapper.GetPartOfWhole(part);
   auto* image = vtkImageData::SafeDownCast(mapper.GetDataSetInput());

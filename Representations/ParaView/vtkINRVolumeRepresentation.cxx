@@ -4,7 +4,7 @@
 #include "MachineShare.h"
 #include "ModelDelivery.h"
 #include "PictureRefinement.h"
-#include "Readers/Processes.h"
+#include "Readers/Common/Processes.h"
 #include "SharedDrawing.h"
 #include "VolumePlacement.h"
 #include "WhyBlank.h"
@@ -214,7 +214,8 @@ void vtkINRVolumeRepresentation::TakeDelivery(vtkInformation* in)
     vtkImageData* image = this->Model->receive(vtkPolyData::SafeDownCast(carrier));
     this->VolumeMapper->SetInputDataObject(image);
     const bool others = AreSeveral(vtkMultiProcessController::GetGlobalController());
-    this->Actor->SetEnableLOD(image || others ? 0 : 1); // the outline; of several, each has part of it
+    this->Actor->SetEnableLOD(image || others ? 0
+                                              : 1); // the outline; of several, each has part of it
     this->ReportShared(image && vtkINRDataArray::FindIn(image->GetPointData()));
   } catch (const std::exception& problem) {
     vtkErrorMacro(<< problem.what());

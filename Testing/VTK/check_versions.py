@@ -23,7 +23,7 @@ short = ".".join(version.split(".")[:2])
 assert short in tested, f"this build's VTK {version} is not among {list(tested)}"
 
 # Every difference is in one file, which says of what.
-compat = (sources / "Readers/VTKCompat.h").read_text()
+compat = (sources / "Readers/Common/VTKCompat.h").read_text()
 about = compat[compat.index("// Every difference"):].split("\n\n")[0]
 for name in tested:
     assert re.search(rf"\b{re.escape(name)}\b", about), f"VTKCompat.h does not speak of {name}"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Scene/Viewport.h"
 
+#include <vtkBoundingBox.h>
 #include <vtkCamera.h>
 #include <vtkMatrix4x4.h>
 #include <vtkRenderer.h>
@@ -41,10 +42,11 @@ glm::dmat4 ClipToWorld(vtkRenderer* renderer) { return glm::inverse(WorldToClip(
 bool IsBehindCamera(vtkRenderer* renderer, const double bounds[6])
 {
   const glm::dmat4 toClip = WorldToClip(renderer);
+  const vtkBoundingBox box(bounds);
   bool behind = true;
   for (int corner = 0; behind && corner < 8; ++corner) {
-    const glm::dvec4 at(bounds[corner & 1], bounds[2 + (corner >> 1 & 1)],
-                        bounds[4 + (corner >> 2)], 1.0);
+    glm::dvec4 at(1.0);
+    box.GetCorner(corner, glm::value_ptr(at));
     behind = (toClip * at).w < 0; // always 1 of parallel rays
   }
   return behind;

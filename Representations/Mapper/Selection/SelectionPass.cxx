@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Selection/SelectionPass.h"
 
-#include "Readers/Processes.h"
+#include "Readers/Common/Processes.h"
 #include "Representations/Mapper/Scene/Viewport.h"
 #include "Representations/Mapper/Selection/PickedCells.h"
 #include "Representations/Mapper/Window/ImageBlender.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Window/DrawingOrder.h"
 
+#include "Representations/Mapper/Scene/PlacedBox.h"
 #include "Representations/Mapper/Window/Props.h"
 #include "vtkINRVolumeMapper.h"
 
 #include <vtkBoundingBox.h>
 #include <vtkCamera.h>
 #include <vtkCommand.h>
-#include <vtkMatrix4x4.h>
 #include <vtkVolume.h>
 
 #include <glm/geometric.hpp>
@@ -34,12 +34,7 @@ Box BoxOf(vtkVolume* volume)
   double whole[6] = {1, 0, 1, 0, 1, 0};
   vtkINRVolumeMapper::SafeDownCast(volume->GetMapper())->GetWholeBounds(whole);
   if (whole[0] <= whole[1]) {
-    box.Reset();
-    for (int corner = 0; corner < 8; ++corner) {
-      double at[4] = {whole[corner & 1], whole[2 + (corner >> 1 & 1)], whole[4 + (corner >> 2)], 1};
-      volume->GetMatrix()->MultiplyPoint(at, at);
-      box.AddPoint(at);
-    }
+    box = PlacedBox(whole, *volume->GetMatrix());
   }
   double low[3];
   double high[3];

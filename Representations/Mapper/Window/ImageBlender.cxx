@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Window/ImageBlender.h"
 
-#include "Readers/VTKCompat.h"
+#include "Readers/Common/VTKCompat.h"
 #include "Representations/Mapper/Window/RenderTarget.h"
 
 #include INR_VTK_OPENGL_HEADER

@@ -2,7 +2,7 @@
 #include "Representations/Mapper/Window/PictureGroup.h"
 
 #include "Core/Error.h"
-#include "Readers/Processes.h"
+#include "Readers/Common/Processes.h"
 
 #include <vtkCommunicator.h>
 #include <vtkMultiProcessController.h>

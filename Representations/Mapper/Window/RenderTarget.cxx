@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Window/RenderTarget.h"
 
-#include "Readers/VTKCompat.h"
+#include "Readers/Common/VTKCompat.h"
 
 #include INR_VTK_OPENGL_HEADER
 #include <vtkOpenGLFramebufferObject.h>

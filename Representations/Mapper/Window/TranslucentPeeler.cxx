@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Window/TranslucentPeeler.h"
 
-#include "Readers/VTKCompat.h"
+#include "Readers/Common/VTKCompat.h"
 #include "Representations/Mapper/Window/OpaqueDepth.h"
 #include "Representations/Mapper/Window/Props.h"
 

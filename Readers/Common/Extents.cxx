@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Readers/Extents.h"
+#include "Readers/Common/Extents.h"
 
 #include <vtkExtentTranslator.h>
 #include <vtkNew.h>

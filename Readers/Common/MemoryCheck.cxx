@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Readers/MemoryCheck.h"
+#include "Readers/Common/MemoryCheck.h"
 
 #include "Core/Error.h"
 #include "Core/Mebibytes.h"

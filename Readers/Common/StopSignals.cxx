@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Readers/StopSignals.h"
+#include "Readers/Common/StopSignals.h"
 
 #include <atomic>
 #include <csignal>

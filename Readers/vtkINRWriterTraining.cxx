@@ -7,7 +7,8 @@
 #include "Core/Model/ModelFile.h"
 #include "Core/Training/Parallel/ParallelTraining.h"
 #include "Core/UsableMemory.h"
-#include "Readers/StopSignals.h"
+#include "Readers/Common/StopSignals.h"
+#include "Readers/Common/VTKCompat.h"
 #include "Readers/Training/ControllerGroup.h"
 #include "Readers/Training/ParallelInput.h"
 #include "Readers/Training/PipelineReader.h"
@@ -15,8 +16,7 @@
 #include "Readers/Training/TrainingCheckpoint.h"
 #include "Readers/Training/TrainingInput.h"
 #include "Readers/Training/TrainingReport.h"
-#include "Readers/Training/WriterInternals.h"
-#include "Readers/VTKCompat.h"
+#include "Readers/vtkINRWriterInternals.h"
 
 #include <vtkImageData.h>
 #include <vtkLogger.h>

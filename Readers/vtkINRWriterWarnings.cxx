@@ -2,7 +2,7 @@
 //
 // What a vtkINRWriter tells of a model that is not what its user may take it for.
 #include "Core/Training/TargetReport.h"
-#include "Readers/Training/WriterInternals.h"
+#include "Readers/vtkINRWriterInternals.h"
 
 void vtkINRWriter::WarnOfWhole(const std::string& why)
 {
