@@ -43,6 +43,10 @@ if (INR_SANITIZE)
   if (INR_SANITIZE MATCHES "thread")
     target_compile_definitions(inr_options INTERFACE INR_SANITIZED_THREADS)
   endif ()
+elseif (CMAKE_SYSTEM_NAME STREQUAL "Linux")
+  # A library that misses a function is found out here, not by who loads it: those of the plugin share
+  # nothing but classes.
+  target_link_options(inr_options INTERFACE -Wl,-z,defs)
 endif ()
 if (INR_BUILD_FUZZERS)
   if (NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
