@@ -245,19 +245,38 @@ void Classify(const StepLookup& lookup, const SampleBatch& batch, int count, Cla
   }
 }
 
-/// The samples of a batch as Classify has found them. `Exact`: also where entries are steep.
+/// Straight RGB and opacity of a sample that Classify has found. `Exact`: also where entries are
+/// steep.
+template <bool Exact>
+Rgba ColorOf(const StepLookup& lookup, const Classified& at, const SampleBatch& batch, int k)
+{
+  const std::int64_t row = static_cast<std::int64_t>(batch.length[k]) * lookup.rows + at.entry[k];
+  const Rgba first = LoadRgba(lookup.entries + 4 * row);
+  const Rgba second = LoadRgba(lookup.entries + 4 * row + 4);
+  Rgba color = first + (second - first) * at.weight[k];
+  if (Exact && color[3] > 1.0f) {
+    color[3] = SteepOpacityOf(lookup, batch.length[k], first[3], second[3], at.weight[k]);
+  }
+  return color;
+}
+
+void FindColors(const StepLookup& lookup, const SampleBatch& batch, int count, float* colors)
+{
+  Classified at;
+  std::int64_t clamped = 0; // none: they are in their ranges
+  Classify(lookup, batch, count, at, clamped);
+  for (int k = 0; k < count; ++k) {
+    const Rgba color = ColorOf<true>(lookup, at, batch, k);
+    std::memcpy(colors + 4 * k, &color, sizeof(color));
+  }
+}
+
 template <bool Exact>
 int AddUpClassified(const StepLookup& lookup, const Classified& at, SampleBatch& batch, int count,
                     float opaque, RayColor& color)
 {
   const auto sampleAt = [&](int k) {
-    const std::int64_t row = static_cast<std::int64_t>(batch.length[k]) * lookup.rows + at.entry[k];
-    const Rgba first = LoadRgba(lookup.entries + 4 * row);
-    const Rgba second = LoadRgba(lookup.entries + 4 * row + 4);
-    Rgba entry = first + (second - first) * at.weight[k];
-    if (Exact && entry[3] > 1.0f) {
-      entry[3] = SteepOpacityOf(lookup, batch.length[k], first[3], second[3], at.weight[k]);
-    }
+    const Rgba entry = ColorOf<Exact>(lookup, at, batch, k);
     return ShownSample{entry, entry[3], entry[3]};
   };
   return AddUp(count, opaque, sampleAt, batch.opacity, color);
@@ -279,8 +298,9 @@ int Composite(const StepLookup& lookup, SampleBatch& batch, int count, float opa
 
 } // namespace
 
-const BrickKernel Bricks = {FindShown,     FindShownOnTwo, SampleRuns, Sample,
-                            Differentiate, Light,          Composite,  CompositeIntegrated};
+const BrickKernel Bricks = {FindShown, FindShownOnTwo, SampleRuns,
+                            Sample,    Differentiate,  FindColors,
+                            Light,     Composite,      CompositeIntegrated};
 
 } // namespace INR_ISA
 } // namespace inr

@@ -141,6 +141,10 @@ struct BrickKernel
   void (*differentiate)(const BrickFormat& format, const SampleBatch& batch, const int* which,
                         int count, GradientBatch& gradients);
 
+  /// Straight RGB, and the opacity of all that a sample stands for, of the first `count` samples,
+  /// which are in their ranges: four numbers each.
+  void (*findColors)(const StepLookup& lookup, const SampleBatch& batch, int count, float* colors);
+
   /// Lights the first `count` samples by their gradients per voxel of level 0, seen from a world
   /// unit vector's direction. Where gradients tell no direction, there is ambient light only. Of
   /// the light, `factor` is off by some 2^-20 at most, `added` by that times the specular power.

@@ -98,22 +98,21 @@ double CachedMarcher::lengthOf(int sample) const
   return this->Placed.lengthOf(sample, this->Scene.settings.step * this->Scene.settings.unitsPerT);
 }
 
-int CachedMarcher::findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const
+int CachedMarcher::findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities)
 {
-  const ColorLookup& lookup = this->Scene.colors;
-  const StepLookup& steps = this->Scene.steps->lookup();
-  const int whole = this->Placed.count - (this->Placed.lastLength > 0 ? 1 : 0);
+  const bool isLast = this->Placed.lastLength > 0;
+  const int whole = this->Placed.count - (isLast ? 1 : 0);
+  if (this->Scene.colors.logarithmic) {
+    this->takeLogarithms(whole);
+  }
+  this->Scene.kernel.findColors(this->Scene.steps->lookup(), this->Batch, whole, &colors->x);
+  if (isLast) { // of a length of its own
+    colors[whole] = this->Scene.colors.at(this->Batch.value[whole]);
+    colors[whole].w = OpacityOver(static_cast<float>(this->lengthOf(whole)), colors[whole].w);
+  }
   double transmittance = state.color.transmittance;
   int k = 0;
   for (; k < this->Placed.count && transmittance > OpaqueTransmittance; ++k) {
-    const float value = this->Batch.value[k];
-    if (k < whole) {
-      const float place = lookup.logarithmic ? lookup.coordinate(value) : value;
-      colors[k] = ColorOver(steps, this->Batch.length[k], place);
-    } else { // of a length of its own
-      colors[k] = lookup.at(value);
-      colors[k].w = OpacityOver(static_cast<float>(this->lengthOf(k)), colors[k].w);
-    }
     opacities[k] = colors[k].w;
     transmittance -= transmittance * opacities[k];
   }

@@ -61,7 +61,7 @@ private:
   /// Makes coordinates of the values of samples [first, end), where colours are logarithmic.
   void takeCoordinates(int first, int end);
   /// Colours and opacities of the batch's samples until the ray is opaque; how many these are.
-  int findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities) const;
+  int findOpacities(const CachedRay& state, glm::vec4* colors, float* opacities);
   /// The same of what has the colours of all values that it passes, and until a brick is not there.
   int findIntegrated(CachedRay& state, glm::vec4* colors, float* opacities);
   /// Lights the first `count` samples; for how many of them that was possible.

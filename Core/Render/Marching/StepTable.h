@@ -43,28 +43,6 @@ INR_HOST_DEVICE INR_CALLED inline float SteepOpacity(float first, float second, 
   return between > 0.0f ? -std::expm1(length * std::log(between)) : 1.0f;
 }
 
-/// Straight RGB, and the opacity of a whole sample of the length that has this number, at a place
-/// in the table: a normalised value or, of logarithmic colours, the coordinate of one.
-inline glm::vec4 ColorOver(const StepLookup& steps, int length, float place)
-{
-  const float position = place * steps.scale + steps.bias;
-  // Outside the transfer function's range there is a step, not a slope.
-  const bool isAbove = position > static_cast<float>(steps.rows - 3);
-  const bool isIn = position >= 2.0f && !isAbove;
-  const int entry = isIn ? static_cast<int>(position) : (isAbove ? steps.rows - 2 : 0);
-  const float weight = isIn ? position - static_cast<float>(entry) : 0.0f;
-  const float* const low = steps.entries + 4 * (std::int64_t{length} * steps.rows + entry);
-  const float* const high = low + 4;
-  glm::vec4 color;
-  for (int channel = 0; channel < 4; ++channel) {
-    color[channel] = low[channel] + (high[channel] - low[channel]) * weight;
-  }
-  if (color.w > 1.0f) {
-    color.w = SteepOpacity(low[3], high[3], weight, UnitsOf(steps, length));
-  }
-  return color;
-}
-
 /// How many lengths samples may have: up to the coarsest level's, four times as long where it is
 /// faint, and up to what cells ask for.
 int SampleLengths(int levels);

@@ -11,6 +11,7 @@
 #include "Testing/Core/Kernels.h"
 #include "Testing/Core/Render/KernelBricks.h"
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -335,6 +336,35 @@ void FillRamps(inr::SampleBatch& batch, int lengths)
                      : kind == 2 ? batch.value[k] + Random(-1e-5f, 1e-5f)
                      : k > 0     ? batch.value[k - 1]
                                  : 0.0f;
+  }
+}
+
+// Below and above the transfer function's range, too, and next to what is opaque.
+TEST_P(BrickKernels, FindColorsOfSamplesOfAnyLength)
+{
+  const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
+  constexpr int lengths = 7;
+  constexpr double step = 0.3;
+  const auto batch = std::make_unique<inr::SampleBatch>();
+  for (int round = 0; round < 300; ++round) {
+    const inr::ColorTable colors(Rugged(round % 3 == 0), inr::VolumeInfo{});
+    const inr::StepTable table(colors.lookup(), step, lengths);
+    const int count = RandomInt(1, inr::SampleBatch::Capacity);
+    for (int k = 0; k < count; ++k) {
+      batch->value[k] = Random(-0.1f, 1.1f);
+      batch->low[k] = -1;
+      batch->high[k] = 2;
+      batch->length[k] = RandomInt(0, lengths - 1);
+    }
+    glm::vec4 found[inr::SampleBatch::Capacity];
+    kernel.findColors(table.lookup(), *batch, count, &found->x);
+    for (int k = 0; k < count; ++k) {
+      const glm::dvec4 truth(colors.lookup().at(batch->value[k]));
+      const double length = step * static_cast<double>(inr::StepsOf(batch->length[k]));
+      const double opacity = -std::expm1(length * std::log1p(-truth.w));
+      EXPECT_NEAR(found[k].w, opacity, 1e-2) << batch->value[k];
+      EXPECT_LT(glm::length(glm::dvec3(found[k]) - glm::dvec3(truth)), 2e-3) << batch->value[k];
+    }
   }
 }
 
