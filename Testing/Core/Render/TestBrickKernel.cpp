@@ -344,7 +344,7 @@ TEST_P(BrickKernels, FindColorsOfSamplesOfAnyLength)
 {
   const inr::BrickKernel& kernel = inr::BrickKernelFor(inr::ChooseInstructionSet(GetParam()));
   constexpr int lengths = 7;
-  constexpr double step = 0.3;
+  constexpr double step = 0.01;
   const auto batch = std::make_unique<inr::SampleBatch>();
   for (int round = 0; round < 300; ++round) {
     const inr::ColorTable colors(Rugged(round % 3 == 0), inr::VolumeInfo{});
