@@ -77,7 +77,7 @@ private:
         return {copy, entry.stores};
       }
     }
-    const Uploaded made{UploadModel(model, this->Where, this->Kind), MakeStores()};
+    Uploaded made{UploadModel(model, this->Where, this->Kind), MakeStores()};
     this->Entries.push_back({model, made.copy, made.stores});
     return made;
   }

@@ -14,7 +14,7 @@ class SampleShader
 {
 public:
   SampleShader(const Shading& shading, const BrickGradients& gradients, const BrickKernel& kernel)
-      : Lighting(shading), Gradients(gradients), Kernel(kernel)
+      : Lighting(shading), Kernel(kernel), Gradients(gradients)
   {}
 
   /// How a ray's samples are looked at.
@@ -41,8 +41,8 @@ private:
   void shadeEach(const int* which, int count, const Request& request, glm::vec4* colors) const;
 
   const Shading& Lighting;
-  BrickGradients Gradients;
   const BrickKernel& Kernel;
+  BrickGradients Gradients;
   LightBatch Light{};
 };
 
