@@ -29,7 +29,10 @@
 #include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
+#include <cmath>
+#include <exception>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,6 +41,8 @@ namespace {
 constexpr int Threads = 2;
 constexpr int Frames = 9;
 constexpr int Size = 512;
+constexpr double MostDrift = 0.1; ///< of VTK's time, from before ours to behind it
+constexpr int MostTries = 5;
 
 vtkSmartPointer<vtkImageData> Decode(const inr::Model& model, const inr::ModelPointer& pointer)
 {
@@ -67,7 +72,8 @@ struct Opacity
 {
   std::string name;
   std::vector<std::pair<double, double>> points; ///< fraction of the value range, opacity
-  bool lit = false;
+  double target;                                 ///< of VTK's time, with longer steps
+  bool lit;
 };
 
 void SetColours(vtkVolumeProperty* property, const inr::VolumeInfo& volume, const Opacity& opacity)
@@ -148,16 +154,91 @@ void Report(const std::string& name, double value, const std::string& unit,
             << "\", \"better\": \"" << better << "\"" << more << "}" << std::endl;
 }
 
-} // namespace
-
-int main(int argc, char* argv[])
+struct Way
 {
-  if (argc != 3) {
-    std::cerr << "usage: bench_against_vtk MODEL.inr NAME\n";
-    return 2;
+  std::string name;
+  bool adaptive;
+  bool integrated;
+};
+
+/// Of one scene: VTK's, and ours in all ways.
+struct Compared
+{
+  Measured theirs;
+  std::vector<Measured> mine;
+  double drift; ///< of VTK's time meanwhile
+};
+
+Compared Compare(vtkVolumeMapper* fixed, vtkINRVolumeMapper* ours, const inr::VolumeInfo& volume,
+                 const Opacity& opacity, const std::vector<Way>& ways)
+{
+  Compared result{Measure(fixed, volume, opacity), {}, 0};
+  for (const Way& way : ways) {
+    ours->SetAdaptiveSampling(way.adaptive);
+    ours->SetLevelOfDetailScale(way.adaptive ? 1 : 0);
+    ours->SetPreIntegration(way.integrated);
+    result.mine.push_back(Measure(ours, volume, opacity));
   }
-  const inr::ModelPointer model = inr::ReadModel(argv[1]);
-  const std::string scene = argv[2];
+  const double before = result.theirs.milliseconds;
+  const double after = Measure(fixed, volume, opacity).milliseconds;
+  result.drift = std::abs(after / before - 1);
+  result.theirs.milliseconds = (before + after) / 2;
+  return result;
+}
+
+/// By themselves: where something else is busy, they are measured again.
+Compared CompareUndisturbed(vtkVolumeMapper* fixed, vtkINRVolumeMapper* ours,
+                            const inr::VolumeInfo& volume, const Opacity& opacity,
+                            const std::vector<Way>& ways)
+{
+  for (int number = 0; number < MostTries; ++number) {
+    Compared result = Compare(fixed, ours, volume, opacity, ways);
+    if (result.drift <= MostDrift) {
+      return result;
+    }
+    std::cerr << opacity.name << ": VTK's time has changed by " << 100 * result.drift
+              << " % meanwhile\n";
+  }
+  throw std::runtime_error("something else is busy on this machine");
+}
+
+inr::Image Truth(vtkINRVolumeMapper* ours, const inr::VolumeInfo& volume, const Opacity& opacity)
+{
+  ours->SetSampleDistance(1. / 16);
+  ours->SetAdaptiveSampling(false);
+  ours->SetLevelOfDetailScale(0);
+  ours->SetPreIntegration(true);
+  inr::Image truth = Measure(ours, volume, opacity, 1).picture;
+  ours->SetSampleDistance(1);
+  return truth;
+}
+
+/// Targets are those of what is not lit.
+void ReportScene(const std::string& where, const Opacity& opacity, const inr::Image& truth,
+                 const Compared& compared, const std::vector<Way>& ways)
+{
+  const Measured& theirs = compared.theirs;
+  Report("VTK fixed frame" + where, theirs.milliseconds, "ms", "lower", "");
+  Report("VTK fixed, PSNR to the truth" + where, inr::ImagePsnr(theirs.picture, truth), "dB",
+         "higher", "");
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const Measured& mine = compared.mine[k];
+    const std::string how = " " + ways[k].name;
+    Report("cached frame" + where + how, mine.milliseconds, "ms", "lower", "");
+    const double target = ways[k].adaptive ? opacity.target : 0.9;
+    const std::string wanted = opacity.lit ? "" : ", \"target\": " + std::to_string(target);
+    Report("vs VTK fixed" + where + how, mine.milliseconds / theirs.milliseconds, "", "lower",
+           wanted + ", \"baseline\": \"VTK fixed frame" + where + "\"");
+    Report("image PSNR" + where + how, inr::ImagePsnr(mine.picture, theirs.picture), "dB", "higher",
+           ways[k].adaptive && !opacity.lit ? ", \"target\": 35" : "");
+    Report("PSNR to the truth" + where + how, inr::ImagePsnr(mine.picture, truth), "dB", "higher",
+           "");
+  }
+}
+
+void Run(const char* path, const std::string& scene)
+{
+  const inr::ModelPointer model = inr::ReadModel(path);
   vtkNew<vtkFixedPointVolumeRayCastMapper> fixed;
   fixed->SetInputData(Decode(*model, model));
   fixed->SetNumberOfThreads(Threads);
@@ -167,56 +248,39 @@ int main(int argc, char* argv[])
   fixed->SetSampleDistance(static_cast<float>(std::min({spacing.x, spacing.y, spacing.z})));
 
   vtkNew<vtkINRReader> reader;
-  reader->SetFileName(argv[1]);
+  reader->SetFileName(path);
   vtkNew<vtkINRVolumeMapper> ours;
   ours->SetInputConnection(reader->GetOutputPort());
   ours->SetNumberOfThreads(Threads);
-  ours->SetSampleDistance(1);
-
-  struct Way
-  {
-    std::string name;
-    bool adaptive;
-    bool integrated;
-  };
   const std::vector<Way> ways = {
       {"constant step", false, false}, {"adaptive", true, false}, {"pre-integrated", true, true}};
   const std::vector<std::pair<double, double>> sparse = {
       {0, 0}, {0.55, 0}, {0.65, 0.3}, {0.75, 0}, {1, 0}};
   const std::vector<std::pair<double, double>> dense = {{0, 0.02}, {0.5, 0.1}, {1, 0.3}};
-  const std::vector<Opacity> opacities = {{"sparse", sparse, false},
-                                          {"dense", dense, false},
-                                          {"sparse, lit", sparse, true},
-                                          {"dense, lit", dense, true}};
+  const std::vector<Opacity> opacities = {{"sparse", sparse, 1.0 / 3, false},
+                                          {"dense", dense, 0.6, false},
+                                          {"sparse, lit", sparse, 1.0 / 3, true},
+                                          {"dense, lit", dense, 0.6, true}};
   for (const Opacity& opacity : opacities) {
-    const std::string where = " " + opacity.name + ", " + scene;
-    const Measured theirs = Measure(fixed, model->volume, opacity);
-    Report("VTK fixed frame" + where, theirs.milliseconds, "ms", "lower", "");
-    ours->SetSampleDistance(1. / 16);
-    ours->SetAdaptiveSampling(false);
-    ours->SetLevelOfDetailScale(0);
-    ours->SetPreIntegration(true);
-    const inr::Image truth = Measure(ours, model->volume, opacity, 1).picture;
-    ours->SetSampleDistance(1);
-    Report("VTK fixed, PSNR to the truth" + where, inr::ImagePsnr(theirs.picture, truth), "dB",
-           "higher", "");
-    for (const Way& way : ways) {
-      const bool adaptive = way.adaptive;
-      ours->SetAdaptiveSampling(adaptive);
-      ours->SetLevelOfDetailScale(adaptive ? 1 : 0);
-      ours->SetPreIntegration(way.integrated);
-      const Measured mine = Measure(ours, model->volume, opacity);
-      const std::string how = " " + way.name;
-      Report("cached frame" + where + how, mine.milliseconds, "ms", "lower", "");
-      const double target = adaptive ? (opacity.points == sparse ? 1.0 / 3 : 0.6) : 0.9;
-      Report("vs VTK fixed" + where + how, mine.milliseconds / theirs.milliseconds, "", "lower",
-             ", \"target\": " + std::to_string(target) + ", \"baseline\": \"VTK fixed frame" +
-                 where + "\"");
-      Report("image PSNR" + where + how, inr::ImagePsnr(mine.picture, theirs.picture), "dB",
-             "higher", adaptive ? ", \"target\": 35" : "");
-      Report("PSNR to the truth" + where + how, inr::ImagePsnr(mine.picture, truth), "dB", "higher",
-             "");
-    }
+    const inr::Image truth = Truth(ours, model->volume, opacity);
+    const Compared compared = CompareUndisturbed(fixed, ours, model->volume, opacity, ways);
+    ReportScene(" " + opacity.name + ", " + scene, opacity, truth, compared, ways);
+  }
+}
+
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  if (argc != 3) {
+    std::cerr << "usage: bench_against_vtk MODEL.inr NAME\n";
+    return 2;
+  }
+  try {
+    Run(argv[1], argv[2]);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
   }
   return 0;
 }
