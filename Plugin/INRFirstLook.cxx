@@ -106,7 +106,7 @@ bool IsKnown(vtkSMDoubleVectorProperty* unitDistance) { return !(unitDistance->G
 
 /// ParaView's default is about the diagonal of a cell, which makes a volume of 4096^3 look solid
 /// and would follow MaximumGridPoints here. The panel's does not depend on the grid. What somebody
-/// has set, under either name, stays.
+/// has set, under either name, stays, unless it is ParaView's own default.
 void SetUnitDistance(vtkSMProxy* representation, bool isStock)
 {
   auto* stock = GetDoubles(representation, "ScalarOpacityUnitDistance");

@@ -39,6 +39,7 @@ public:
     this->WasShown = INRIsShown(representation);
     representation->AddObserver(vtkCommand::PropertyModifiedEvent, this);
     representation->AddObserver(vtkCommand::UpdateDataEvent, this);
+    this->IsUnitDistanceStock = INRIsUnitDistanceStock(representation);
     INRGiveFirstLook(representation);
   }
 
@@ -47,6 +48,7 @@ public:
     auto* representation = static_cast<vtkSMProxy*>(caller);
     const auto* property = static_cast<const char*>(data);
     if (event == vtkCommand::UpdateDataEvent) {
+      this->seeData(representation);
       WatchViewsOf(representation);
       INRFollowData(representation);
     } else if (property && std::strcmp(property, "Representation") == 0) {
@@ -60,6 +62,15 @@ public:
   }
 
 private:
+  /// The first ones' bounds tell what nobody has chosen, if they were not known before.
+  void seeData(vtkSMProxy* representation)
+  {
+    if (!this->HasSeenData) {
+      this->HasSeenData = true;
+      this->IsUnitDistanceStock |= INRIsUnitDistanceStock(representation);
+    }
+  }
+
   void changeType(vtkSMProxy* representation)
   {
     const bool isShown = INRIsShown(representation);
@@ -76,8 +87,11 @@ private:
     INRGiveFirstLook(representation, this->IsUnitDistanceStock);
   }
 
-  bool WasShown = false;            ///< when it was a volume last
-  bool IsUnitDistanceStock = false; ///< since it was set, as by "Restore defaults"
+  bool WasShown = false; ///< when it was a volume last
+  bool HasSeenData = false;
+  /// By the grid that was there when it was set, as by "Restore defaults", or began: by another one
+  /// it might look like somebody's choice.
+  bool IsUnitDistanceStock = false;
 };
 
 void OnRegister(vtkObject*, unsigned long, void*, void* callData)

@@ -129,6 +129,38 @@ display.SetRepresentationType("INR Volume")
 same(display, chosen)
 simple.Delete(reader)
 
+# Nor is it one where a volume is shown as something else at first.
+reader = simple.INRReader(FileName=MODEL)
+passed = simple.PassArrays(Input=reader, PointDataArrays=[ARRAY])
+display = simple.Show(passed, view)
+check(display.Representation != "INR Volume", "a filter's output begins as", display.Representation)
+reader.MaximumGridPoints = 1000
+passed.UpdatePipeline()
+display.SetRepresentationType("INR Volume")
+same(display, chosen)
+simple.Delete(passed)
+simple.Delete(reader)
+
+# Nor when a state brings it back.
+simple.ResetSession()
+view = show_view()
+reader = simple.OpenDataFile(MODEL)
+display = simple.Show(reader, view)
+display.SetRepresentationType("Outline")
+display.SMProxy.GetProperty("ScalarOpacityUnitDistance").ResetToDomainDefaults()
+simple.SaveState(output_file("panel-defaults.pvsm"))
+simple.ResetSession()
+simple.LoadState(output_file("panel-defaults.pvsm"))
+view = simple.GetActiveView()
+(reader,) = simple.GetSources().values()
+display = simple.GetDisplayProperties(reader, view)
+simple.Render(view)
+reader.MaximumGridPoints = 1000
+simple.Render(view)
+display.SetRepresentationType("INR Volume")
+same(display, chosen)
+simple.Delete(reader)
+
 # What the panel's names were set to while something else was shown counts when the volume is.
 reader = simple.INRReader(FileName=MODEL)
 display = simple.Show(reader, view)
