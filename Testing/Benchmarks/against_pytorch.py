@@ -25,10 +25,11 @@ from pathlib import Path
 # A thread that waits by spinning would take processor time from the other side.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
+import results_file  # first: it answers --help without the packages that follow
+
 import numpy
 import torch
 
-import results_file
 from hash_grid import HashGrid, Trainer
 from model_file import ModelFile
 

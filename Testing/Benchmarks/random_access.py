@@ -20,10 +20,11 @@ import sys
 import tempfile
 import time
 
+import results_file  # first: it answers --help without the packages that follow
+
 import zfpy
 
 import other_compressors
-import results_file
 import volumes
 from inr_files import Writer
 

@@ -18,8 +18,9 @@ import os
 import sys
 import tempfile
 
+import results_file  # first: it answers --help without the packages that follow
+
 import other_compressors
-import results_file
 import volumes
 from inr_files import Writer
 

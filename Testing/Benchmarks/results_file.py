@@ -87,7 +87,7 @@ def write(topic, results, **more):
     """Writes and returns the path; see path_of. `more` for the context may name a `gpu`. Ends the
     script when there is nothing to write, and leaves what is there."""
     if not results:
-        sys.exit(f"nothing was measured, and no {topic}.json is written: what of? See --help.")
+        sys.exit(f"nothing was measured, and no {topic}.json is written: what of? The script says at its top how it is run.")
     about = {**CONTEXT, **more}
     path = path_of(topic, about)
     path.parent.mkdir(parents=True, exist_ok=True)

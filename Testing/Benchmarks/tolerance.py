@@ -16,9 +16,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+import results_file  # first: it answers --help without the packages that follow
+
 import numpy
 
-import results_file
 import volumes
 
 
