@@ -93,7 +93,8 @@ struct SampleBatch
 /// Of samples, how the field differs along the axes.
 struct GradientBatch
 {
-  alignas(CacheLineBytes) float along[3][SampleBatch::Room]; ///< per voxel of the sample's level
+  /// Out of `differentiate`, per voxel of the sample's level.
+  alignas(CacheLineBytes) float along[3][SampleBatch::Room];
   /// Bit a: all that takes along axis a is in the sample's brick. Else `along` says nothing there.
   std::int32_t inside[SampleBatch::Room];
 };

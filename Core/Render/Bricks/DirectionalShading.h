@@ -4,6 +4,7 @@
 // instruction set; see Core/Inference/Lanes.h.
 #pragma once
 
+#include "Core/Inference/Lanes.h"
 #include "Core/Render/Bricks/BrickKernel.h"
 
 namespace inr {
@@ -54,11 +55,14 @@ void FindNormals(const DirectionalLights& lights, const GradientBatch& gradients
 Floats Power(Floats base, int exponent)
 {
   Floats power = Spread(1.0f);
-  for (; exponent > 0; exponent >>= 1) {
+  while (exponent > 0) {
     if ((exponent & 1) != 0) {
       power *= base;
     }
-    base *= base;
+    exponent >>= 1;
+    if (exponent > 0) {
+      base *= base;
+    }
   }
   return power;
 }
@@ -79,7 +83,8 @@ void LightAt(const DirectionalLights& lights, const float (&toEye)[3],
       const float eyeToLight =
           from.toLight[0] * toEye[0] + from.toLight[1] * toEye[1] + from.toLight[2] * toEye[2];
       const Floats mirrored = MultiplyAdd(twice, facing, Spread(-eyeToLight));
-      shine = mirrored > 0.0f ? Power(mirrored, lights.specularPower) : Floats{};
+      const Floats shown = Maximum(mirrored, Spread(lights.leastMirrored));
+      shine = mirrored > 0.0f ? Power(shown, lights.specularPower) : Floats{};
     }
     for (int channel = 0; channel < 3; ++channel) {
       const Floats color = Spread(from.rgb[channel]);

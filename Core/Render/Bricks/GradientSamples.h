@@ -5,6 +5,7 @@
 // instruction set; see Core/Inference/Lanes.h.
 #pragma once
 
+#include "Core/Inference/Lanes.h"
 #include "Core/Render/Bricks/BrickKernel.h"
 #include "Core/Render/Bricks/SampleLayout.h"
 #include "Core/Render/Bricks/StoredVoxels.h"

@@ -20,6 +20,9 @@ struct DirectionalLights
   float diffuse;
   float specular;
   int specularPower; ///< a whole number, not negative, which powers are made of by squaring
+  /// Cosine below which highlights are as good as none: powers of smaller ones would take
+  /// processors long that number so little.
+  float leastMirrored;
   /// Takes a gradient per voxel of level 0 to world space, up to a factor: the largest element is 1
   /// or -1. Row by row.
   float gradientToWorld[3][3];

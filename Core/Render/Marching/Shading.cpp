@@ -64,13 +64,16 @@ DirectionalLights Shading::takeDirectional()
     this->DirectionalEach.push_back(
         {{direction.x, direction.y, direction.z}, {rgb.r, rgb.g, rgb.b}});
   }
-  DirectionalLights all{this->DirectionalEach.data(),
-                        static_cast<int>(this->DirectionalEach.size()),
-                        surface.ambient,
-                        surface.diffuse,
-                        surface.specular,
-                        HasHighlights(surface) ? static_cast<int>(surface.specularPower) : 0,
-                        {}};
+  DirectionalLights all{};
+  all.lights = this->DirectionalEach.data();
+  all.count = static_cast<int>(this->DirectionalEach.size());
+  all.ambient = surface.ambient;
+  all.diffuse = surface.diffuse;
+  all.specular = surface.specular;
+  if (HasHighlights(surface)) {
+    all.specularPower = static_cast<int>(surface.specularPower);
+    all.leastMirrored = std::exp2(-100.0f / std::max(surface.specularPower, 1.0f));
+  }
   const glm::dmat3& toWorld = this->View.gradientToWorld;
   const double largest = LargestElement(toWorld);
   for (int row = 0; row < 3; ++row) {
