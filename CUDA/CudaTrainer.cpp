@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CUDA/CudaTrainer.h"
 
+#include "CUDA/Training/StartTraining.h"
+
 #include <utility>
 
 namespace inr {

@@ -13,9 +13,6 @@ namespace cuda {
 /// A GPU for trainings, in float32.
 std::shared_ptr<const TrainingAccelerator> MakeTrainer(const Device& device);
 
-/// Begins one there. Throws Error(Device) with figures where its memory is short or it fails.
-std::unique_ptr<AcceleratedTraining> StartTraining(const Device& device, const TrainingTask& task);
-
 /// What is to be had for trainings.
 struct FoundTrainer
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What takes the place of the GPU's part in a build without a CUDA compiler.
-#include "CUDA/CudaTrainer.h"
 #include "CUDA/Render/Renderers.h"
+#include "CUDA/Training/StartTraining.h"
 #include "Core/Error.h"
 
 namespace inr {

@@ -262,7 +262,8 @@ public:
   vtkGetMacro(ExchangeSeconds, double);
   ///@}
 
-  /// Is an array of this name (may be null) one that tells where others have no values?
+  /// Is an array of this name (may be null) one that tells where others have no values? For other
+  /// libraries, which share nothing but classes.
   static bool IsMask(const char* name);
 
   /// 1, or 0 after an error. What is read is looked at before.

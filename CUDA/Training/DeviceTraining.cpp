@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CUDA/CudaTrainer.h"
 #include "CUDA/Device/Machine.h"
 #include "CUDA/Training/MachineTraining.h"
+#include "CUDA/Training/StartTraining.h"
 
 namespace inr {
 namespace cuda {

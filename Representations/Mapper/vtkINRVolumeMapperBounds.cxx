@@ -5,30 +5,9 @@
 
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
-#include <vtkNew.h>
 
 #include <array>
 #include <cmath>
-
-namespace {
-
-/// Where these points of the presented grid are.
-void BoundsOf(const inr::DrawnGrid& grid, const std::array<int, 6>& extent, double bounds[6])
-{
-  vtkImageData* image = grid.image;
-  std::array<int, 6> shifted;
-  for (int k = 0; k < 6; ++k) {
-    shifted[k] = extent[k] + grid.shift[k / 2];
-  }
-  vtkNew<vtkImageData> box; // CopyStructure would look at all ghost cells
-  box->SetOrigin(image->GetOrigin());
-  box->SetSpacing(image->GetSpacing());
-  box->SetDirectionMatrix(image->GetDirectionMatrix());
-  box->SetExtent(shifted.data());
-  box->GetBounds(bounds);
-}
-
-} // namespace
 
 double* vtkINRVolumeMapper::GetBounds()
 {
@@ -55,18 +34,16 @@ double* vtkINRVolumeMapper::GetBounds()
 void vtkINRVolumeMapper::GetWholeBounds(double bounds[6])
 {
   const inr::MapperInput input = inr::FindInput(this);
-  if (!input.array) {
-    return;
+  if (input.array) {
+    inr::WholeBounds(input.grid, bounds);
   }
-  const glm::ivec3 last = input.grid.presented - 1;
-  BoundsOf(input.grid, {0, last.x, 0, last.y, 0, last.z}, bounds);
 }
 
 void vtkINRVolumeMapper::GetPieceBounds(double bounds[6])
 {
   const inr::MapperInput input = inr::FindInput(this);
   if (input.array) {
-    BoundsOf(input.grid, inr::OwnExtent(input.grid), bounds);
+    inr::BoundsOf(input.grid, inr::OwnExtent(input.grid), bounds);
   }
 }
 

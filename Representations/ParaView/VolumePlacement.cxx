@@ -30,7 +30,7 @@ Way WayOf(int axis, vtkImageData& image, vtkMatrix4x4& matrix)
   for (int row = 1; row < 3; ++row) {
     longest = std::abs(way[row]) > std::abs(way[longest]) ? row : longest;
   }
-  return {longest, way[longest] < 0};
+  return way[longest] == 0 ? Way{axis, false} : Way{longest, way[longest] < 0}; // or flat
 }
 
 } // namespace

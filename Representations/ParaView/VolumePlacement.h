@@ -11,8 +11,9 @@ namespace inr {
 class VolumePlacement
 {
 public:
-  /// Looks again. `piece`: its bounds in the volume. Returns whether the volume is elsewhere than
-  /// when this was called last, in all processes alike.
+  /// Looks again. `piece`: its bounds in the volume, which count where the mapper has no INR.
+  /// Returns whether the volume is elsewhere than when this was called last, in all processes
+  /// alike.
   bool update(vtkINRVolumeMapper& mapper, const double piece[6], vtkMatrix4x4& matrix);
 
   /// The same part of the box in the world around all of it, so that neighbours' boxes meet to the

@@ -6,6 +6,7 @@
 #include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
+#include <vtkNew.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <glm/gtc/matrix_access.hpp>
@@ -62,6 +63,26 @@ glm::dmat4 WorldToIndex(const DrawnGrid& grid, vtkMatrix4x4* volumeToWorld)
   const glm::dmat4 indexToWorld = ToGlm(volumeToWorld) * IndexToPhysical(grid.image);
   const glm::dmat4 toPresented = glm::translate(glm::dmat4(1.0), -glm::dvec3(grid.shift));
   return PresentedToNative(grid) * toPresented * glm::inverse(indexToWorld);
+}
+
+void BoundsOf(const DrawnGrid& grid, const std::array<int, 6>& extent, double bounds[6])
+{
+  std::array<int, 6> shifted;
+  for (int k = 0; k < 6; ++k) {
+    shifted[k] = extent[k] + grid.shift[k / 2];
+  }
+  vtkNew<vtkImageData> box; // CopyStructure would look at all ghost cells
+  box->SetOrigin(grid.image->GetOrigin());
+  box->SetSpacing(grid.image->GetSpacing());
+  box->SetDirectionMatrix(grid.image->GetDirectionMatrix());
+  box->SetExtent(shifted.data());
+  box->GetBounds(bounds);
+}
+
+void WholeBounds(const DrawnGrid& grid, double bounds[6])
+{
+  const glm::ivec3 last = grid.presented - 1;
+  BoundsOf(grid, {0, last.x, 0, last.y, 0, last.z}, bounds);
 }
 
 std::array<int, 6> OwnExtent(const DrawnGrid& grid)

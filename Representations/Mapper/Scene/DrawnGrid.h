@@ -30,6 +30,12 @@ glm::dmat4 PresentedToNative(const DrawnGrid& grid);
 /// native index i*(N-1)/(n-1). `volumeToWorld` is the actor's matrix.
 glm::dmat4 WorldToIndex(const DrawnGrid& grid, vtkMatrix4x4* volumeToWorld);
 
+/// Where these points of the presented grid are, along the volume's axes.
+void BoundsOf(const DrawnGrid& grid, const std::array<int, 6>& extent, double bounds[6]);
+
+/// The same of all of them.
+void WholeBounds(const DrawnGrid& grid, double bounds[6]);
+
 /// Of the presented grid what the image holds and no other process, too: all but its ghost cells.
 std::array<int, 6> OwnExtent(const DrawnGrid& grid);
 

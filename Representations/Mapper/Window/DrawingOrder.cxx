@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Representations/Mapper/Window/DrawingOrder.h"
 
+#include "Representations/Mapper/Scene/MapperInput.h"
 #include "Representations/Mapper/Scene/PlacedBox.h"
 #include "Representations/Mapper/Window/Props.h"
 #include "vtkINRVolumeMapper.h"
@@ -9,6 +10,7 @@
 #include <vtkCamera.h>
 #include <vtkCommand.h>
 #include <vtkVolume.h>
+#include <vtkVolumeMapper.h>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -31,9 +33,10 @@ Box BoxOf(vtkVolume* volume)
   double own[6];
   volume->GetBounds(own);
   vtkBoundingBox box(own);
-  double whole[6] = {1, 0, 1, 0, 1, 0};
-  vtkINRVolumeMapper::SafeDownCast(volume->GetMapper())->GetWholeBounds(whole);
-  if (whole[0] <= whole[1]) {
+  const MapperInput input = FindInput(vtkVolumeMapper::SafeDownCast(volume->GetMapper()));
+  if (input.array) {
+    double whole[6];
+    WholeBounds(input.grid, whole);
     box = PlacedBox(whole, *volume->GetMatrix());
   }
   double low[3];
