@@ -2,12 +2,17 @@
 #include "INRFirstLook.h"
 
 #include "INRPanel.h"
+#include "vtkAlgorithm.h"
+#include "vtkBoundingBox.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
+#include "vtkProcessModule.h"
 #include "vtkSMBoundsDomain.h"
 #include "vtkSMDoubleVectorProperty.h"
 #include "vtkSMPVRepresentationProxy.h"
@@ -16,6 +21,9 @@
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTransferFunctionManager.h"
 #include "vtkSMViewProxy.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
 
 namespace {
 
@@ -101,6 +109,46 @@ double DomainDefault(vtkSMDoubleVectorProperty* property)
   return value;
 }
 
+double LongestSide(const double bounds[6])
+{
+  double sides[3];
+  vtkBoundingBox(bounds).GetLengths(sides);
+  return *std::max_element(sides, sides + 3);
+}
+
+/// That of the whole image that the representation's input has a piece of, as this process knows
+/// it; 0 when it does not.
+double LongestSideOfWhole(vtkSMProxy* representation)
+{
+  const vtkSMPropertyHelper input(representation, "Input");
+  vtkSMProxy* source = input.GetAsProxy();
+  auto* algorithm = vtkAlgorithm::SafeDownCast(source ? source->GetClientSideObject() : nullptr);
+  vtkInformation* information =
+      algorithm ? algorithm->GetOutputInformation(static_cast<int>(input.GetOutputPort()))
+                : nullptr;
+  if (!information || !information->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT())) {
+    return 0;
+  }
+  vtkNew<vtkImageData> whole;
+  whole->CopyInformationFromPipeline(information); // origin, spacing and direction
+  whole->SetExtent(information->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()));
+  double bounds[6];
+  whole->GetBounds(bounds);
+  return LongestSide(bounds);
+}
+
+/// What a process that is its own client makes too small: it knows the bounds of its piece.
+double PartOfWhole(vtkSMProxy* representation)
+{
+  if (!vtkProcessModule::GetProcessModule()->GetSymmetricMPIMode()) {
+    return 1;
+  }
+  double bounds[6];
+  InputInformation(representation)->GetBounds(bounds);
+  const double whole = LongestSideOfWhole(representation);
+  return whole > 0 ? LongestSide(bounds) / whole : 1;
+}
+
 /// Neither the XML's default nor that of bounds of nothing, which are below 0.
 bool IsKnown(vtkSMDoubleVectorProperty* unitDistance) { return !(unitDistance->GetElement(0) < 0); }
 
@@ -112,7 +160,8 @@ void SetUnitDistance(vtkSMProxy* representation, bool isStock)
   auto* stock = GetDoubles(representation, "ScalarOpacityUnitDistance");
   auto* panel = GetDoubles(representation, "INRUnitDistance");
   const bool isNew = isStock && panel->GetElement(0) == stock->GetElement(0);
-  const double wanted = DomainDefault(panel); // below 0 where there are no bounds yet
+  const double known = DomainDefault(panel); // below 0 where there are no bounds yet
+  const double wanted = known > 0 ? known / PartOfWhole(representation) : known;
   if ((isNew || !IsKnown(panel)) && wanted > 0) {
     panel->SetElement(0, wanted);
   }
