@@ -3,8 +3,8 @@
 alone, and in a state file."""
 import numpy as np
 from paraview import simple
-from pvtest import MODEL, Messages, check, check_baseline, load_plugin, look_at, output_file, picture
-from pvtest import psnr, show_view
+from pvtest import MODEL, Messages, check, check_baseline, load_plugin, look_at, picture
+from pvtest import psnr, save_and_load, show_view
 
 load_plugin()
 view = show_view((200, 200))
@@ -88,12 +88,7 @@ for refused in (dict(BlendMode="Slice"), dict(RenderMode="Path Tracing")):
     check(messages.errors() == 1, refused, "reported", messages.text)
 display.RenderMode = "Ray Marching"
 
-simple.SaveState(output_file("blend.pvsm"))
-simple.ResetSession()
-simple.LoadState(output_file("blend.pvsm"))
-view = simple.GetActiveView()
-(reader,) = simple.GetSources().values()
-display = simple.GetDisplayProperties(reader, view)
+view, reader, display = save_and_load("blend.pvsm")
 check((display.BlendMode, display.INRBlendMode) == ("Isosurface",) * 2, "the mode is lost")
 again = picture(view, "blend-state")
 check(np.abs(again - fewer).max() < 1e-6, "the state shows something else")

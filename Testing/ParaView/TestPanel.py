@@ -5,7 +5,7 @@ import math
 
 from paraview import servermanager, simple, smstate
 from pvtest import ARRAY, MODEL, Messages, check, load_plugin, look_at, output_file, picture
-from pvtest import show_view
+from pvtest import save_and_load, show_view
 
 load_plugin()
 view = show_view()
@@ -63,13 +63,8 @@ check((display.INRDiffuse, display.INRSpecular) == (0.5, 0.125), "light does not
 # So it does not matter in which order a state file sets them.
 display.INRUnitDistance = 3
 display.INRShade = 1
-simple.SaveState(output_file("panel.pvsm"))
 script = smstate.get_state()
-simple.ResetSession()
-simple.LoadState(output_file("panel.pvsm"))
-view = simple.GetActiveView()
-(reader,) = simple.GetSources().values()
-display = simple.GetDisplayProperties(reader, view)
+view, reader, display = save_and_load("panel.pvsm")
 same(display, 3)
 check((display.Shade, display.INRShade) == (1, 1), "shading is lost")
 simple.ResetSession()
@@ -148,12 +143,7 @@ reader = simple.OpenDataFile(MODEL)
 display = simple.Show(reader, view)
 display.SetRepresentationType("Outline")
 display.SMProxy.GetProperty("ScalarOpacityUnitDistance").ResetToDomainDefaults()
-simple.SaveState(output_file("panel-defaults.pvsm"))
-simple.ResetSession()
-simple.LoadState(output_file("panel-defaults.pvsm"))
-view = simple.GetActiveView()
-(reader,) = simple.GetSources().values()
-display = simple.GetDisplayProperties(reader, view)
+view, reader, display = save_and_load("panel-defaults.pvsm")
 simple.Render(view)
 reader.MaximumGridPoints = 1000
 simple.Render(view)

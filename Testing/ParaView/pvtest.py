@@ -96,6 +96,18 @@ def connect(*place):
     load_plugin()
 
 
+def save_and_load(name):
+    """Ends the session and brings it back from a state file of that name. The view, the reader and its
+    display, of each of which there is one."""
+    path = output_file(name)
+    simple.SaveState(path)
+    simple.ResetSession()
+    simple.LoadState(path)
+    view = simple.GetActiveView()
+    (reader,) = simple.GetSources().values()
+    return view, reader, simple.GetDisplayProperties(reader, view)
+
+
 def look_at(view):
     """One slanted camera for all pictures."""
     view.ResetActiveCameraToPositiveX()
