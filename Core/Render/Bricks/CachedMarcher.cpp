@@ -1,148 +1,104 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Bricks/CachedMarcher.h"
 
-#include "Core/Render/Bricks/SampleBits.h"
-#include "Core/Render/Marching/PreIntegratedColors.h"
+#include "Core/Render/Bricks/CachedCompositing.h"
+#include "Core/Render/Bricks/CachedIntegration.h"
+#include "Core/Render/Bricks/CachedProjection.h"
+#include "Core/Render/Bricks/CachedShading.h"
+#include "Core/Render/Bricks/CachedSurfaces.h"
+
+#include <utility>
 
 namespace inr {
 
-CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
-    : Placer(scene, onMiss, this->Notes), Scene(scene), Missing(onMiss),
-      Placed(this->Placer.placed()), Batch(this->Placer.batch())
+namespace {
+
+std::unique_ptr<CachedColors> ColorsOf(MarchedBatch& batch)
 {
-  if (scene.settings.looksAtBothEnds()) {
-    this->Probe.emplace(scene, onMiss);
+  if (batch.scene().settings.preIntegrated != nullptr) {
+    return std::make_unique<CachedIntegration>(batch);
   }
-  if (scene.settings.preIntegrated != nullptr) {
-    this->Integrals =
-        scene.settings.preIntegrated->kernelLookup(scene.settings.step * scene.settings.unitsPerT);
-  }
-  if (scene.shading != nullptr && !scene.settings.projector.findsSurfaces()) {
-    this->Shader.emplace(*scene.shading, BrickGradients(*scene.bricks, scene.format, scene.kernel),
-                         scene.kernel);
-  }
+  return std::make_unique<CachedCompositing>(batch);
 }
 
-FrameStatistics CachedMarcher::statistics() const
+std::unique_ptr<CachedBlending> BlendingOf(MarchedBatch& batch)
 {
-  FrameStatistics statistics = this->Notes.statistics;
-  statistics.work.gradients =
-      (this->Shader ? this->Shader->gradients() : 0) + (this->Probe ? this->Probe->gradients() : 0);
+  const CachedScene& scene = batch.scene();
+  if (scene.settings.projector.findsSurfaces()) {
+    return std::make_unique<CachedSurfaces>(batch);
+  }
+  if (scene.shading != nullptr) {
+    return std::make_unique<CachedShading>(batch, ColorsOf(batch));
+  }
+  if (scene.settings.projector.projects()) {
+    return std::make_unique<CachedProjection>(batch);
+  }
+  return ColorsOf(batch);
+}
+
+} // namespace
+
+CachedMarcher::CachedMarcher(const CachedScene& scene, OnMiss onMiss)
+    : Batch(scene, onMiss), Blending(BlendingOf(this->Batch))
+{}
+
+FrameStatistics CachedMarcher::statistics()
+{
+  FrameStatistics statistics = this->Batch.statistics();
+  statistics.work.gradients = this->Blending->gradients();
   return statistics;
 }
 
 CachedRay CachedMarcher::begin(int x, int y)
 {
-  CachedRay ray(this->Scene, x, y);
+  const CachedScene& scene = this->Batch.scene();
+  CachedRay ray(scene, x, y);
   bool meets = ray.ray.length > 0;
-  if (this->Scene.frame.layers && !meets) {
-    meets = this->Scene.geometry.ray(x, y).length > 0;
-    ray.layered.part = meets ? 0 : this->Scene.frame.layers->count();
+  if (scene.frame.layers && !meets) {
+    meets = scene.geometry.ray(x, y).length > 0;
+    ray.layered.part = meets ? 0 : scene.frame.layers->count();
   }
-  this->Notes.statistics.rays += meets ? 1 : 0;
+  this->Batch.statistics().rays += meets ? 1 : 0;
   return ray;
 }
 
-bool CachedMarcher::march(CachedRay& state)
+bool CachedMarcher::march(CachedRay& ray)
 {
-  if (!this->Scene.frame.layers) {
-    return this->marchPart(state);
+  if (!this->Batch.scene().frame.layers) {
+    return this->marchPart(ray);
   }
-  while (this->marchPart(state)) {
-    if (!state.enterNextPart(this->Scene)) {
+  while (this->marchPart(ray)) {
+    if (!ray.enterNextPart(this->Batch.scene())) {
       return true;
     }
   }
   return false;
 }
 
-bool CachedMarcher::marchPart(CachedRay& state)
+bool CachedMarcher::marchPart(CachedRay& ray)
 {
-  const bool projects = this->Scene.settings.projector.projects();
-  this->Placer.begin(state);
-  if (this->Probe) {
-    this->Probe->leave();
-  }
-  while (!this->Placer.ended() && !this->Placer.waits()) {
-    const double before = state.color.transmittance;
-    if (this->Scene.settings.projector.findsSurfaces()) {
-      this->advanceSurfaces(state);
-    } else if (this->Shader) {
-      this->advanceShaded(state);
-    } else if (this->Scene.settings.preIntegrated != nullptr) {
-      this->advanceIntegrated(state);
-    } else {
-      this->sample(state);
-      projects ? this->project(state) : this->composite(state);
+  SamplePlacer& placer = this->Batch.placer();
+  placer.begin(ray);
+  this->Blending->begin();
+  while (!placer.ended() && !placer.waits()) {
+    const double before = ray.color.transmittance;
+    this->Blending->advance(ray);
+    if (this->isDone(ray)) {
+      placer.end();
     }
-    if (this->isDone(state)) {
-      this->Placer.end();
-    }
-    this->Placer.adaptRoom(before, state.color.transmittance);
+    placer.adaptRoom(before, ray.color.transmittance);
   }
-  if (projects && this->Placer.ended()) {
-    this->finishProjection(state);
+  if (placer.ended()) {
+    this->Blending->finish(ray);
   }
-  this->Placer.finish(state);
-  return this->Placer.ended();
+  placer.finish(ray);
+  return placer.ended();
 }
 
-void CachedMarcher::sample(CachedRay& state)
+bool CachedMarcher::isDone(const CachedRay& ray) const
 {
-  this->Placer.place(state);
-  this->Scene.kernel.sampleRuns(this->Scene.format, this->Batch, this->Placed.runs);
-}
-
-void CachedMarcher::goBackTo(int sample, const SampleWalker& before, CachedRay& state)
-{
-  this->Notes.statistics.clamped -= CountBits(this->Clamped >> sample);
-  this->Placer.goBackTo(sample, before, state);
-}
-
-void CachedMarcher::advanceShaded(CachedRay& state)
-{
-  const SampleWalker before = state.samples; // bricks may be asked for that are not there
-  const KnownValue knownBefore = state.known;
-  this->sample(state);
-  this->clampToRanges();
-  const bool integrates = this->Scene.settings.preIntegrated != nullptr;
-  glm::vec4 colors[SampleBatch::Capacity];
-  float opacities[SampleBatch::Capacity];
-  int known = integrates ? this->findIntegrated(state, colors, opacities)
-                         : this->findOpacities(state, colors, opacities);
-  known = this->shade(state, known, colors);
-  for (int k = 0; k < known; ++k) {
-    if (opacities[k] > 0.0f && this->addLight(state, colors[k], opacities[k])) {
-      state.halfOpaqueAt = this->timeOf(state, k);
-    }
-  }
-  if (integrates) { // no further than what is lit: it goes on from there
-    state.known = known > 0 ? this->knownBehind(known - 1) : knownBefore;
-  }
-  if (known < this->Placed.count && state.color.transmittance > OpaqueTransmittance) {
-    this->goBackTo(known, before, state);
-  }
-}
-
-int CachedMarcher::shade(const CachedRay& state, int count, glm::vec4* colors)
-{
-  const bool isLitFromPlaces = this->Scene.shading->view().knowsPlaces();
-  double t[SampleBatch::Capacity];
-  for (int k = 0; isLitFromPlaces && k < count; ++k) {
-    t[k] = this->timeOf(state, k);
-  }
-  const bool stops = this->Missing == OnMiss::Stop;
-  const SampleShader::Request request{
-      state.ray, stops ? BrickGradients::Missing::Stop : BrickGradients::Missing::OneSided,
-      static_cast<float>(state.color.transmittance), this->Placed.bricks,
-      isLitFromPlaces ? t : nullptr};
-  const std::size_t asked = this->Notes.requests.entries().size();
-  const int known = this->Shader->shade(this->Batch, count, request, this->Notes.requests, colors);
-  if (!stops) {
-    this->Notes.statistics.missed +=
-        static_cast<std::int64_t>(this->Notes.requests.entries().size() - asked);
-  }
-  return known;
+  return ray.color.transmittance <= OpaqueTransmittance ||
+         this->Batch.scene().settings.projector.isFinal(ray.projection);
 }
 
 } // namespace inr

@@ -1,35 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-//
-// What CachedMarcher does with the values of a batch where they are projected.
-#include "Core/Render/Bricks/CachedMarcher.h"
+#include "Core/Render/Bricks/CachedProjection.h"
 
 namespace inr {
 
-bool CachedMarcher::isDone(const CachedRay& state) const
+void CachedProjection::advance(CachedRay& ray)
 {
-  return state.color.transmittance <= OpaqueTransmittance ||
-         this->Scene.settings.projector.isFinal(state.projection);
-}
-
-void CachedMarcher::project(CachedRay& state)
-{
-  this->clampToRanges();
-  const MarchSettings& settings = this->Scene.settings;
-  for (int k = 0; k < this->Placed.count; ++k) {
-    settings.projector.add(this->Scene.colors, this->Batch.value[k], this->lengthOf(k),
-                           this->timeOf(state, k), state.projection);
+  this->Batch.fill(ray);
+  this->Batch.clampToRanges();
+  const Projector& projector = this->Scene.settings.projector;
+  for (int k = 0; k < this->Batch.placed().count; ++k) {
+    projector.add(this->Scene.colors, this->Batch.samples().value[k], this->Batch.lengthOf(k),
+                  this->Batch.timeOf(ray, k), ray.projection);
   }
 }
 
-void CachedMarcher::finishProjection(CachedRay& state) const
+void CachedProjection::finish(CachedRay& ray) const
 {
-  if (!(state.ray.length > 0)) {
+  if (!(ray.ray.length > 0)) {
     return;
   }
-  const glm::vec4 color =
-      this->Scene.settings.projector.color(this->Scene.colors, state.projection);
-  state.color = {{color.x, color.y, color.z}, 1.0f - color.w, state.color.ofMany};
-  state.halfOpaqueAt = color.w >= 0.5f ? state.projection.at : -1.0;
+  const glm::vec4 color = this->Scene.settings.projector.color(this->Scene.colors, ray.projection);
+  ray.color = {{color.x, color.y, color.z}, 1.0f - color.w, ray.color.ofMany};
+  ray.halfOpaqueAt = color.w >= 0.5f ? ray.projection.at : -1.0;
 }
 
 } // namespace inr

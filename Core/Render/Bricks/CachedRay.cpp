@@ -2,6 +2,7 @@
 #include "Core/Render/Bricks/CachedRay.h"
 
 #include "Core/Render/Marching/RayMarching.h"
+#include "Core/Render/Scene/Opacity.h"
 
 namespace inr {
 
@@ -52,6 +53,23 @@ bool CachedRay::enterNextPart(const CachedScene& scene)
   this->known = {};
   this->shownTo = Unknown;
   return true;
+}
+
+bool CachedRay::addLight(const glm::vec4& added, float opacity)
+{
+  const double weight = this->color.transmittance * opacity;
+  for (int channel = 0; channel < 3; ++channel) {
+    this->color.rgb[channel] += weight * added[channel];
+  }
+  this->color.transmittance -= weight;
+  return this->halfOpaqueAt < 0 && this->color.transmittance <= 0.5f;
+}
+
+void CachedRay::composite(const glm::vec4& added, float length, double t)
+{
+  if (this->addLight(added, OpacityOver(length, added.w))) {
+    this->halfOpaqueAt = t;
+  }
 }
 
 } // namespace inr

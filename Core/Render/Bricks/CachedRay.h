@@ -5,6 +5,8 @@
 #include "Core/Render/Marching/KnownValue.h"
 #include "Core/Render/Rays/LayeredWay.h"
 
+#include <glm/vec4.hpp>
+
 #include <cstdint>
 
 namespace inr {
@@ -24,6 +26,12 @@ struct CachedRay
   CachedRay(const CachedScene& scene, int x, int y);
   /// Goes on behind the translucent layer at its end; false when there is nothing to see.
   bool enterNextPart(const CachedScene& scene);
+  /// Puts a straight colour behind what it has gathered; whether light was halved by that, and not
+  /// before.
+  bool addLight(const glm::vec4& added, float opacity);
+  /// The same of a colour that is at `t`, of opacity added.w per unit distance, over `length` of
+  /// these; notes whether light was halved there.
+  void composite(const glm::vec4& added, float length, double t);
 
   static constexpr std::int64_t Unknown = -3; ///< shownTo: nothing was looked at right before
   static constexpr std::int64_t Nowhere = -2; ///< shownTo: what was right before is invisible
