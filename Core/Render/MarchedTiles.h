@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Cache/Requests.h"
-#include "Core/Render/Bricks/CachedPasses.h"
+#include "Core/Render/Blending/CachedPasses.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/DrawCall.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Image/Image.h"
-#include "Core/Render/Bricks/CachedPasses.h"
+#include "Core/Render/Blending/CachedPasses.h"
 
 #include <optional>
 

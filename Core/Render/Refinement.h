@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Bricks/CachedPasses.h"
+#include "Core/Render/Blending/CachedPasses.h"
 #include "Core/Render/PictureCopy.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Scene/KeptFrame.h"

@@ -32,6 +32,7 @@ Core/Render/Tiles
 Core/Render/MacroCells
 Core/Render/Marching
 Core/Render/Bricks
+Core/Render/Blending
 Core/Render/Tolerance
 Core/Render/Paths
 Core/Render/Acceleration

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Render/Bricks/CachedBlending.h"
+#include "Core/Render/Blending/CachedBlending.h"
 
 namespace inr {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "Core/Image/Image.h"
-#include "Core/Render/Bricks/CachedMarcher.h"
+#include "Core/Render/Blending/CachedMarcher.h"
 #include "Core/Render/Scene/FrameStatistics.h"
 #include "Core/Render/Tiles/DrawCall.h"
 #include "Core/Render/Tiles/Tiling.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/Bricks/CachedSurfaces.h"
+#include "Core/Render/Blending/CachedSurfaces.h"
 
 #include "Core/Render/Marching/SurfaceCrossings.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/Bricks/CachedPasses.h"
+#include "Core/Render/Blending/CachedPasses.h"
 
 #include "Core/Render/Tiles/TileLoop.h"
 

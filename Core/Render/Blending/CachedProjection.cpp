@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/Bricks/CachedProjection.h"
+#include "Core/Render/Blending/CachedProjection.h"
 
 namespace inr {
 

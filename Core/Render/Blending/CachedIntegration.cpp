@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/Bricks/CachedIntegration.h"
+#include "Core/Render/Blending/CachedIntegration.h"
 
 #include "Core/Render/Bricks/SampleBits.h"
 #include "Core/Render/Marching/PreIntegratedColors.h"

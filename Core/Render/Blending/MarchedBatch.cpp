@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/Bricks/MarchedBatch.h"
+#include "Core/Render/Blending/MarchedBatch.h"
 
 #include "Core/Render/Bricks/SampleBits.h"
 #include "Core/Render/Marching/RayMarching.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/Bricks/CachedCompositing.h"
+#include "Core/Render/Blending/CachedCompositing.h"
 
 #include "Core/Render/Scene/Opacity.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/Bricks/CachedShading.h"
+#include "Core/Render/Blending/CachedShading.h"
 
 #include <utility>
 

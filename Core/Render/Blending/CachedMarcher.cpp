@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Render/Bricks/CachedMarcher.h"
+#include "Core/Render/Blending/CachedMarcher.h"
 
-#include "Core/Render/Bricks/CachedCompositing.h"
-#include "Core/Render/Bricks/CachedIntegration.h"
-#include "Core/Render/Bricks/CachedProjection.h"
-#include "Core/Render/Bricks/CachedShading.h"
-#include "Core/Render/Bricks/CachedSurfaces.h"
+#include "Core/Render/Blending/CachedCompositing.h"
+#include "Core/Render/Blending/CachedIntegration.h"
+#include "Core/Render/Blending/CachedProjection.h"
+#include "Core/Render/Blending/CachedShading.h"
+#include "Core/Render/Blending/CachedSurfaces.h"
 
 #include <utility>
 
