@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRContour.h"
 
+#include "Core/Cache/LevelVoxels.h"
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
 #include "Readers/Common/StopSignals.h"
@@ -9,7 +10,6 @@
 #include "Readers/Contour/BrickQueue.h"
 #include "Readers/Contour/ContourBricks.h"
 #include "Readers/Contour/SurfaceBuilder.h"
-#include "Readers/Grid/LevelSampler.h"
 #include "Readers/Grid/NativeGrid.h"
 
 #include <vtkFieldData.h>
@@ -46,7 +46,10 @@ public:
   PatchMaker(const inr::ModelPointer& model, const ContourBricks& bricks,
              const std::vector<double>& values, bool gradients)
       : Volume(model->volume), Evaluator(inr::MakeEvaluator(model)),
-        Sampler(*model, bricks.GetLevel()), Bricks(bricks), Values(values),
+        Voxels(
+            model->volume.dims, bricks.GetLevel(),
+            inr::PointsPerAxis(model->volume.dims, bricks.GetLevel(), inr::ResolutionOf(*model))),
+        Bricks(bricks), Values(values),
         GradientUnit(gradients ? model->volume.high - model->volume.low : 0)
   {}
 
@@ -66,8 +69,7 @@ private:
   std::vector<SurfacePatch> MakeOne(inr::BrickKey key) const
   {
     BrickContour brick(this->Bricks.BoxOf(key), this->Bricks.Size(), this->GradientUnit);
-    for (const float y :
-         this->Sampler.Box(*this->Evaluator, brick.GetBox().first, brick.GetBox().size)) {
+    for (const float y : this->Voxels.in(brick.GetBox(), *this->Evaluator)) {
       brick.values.push_back(inr::ValueOf(this->Volume, y));
     }
     std::vector<SurfacePatch> patches;
@@ -79,7 +81,7 @@ private:
 
   const inr::VolumeInfo& Volume;
   std::shared_ptr<const inr::Evaluator> Evaluator;
-  LevelSampler Sampler;
+  inr::LevelVoxels Voxels;
   const ContourBricks& Bricks;
   const std::vector<double>& Values;
   double GradientUnit; ///< no voxels differ by more

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkINRDecode.h"
 
+#include "Core/Cache/LevelVoxels.h"
 #include "Core/Error.h"
 #include "Core/Inference/Evaluator.h"
 #include "Readers/Common/Extents.h"
 #include "Readers/Common/MemoryCheck.h"
 #include "Readers/Common/StopSignals.h"
 #include "Readers/Common/VTKCompat.h"
-#include "Readers/Grid/LevelSampler.h"
 #include "Readers/Grid/NativeGrid.h"
 #include "Readers/Grid/Scalars.h"
 
@@ -197,14 +197,16 @@ bool vtkINRDecode::Fill(const NativeGrid& grid, const int extent[6], T* values, 
   const auto evaluator = inr::MakeEvaluator(grid.model);
   const inr::Arena arena;
   const inr::VolumeInfo& volume = grid.model->volume;
-  const LevelSampler sampler(*grid.model, this->Level);
+  const inr::LevelVoxels voxels(
+      volume.dims, this->Level,
+      inr::PointsPerAxis(volume.dims, this->Level, inr::ResolutionOf(*grid.model)));
   const std::int64_t width = extent[1] - extent[0] + 1;
   const std::int64_t height = extent[3] - extent[2] + 1;
   const std::int64_t depth = extent[5] - extent[4] + 1;
   for (std::int64_t z = 0; z < depth; ++z) {
     arena.forEachBlock(height, RowsPerTask, [&](std::int64_t y, std::int64_t end) {
       const std::vector<float> box =
-          sampler.Box(*evaluator, {extent[0], extent[2] + y, extent[4] + z}, {width, end - y, 1});
+          voxels.in({{extent[0], extent[2] + y, extent[4] + z}, {width, end - y, 1}}, *evaluator);
       std::transform(box.begin(), box.end(), values + width * (y + height * z),
                      [&](float value) { return ToScalar<T>(inr::ValueOf(volume, value)); });
     });

@@ -2,6 +2,7 @@
 #include "Core/Cache/BrickSource.h"
 
 #include "Core/Cache/BrickCells.h"
+#include "Core/Cache/LevelVoxels.h"
 #include "Core/GridBox.h"
 #include "Core/Model/Model.h"
 
@@ -90,61 +91,15 @@ private:
     const glm::i64vec3 end(glm::min<std::int64_t>(x.last, box.size.x - 1),
                            glm::min<std::int64_t>(y.last, box.size.y - 1), first.z);
     const glm::i64vec3 count = end - first + std::int64_t{1};
-    const std::vector<float> inside = this->valuesIn(id.level, box.first + first, count);
+    const LevelVoxels voxels(this->hierarchy().dims(), id.level,
+                             this->hierarchy().points(id.level));
+    const std::vector<float> inside = voxels.in({box.first + first, count}, *this->Field);
     const std::int64_t width = this->hierarchy().brickDims().x;
     for (std::int64_t row = y.first; row <= y.last; ++row) {
       const float* from = inside.data() + (glm::min(row, end.y) - first.y) * count.x;
       float* const to = std::copy_n(from, count.x, values + row * width + first.x);
       std::fill_n(to, x.last - end.x, from[count.x - 1]);
     }
-  }
-
-  /// A single layer of voxels.
-  std::vector<float> valuesIn(int level, const glm::i64vec3& begin, const glm::i64vec3& count) const
-  {
-    const std::int64_t points = this->hierarchy().points(level);
-    const auto isFlat = glm::equal(this->hierarchy().dims(), glm::i64vec3(1));
-    std::vector<float> axes[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto size = static_cast<double>(this->hierarchy().size(level)[axis]);
-      for (std::int64_t k = 0; k < count[axis] * points; ++k) {
-        const double within = (static_cast<double>(k) + 0.5) / static_cast<double>(points);
-        const double u = (static_cast<double>(begin[axis]) + within) / size;
-        axes[axis].push_back(isFlat[axis] ? 0.5f : static_cast<float>(u));
-      }
-    }
-    std::vector<float> sampled(axes[0].size() * axes[1].size() * axes[2].size());
-    this->Field->evaluateGrid(axes, sampled.data());
-    return points == 1 ? Clamped(sampled) : Filtered(sampled, count.x, count.y);
-  }
-
-  static std::vector<float> Clamped(std::vector<float> values)
-  {
-    for (float& value : values) {
-      value = NormalisedOutput(value);
-    }
-    return values;
-  }
-
-  /// Means over 2 x 2 x 2 points; two layers of 2 width x 2 height come in.
-  static std::vector<float> Filtered(const std::vector<float>& points, std::int64_t width,
-                                     std::int64_t height)
-  {
-    std::vector<float> means(static_cast<std::size_t>(width * height));
-    const auto at = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-      const std::int64_t index = x + 2 * width * (y + 2 * height * z);
-      return NormalisedOutput(points[static_cast<std::size_t>(index)]);
-    };
-    for (std::int64_t y = 0; y < height; ++y) {
-      for (std::int64_t x = 0; x < width; ++x) {
-        float sum = 0;
-        for (int corner = 0; corner < 8; ++corner) {
-          sum += at(2 * x + (corner & 1), 2 * y + (corner >> 1 & 1), corner >> 2);
-        }
-        means[static_cast<std::size_t>(y * width + x)] = sum / 8;
-      }
-    }
-    return means;
   }
 
   std::shared_ptr<const Evaluator> Field;

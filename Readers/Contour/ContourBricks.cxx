@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Contour/ContourBricks.h"
 
+#include "Core/Cache/LevelPoints.h"
 #include "Core/GridBox.h"
-#include "Readers/Grid/LevelSampler.h"
 
 #include <glm/common.hpp>
 

@@ -23,7 +23,7 @@ struct BrickJob
   std::int64_t firstValue;    ///< where its first voxel is written
 };
 
-/// Coordinate of a brick's k-th sample along an axis, as BrickSource places it; samples of voxels
+/// Coordinate of a brick's k-th sample along an axis, as LevelVoxels places it; samples of voxels
 /// that are not inside take the place of those of the last one.
 INR_HOST_DEVICE inline float SampleCoordinate(const BrickJob& job, int axis, int k)
 {

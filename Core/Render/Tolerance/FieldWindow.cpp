@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Tolerance/FieldWindow.h"
 
+#include "Core/Cache/LevelVoxels.h"
+
 #include <algorithm>
-#include <vector>
 
 namespace inr {
 
@@ -57,18 +58,8 @@ void FieldWindow::extendTo(const VoxelSpan (&spans)[3])
 
 ValueBox FieldWindow::sample(const VoxelSpan (&spans)[3]) const
 {
-  std::vector<float> axes[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::int64_t voxel = spans[axis].low; voxel <= spans[axis].high; ++voxel) {
-      axes[axis].push_back(static_cast<float>((static_cast<double>(voxel) + 0.5) /
-                                              static_cast<double>(this->Dims[axis])));
-    }
-  }
   ValueBox box(SizeOf(spans));
-  this->Field.evaluateGrid(axes, box.values.data());
-  for (float& value : box.values) {
-    value = NormalisedOutput(value);
-  }
+  box.values = LevelVoxels(this->Dims, 0, 1).in({LowOf(spans), box.size}, this->Field);
   return box;
 }
 
