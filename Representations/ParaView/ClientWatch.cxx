@@ -15,38 +15,55 @@ namespace inr {
 
 namespace {
 
-/// Asks the Qt that this process has loaded, if any: ParaView's window is Qt's, but its programs
-/// without a window run where Qt is not installed, and so should this library.
-bool IsModalDialogOpen()
+/// Between two pictures of somebody who turns a view, by the wheel or a slow mouse.
+constexpr std::chrono::milliseconds MostBetweenPictures(300);
+
+/// A function of the Qt that this process has loaded, if it is an application of it; else null.
+/// ParaView's window is Qt's, but its programs without a window run where Qt is not installed, and
+/// so should this library.
+template <typename Function> Function* FindInQt(const char* symbol)
 {
   void* const* application =
       static_cast<void* const*>(dlsym(RTLD_DEFAULT, "_ZN16QCoreApplication4selfE"));
-  void* const modalWindow = dlsym(RTLD_DEFAULT, "_ZN15QGuiApplication11modalWindowEv");
-  if (!application || !*application || !modalWindow) {
-    return false;
-  }
+  return application && *application ? reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, symbol))
+                                     : nullptr;
+}
+
+bool IsModalDialogOpen()
+{
   // QWindow* QGuiApplication::modalWindow()
-  return reinterpret_cast<void* (*)()>(modalWindow)() != nullptr;
+  auto* const modalWindow = FindInQt<void*()>("_ZN15QGuiApplication11modalWindowEv");
+  return modalWindow && modalWindow() != nullptr;
+}
+
+bool IsButtonDown()
+{
+  // Qt::MouseButtons QGuiApplication::mouseButtons(), which is returned as the int that it holds
+  auto* const mouseButtons = FindInQt<int()>("_ZN15QGuiApplication12mouseButtonsEv");
+  return mouseButtons && mouseButtons() != 0;
 }
 
 } // namespace
 
 ClientWatch::ClientWatch()
 {
-  this->Command->SetClientData(this);
-  this->Command->SetCallback(&ClientWatch::OnPlay);
+  this->Play->SetClientData(this);
+  this->Play->SetCallback(&ClientWatch::OnPlay);
+  this->Picture->SetClientData(this);
+  this->Picture->SetCallback(&ClientWatch::OnPicture);
 }
 
 ClientWatch::~ClientWatch()
 {
-  for (vtkObject* scene : this->Scenes) {
-    if (scene) {
-      scene->RemoveObserver(this->Command);
+  for (vtkObject* object : this->Watched) {
+    if (object) {
+      object->RemoveObserver(this->Play);
+      object->RemoveObserver(this->Picture);
     }
   }
 }
 
-void ClientWatch::update()
+void ClientWatch::update(const vtkObject& own)
 {
   vtkSMSessionProxyManager* session =
       vtkSMProxyManager::IsInitialized()
@@ -60,25 +77,61 @@ void ClientWatch::update()
   for (proxies->Begin("animation"); !proxies->IsAtEnd(); proxies->Next()) {
     vtkSMProxy* proxy = proxies->GetProxy();
     if (std::strcmp(proxy->GetXMLName(), "AnimationScene") == 0) {
-      this->watch(vtkObject::SafeDownCast(proxy->GetClientSideObject()));
+      this->watchScene(vtkObject::SafeDownCast(proxy->GetClientSideObject()));
+    }
+  }
+  for (proxies->Begin("views"); !proxies->IsAtEnd(); proxies->Next()) {
+    if (proxies->GetProxy()->GetClientSideObject() != &own) {
+      this->watchView(proxies->GetProxy());
     }
   }
 }
 
-void ClientWatch::watch(vtkObject* scene)
+bool ClientWatch::isWatched(const vtkObject* object) const
 {
-  if (scene && std::find(this->Scenes.begin(), this->Scenes.end(), scene) == this->Scenes.end()) {
-    this->Scenes.emplace_back(scene);
-    scene->AddObserver(vtkCommand::StartEvent, this->Command);
-    scene->AddObserver(vtkCommand::EndEvent, this->Command);
+  return std::find(this->Watched.begin(), this->Watched.end(), object) != this->Watched.end();
+}
+
+void ClientWatch::watchScene(vtkObject* scene)
+{
+  if (scene && !this->isWatched(scene)) {
+    this->Watched.emplace_back(scene);
+    scene->AddObserver(vtkCommand::StartEvent, this->Play);
+    scene->AddObserver(vtkCommand::EndEvent, this->Play);
   }
 }
 
-bool ClientWatch::isBusy() const { return this->Playing || IsModalDialogOpen(); }
+void ClientWatch::watchView(vtkObject* view)
+{
+  if (!this->isWatched(view)) {
+    this->Watched.emplace_back(view);
+    view->AddObserver(vtkCommand::EndEvent, this->Picture);
+  }
+}
+
+bool ClientWatch::isBusy() { return this->Playing || IsModalDialogOpen() || this->isTurning(); }
+
+// Not by the events of interactions: that a selection by mouse has ended, ParaView 5.11 says to
+// nobody.
+bool ClientWatch::isTurning()
+{
+  if (this->Turned && Clock::now() - *this->Turned > MostBetweenPictures && !IsButtonDown()) {
+    this->Turned.reset();
+  }
+  return this->Turned.has_value();
+}
 
 void ClientWatch::OnPlay(vtkObject* scene, unsigned long event, void* self, void*)
 {
   static_cast<ClientWatch*>(self)->Playing = event == vtkCommand::StartEvent ? scene : nullptr;
+}
+
+// By vtkSMViewProxy.
+void ClientWatch::OnPicture(vtkObject*, unsigned long, void* self, void* isInteractive)
+{
+  if (isInteractive && *static_cast<const int*>(isInteractive) != 0) {
+    static_cast<ClientWatch*>(self)->Turned = Clock::now();
+  }
 }
 
 } // namespace inr

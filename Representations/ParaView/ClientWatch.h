@@ -5,6 +5,8 @@
 #include "vtkNew.h"
 #include "vtkWeakPointer.h"
 
+#include <chrono>
+#include <optional>
 #include <vector>
 
 class vtkObject;
@@ -20,18 +22,28 @@ public:
   ClientWatch(const ClientWatch&) = delete;
   ClientWatch& operator=(const ClientWatch&) = delete;
 
-  /// Finds the client's animations, of which more may come; cheap. There are none in a server.
-  void update();
-  /// Whether an animation plays or a modal dialog is open.
-  bool isBusy() const;
+  /// Finds the client's animations and its views but for `own`, whose picture it is; there may be
+  /// more than before. Cheap. There are none in a server.
+  void update(const vtkObject& own);
+  /// Whether an animation plays, a modal dialog is open or somebody turns another view.
+  bool isBusy();
 
 private:
-  void watch(vtkObject* scene);
-  static void OnPlay(vtkObject* scene, unsigned long event, void* self, void* unused);
+  using Clock = std::chrono::steady_clock;
 
-  std::vector<vtkWeakPointer<vtkObject>> Scenes;
+  bool isWatched(const vtkObject* object) const;
+  void watchScene(vtkObject* scene);
+  void watchView(vtkObject* view);
+  bool isTurning();
+  static void OnPlay(vtkObject* scene, unsigned long event, void* self, void* unused);
+  static void OnPicture(vtkObject* view, unsigned long event, void* self, void* isInteractive);
+
+  std::vector<vtkWeakPointer<vtkObject>> Watched;
   vtkWeakPointer<vtkObject> Playing;
-  vtkNew<vtkCallbackCommand> Command;
+  /// When another view was last drawn for somebody who turns it, until that has ended.
+  std::optional<Clock::time_point> Turned;
+  vtkNew<vtkCallbackCommand> Play;
+  vtkNew<vtkCallbackCommand> Picture;
 };
 
 } // namespace inr

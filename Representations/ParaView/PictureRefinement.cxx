@@ -38,7 +38,7 @@ void PictureRefinement::begin(vtkPVRenderView& view)
   const bool isSelecting = IsSelecting(view);
   this->GoesOn = this->GoesOn && isSelecting;
   this->Mapper.SetForSelection(isSelecting);
-  this->Client.update();
+  this->Client.update(view);
 }
 
 double PictureRefinement::pauseOfAll()
@@ -61,7 +61,7 @@ bool PictureRefinement::isPossible(vtkPVRenderView* view)
 void PictureRefinement::later(vtkPVRenderView* view, double pause)
 {
   if (view) {
-    this->Client.update();
+    this->Client.update(*view);
     this->Mapper.RefineLater(view->GetRenderWindow(), pause);
   }
 }

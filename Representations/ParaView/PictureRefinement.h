@@ -10,8 +10,8 @@ class vtkPVRenderView;
 namespace inr {
 
 /// When pictures of a representation are made again that are not complete: not while an animation
-/// plays or a modal dialog is open, and of those that a render server draws, when the client says
-/// so that shows them.
+/// plays, a modal dialog is open or another view is turned, and of those that a render server
+/// draws, when the client says so that shows them.
 class PictureRefinement
 {
 public:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """In ParaView's window, nobody clicking: pictures are refined until they have converged, but not
-while an animation plays, a modal dialog is open or a mouse button is down. GuiRefinement.xml opens
-the dialog."""
+while an animation plays, a modal dialog is open, a mouse button is down or another view is turned.
+GuiRefinement.xml opens the dialog."""
 import ctypes
 import time
 
 from guisteps import Refinement, begin, follow
+from paraview import simple
 from pvtest import check
 
 view = begin()
@@ -42,12 +43,31 @@ def pauses_while_a_button_is_down():
     interactor.InvokeEvent("EndInteractionEvent")
 
 
+def pauses_while_another_view_is_turned():
+    other = simple.CreateView("RenderView")
+    simple.AssignViewToLayout(view=other, layout=simple.GetLayout(view))
+    simple.Show(simple.Sphere(), other)
+    simple.Render(other)
+    yield from refinement.wait_for_pictures("beside another view")
+    other.SMProxy.InteractiveRender()
+    start = time.time()
+    while time.time() < start + 1.5:
+        other.SMProxy.InteractiveRender()
+        yield
+    pictures = refinement.pictures_since(start)
+    check(pictures == 0, "refined while another view is turned:", pictures)
+    yield from refinement.wait_for_pictures("after another view was turned")
+    simple.Delete(other)
+    simple.SetActiveView(view)
+
+
 def watch():
     """Yields between two looks at the window."""
     yield from pauses_under_a_dialog()
     yield from refinement.wait_for_pictures("after the dialog")
     yield from pauses_while_a_button_is_down()
     yield from refinement.wait_for_pictures("after a click")
+    yield from pauses_while_another_view_is_turned()
     refinement.selects()
     yield from refinement.wait_for_pictures("after a selection")
     yield from refinement.converges_and_stops()
