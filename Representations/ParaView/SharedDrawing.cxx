@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SharedDrawing.h"
 
+#include "Core/Model/Model.h"
+#include "Core/Model/ModelBlobs.h"
 #include "Readers/Common/Processes.h"
 #include "vtkCameraPass.h"
 #include "vtkCommunicator.h"
+#include "vtkDataSet.h"
+#include "vtkINRDataArray.h"
 #include "vtkINRLODVolume.h"
 #include "vtkIceTCompositePass.h"
 #include "vtkImageData.h"
@@ -14,6 +18,7 @@
 #include "vtkMatrix4x4.h"
 #include "vtkMultiProcessController.h"
 #include "vtkOrderedCompositingHelper.h"
+#include "vtkPointData.h"
 #include "vtkRenderer.h"
 #include "vtkVolume.h"
 #include "vtkVolumeCollection.h"
@@ -21,6 +26,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace inr {
@@ -42,6 +49,32 @@ vtkIceTCompositePass* CompositePassOf(vtkRenderer* renderer)
                         : nullptr;
   }
   return nullptr;
+}
+
+/// What equal models have in common and others have not, but for very few; 0 of none.
+std::uint32_t ChecksumOf(vtkDataSet* data)
+{
+  const auto* array =
+      vtkINRDataArray::SafeDownCast(data ? vtkINRDataArray::FindIn(data->GetPointData()) : nullptr);
+  if (!array || !array->GetModel()) {
+    return 0;
+  }
+  constexpr std::size_t most = 4096; // parameters, evenly: no more than a millisecond of a model
+  const Model& model = *array->GetModel();
+  const VolumeInfo& volume = model.volume;
+  const double numbers[] = {static_cast<double>(volume.dims.x),
+                            static_cast<double>(volume.dims.y),
+                            static_cast<double>(volume.dims.z),
+                            volume.low,
+                            volume.high,
+                            static_cast<double>(model.parameters.size())};
+  std::uint32_t sum = ContinueChecksum(0, numbers, sizeof(numbers));
+  sum = ContinueChecksum(sum, volume.arrayName.data(), volume.arrayName.size());
+  const std::size_t stride = model.parameters.size() / most + 1;
+  for (std::size_t k = 0; k < model.parameters.size(); k += stride) {
+    sum = ContinueChecksum(sum, &model.parameters[k], sizeof(float));
+  }
+  return sum;
 }
 
 bool IsOnePicture(vtkIceTCompositePass* pass)
@@ -149,6 +182,18 @@ bool AllHave(vtkMultiProcessController* processes, bool something)
     processes->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
   }
   return least > 0;
+}
+
+bool AllHaveSameModel(vtkMultiProcessController* processes, vtkDataSet* data)
+{
+  const auto mine = static_cast<unsigned>(ChecksumOf(data));
+  unsigned least = mine;
+  unsigned largest = mine;
+  if (AreSeveral(processes)) {
+    processes->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
+    processes->AllReduce(&mine, &largest, 1, vtkCommunicator::MAX_OP);
+  }
+  return least == largest;
 }
 
 } // namespace inr

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+class vtkDataSet;
 class vtkImageData;
 class vtkMatrix4x4;
 class vtkMultiProcessController;
@@ -46,5 +47,9 @@ bool ComposesOnePicture(vtkRenderer* renderer);
 /// Whether each of the processes has something to draw. All of them must ask, outside of drawing:
 /// there one without anything does not know its turn among several volumes.
 bool AllHave(vtkMultiProcessController* processes, bool something);
+
+/// Whether the processes' data are of the same model, or all of none: of its array and grid, and of
+/// some thousands of its parameters. All of them must ask, too.
+bool AllHaveSameModel(vtkMultiProcessController* processes, vtkDataSet* data);
 
 } // namespace inr

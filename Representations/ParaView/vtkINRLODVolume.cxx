@@ -53,6 +53,9 @@ void vtkINRLODVolume::Show(bool here)
 int vtkINRLODVolume::Draw(vtkViewport* viewport)
 {
   this->Drawn.Modified();
+  if (this->Withheld) {
+    return 0;
+  }
   auto* renderer = vtkRenderer::SafeDownCast(viewport);
   auto* mapper = vtkINRVolumeMapper::SafeDownCast(this->GetMapper());
   if (renderer && mapper && mapper->GetDrawsTogether()) {

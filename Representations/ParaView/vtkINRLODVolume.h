@@ -42,6 +42,9 @@ public:
   bool GetDrawnHere() const { return this->DrawnHere; }
   ///@}
 
+  /// Draws nothing from now on, whatever it has; or does again.
+  void Withhold(bool on) { this->Withheld = on; }
+
 protected:
   vtkINRLODVolume() = default;
   ~vtkINRLODVolume() override = default;
@@ -54,6 +57,7 @@ private:
 
   bool DrawInOverlay = false;
   bool DrawnHere = false;
+  bool Withheld = false;
   vtkTimeStamp Shown;
   vtkTimeStamp Drawn;
 };

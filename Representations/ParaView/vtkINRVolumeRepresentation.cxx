@@ -103,7 +103,7 @@ int vtkINRVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* req
     this->TakeDelivery(in);
     this->GetVolume()->Show(this->DrawsHere());
     this->UpdateMapper();
-    this->ReportColouring();
+    this->ReportProblem();
     this->UpdateStatus();
     this->DrawTogether();
     this->ReportOpacityArray();
@@ -138,9 +138,11 @@ void vtkINRVolumeRepresentation::FindOthers()
   vtkDataSet* data = this->VolumeMapper->GetDataSetInput();
   const bool hasSome = data && data->GetNumberOfPoints() > 0;
   const bool haveAll = inr::AllHave(controller, hasSome);
-  const bool several = AreSeveral(controller);
-  this->Others = haveAll && several ? controller : nullptr;
+  this->Differ = haveAll && !inr::AllHaveSameModel(controller, data);
+  const bool share = haveAll && AreSeveral(controller) && !this->Differ;
+  this->Others = share ? controller : nullptr;
   this->GetMapper()->SetController(this->Others);
+  this->GetVolume()->Withhold(this->Differ);
 }
 
 void vtkINRVolumeRepresentation::ForgetOutlines()
@@ -237,7 +239,7 @@ void vtkINRVolumeRepresentation::ReportShared(bool drawsAll)
 
 bool vtkINRVolumeRepresentation::DrawsHere()
 {
-  return this->VolumeMapper->GetDataObjectInput() != nullptr;
+  return this->VolumeMapper->GetDataObjectInput() != nullptr && !this->Differ;
 }
 
 void vtkINRVolumeRepresentation::UpdateMapper()
@@ -267,13 +269,22 @@ bool vtkINRVolumeRepresentation::IsGroup()
              : this->Model->isOfGroup();
 }
 
-void vtkINRVolumeRepresentation::ReportColouring()
+std::string vtkINRVolumeRepresentation::WhyNothingIsDrawn()
 {
-  const std::string problem =
-      this->IsGroup()
-          ? "A group of data sets cannot be drawn as an INR volume; show the reader itself, or "
-            "the group as \"Volume\""
-          : inr::WhyBlank(this->Actor, this->VolumeMapper);
+  if (this->IsGroup()) {
+    return "A group of data sets cannot be drawn as an INR volume; show the reader itself, or the "
+           "group as \"Volume\"";
+  }
+  if (this->Differ) {
+    return "The processes have different models, and none of them is drawn; give all of them the "
+           "same file and reload it";
+  }
+  return inr::WhyBlank(this->Actor, this->VolumeMapper);
+}
+
+void vtkINRVolumeRepresentation::ReportProblem()
+{
+  const std::string problem = this->WhyNothingIsDrawn();
   if (!problem.empty() && problem != this->LastProblem) {
     vtkErrorMacro(<< problem);
   }

@@ -128,9 +128,10 @@ private:
   void ReportShared(bool drawsAll);
   void UpdateMapper();
   void DrawTogether();
-  bool IsShown(); ///< else there are pictures from before only
-  bool IsGroup(); ///< of data sets
-  void ReportColouring();
+  bool IsShown();                  ///< else there are pictures from before only
+  bool IsGroup();                  ///< of data sets
+  std::string WhyNothingIsDrawn(); ///< by this process; empty where something is
+  void ReportProblem();
   void ReportOpacityArray();
 
   bool WantsOpacityArray = false;
@@ -145,6 +146,7 @@ private:
   int BoundsPort = 2;  ///< the same, with the bounds that the view sorts by
   std::string LastProblem;
   vtkMultiProcessController* Others = nullptr; ///< processes that draw a part each, if several do
+  bool Differ = false; ///< the processes' models, each of which would draw another picture
   vtkNew<vtkINRStatusActor> Status;
   bool ShowStatus = false;
   bool SharedReported = false;
