@@ -67,6 +67,11 @@ for step in (EVERY, STEPS):
 files = sorted(os.listdir(FOLDER))
 assert files == ["grid_000005.inr", "grid_000010.inr"], files
 
+# A file where the folder should be: the models are lost, which only the writer notices.
+blocked = os.path.join(FOLDER, files[0], "folder")
+result = run(SCRIPT, str(SIZE), str(EVERY), INR_EVERY=str(EVERY), INR_STEPS="1", INR_OUTPUT=blocked)
+assert result.returncode != 0 and "failed in 1 step" in result.stderr, result.stderr
+
 wrong = ((["missing.py"], "missing.py"), ([SCRIPT, "4"], "usage"), ([], "usage"))
 for arguments, told in wrong if len(COMMAND) == 1 else ():
     result = run(*arguments)

@@ -10,9 +10,11 @@
 #include <vtkCPInputDataDescription.h>
 #include <vtkCPProcessor.h>
 #include <vtkCPPythonPipeline.h>
+#include <vtkCommand.h>
 #include <vtkDoubleArray.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
+#include <vtkOutputWindow.h>
 #include <vtkPointData.h>
 
 #include <cstdlib>
@@ -38,7 +40,30 @@ vtkNew<vtkImageData> MakeImage(const GrayScott& simulation)
   return image;
 }
 
-// Whether Catalyst could do what the script wants.
+// Counts the errors that ParaView reports. Catalyst knows of a script that raises, but not of an
+// extractor that could not save.
+class ReportedErrors
+{
+public:
+  ReportedErrors()
+  {
+    this->Observer = vtkOutputWindow::GetInstance()->AddObserver(vtkCommand::ErrorEvent, this,
+                                                                 &ReportedErrors::countOne);
+  }
+  ~ReportedErrors() { vtkOutputWindow::GetInstance()->RemoveObserver(this->Observer); }
+  ReportedErrors(const ReportedErrors&) = delete;
+  ReportedErrors& operator=(const ReportedErrors&) = delete;
+
+  bool none() const { return this->Count == 0; }
+
+private:
+  void countOne() { ++this->Count; }
+
+  int Count = 0;
+  unsigned long Observer = 0;
+};
+
+// Whether Catalyst could do what the script wants, as far as this process has been told.
 bool HandOver(vtkCPProcessor* catalyst, const GrayScott& simulation, int step)
 {
   vtkNew<vtkCPDataDescription> description;
@@ -51,7 +76,8 @@ bool HandOver(vtkCPProcessor* catalyst, const GrayScott& simulation, int step)
   const int last = simulation.size() - 1;
   input->SetGrid(MakeImage(simulation));
   input->SetWholeExtent(0, last, 0, last, 0, last);
-  return catalyst->CoProcess(description) != 0;
+  const ReportedErrors errors;
+  return catalyst->CoProcess(description) != 0 && errors.none();
 }
 
 int Run(const char* script, int size, int steps)
@@ -78,7 +104,7 @@ int Run(const char* script, int size, int steps)
   }
   catalyst->Finalize();
   if (failed > 0) {
-    std::cerr << "Catalyst failed in " << failed << " steps\n";
+    std::cerr << "Catalyst failed in " << failed << (failed > 1 ? " steps\n" : " step\n");
   }
   return failed > 0 ? 1 : 0;
 }
