@@ -104,9 +104,10 @@ capabilities() {
 }
 
 # The first of them that CMake/INRCuda.cmake builds for, with the nvcc that it finds; or nothing.
+tools=${CUDA_PATH:+$CUDA_PATH/bin:}$PATH:/usr/local/cuda/bin # where the toolkit's are, too
 capability() {
   local known one
-  known=$(PATH=${CUDA_PATH:+$CUDA_PATH/bin:}$PATH:/usr/local/cuda/bin nvcc --list-gpu-code 2> /dev/null)
+  known=$(PATH=$tools nvcc --list-gpu-code 2> /dev/null)
   while read -r one; do
     if [[ $one =~ ^[0-9]+$ ]] && [ "$one" -ge 75 ] && grep -qx "sm_$one" <<< "$known"; then
       echo "$one"
@@ -181,10 +182,10 @@ if wanted benchmark; then
   fi
 fi
 
-# Few points, small bricks and pictures of one launch: under the sanitizers everything takes a hundred
-# times longer.
+# Few points, small bricks and small pictures (rays that wait take thousands of launches): under the
+# sanitizers everything takes a hundred times longer.
 small=$(paste -sd : Testing/CUDA/sanitized-cases.txt)
-sanitizer=$(command -v compute-sanitizer || ls /usr/local/cuda/bin/compute-sanitizer 2> /dev/null)
+sanitizer=$(PATH=$tools && command -v compute-sanitizer)
 for tool in $(wanted sanitizers && echo memcheck racecheck synccheck); do
   echo "== compute-sanitizer $tool"
   if [ -z "$gpu" ] || [ -z "$sanitizer" ]; then

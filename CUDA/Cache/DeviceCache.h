@@ -42,7 +42,8 @@ public:
         Ranges(machine.template allocate<ValueRange>(this->Needs.cells))
   {
     const CacheLayout layout = LayOutCache(hierarchy, precision, bytes, this->Needs);
-    machine.requireFree(layout.bytes, "the cache of bricks");
+    // What infers has its memory already.
+    machine.requireFree(layout.bytes - this->Needs.inference, "the cache of bricks");
     machine.toMachine(this->LevelTable.data(), &hierarchy.view().level(0), hierarchy.levels());
     this->putRanges(cells);
     this->allocate(layout);

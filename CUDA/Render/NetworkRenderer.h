@@ -22,8 +22,8 @@ namespace cuda {
 /// How many rays go on together: enough points in a launch for any GPU.
 struct WaveSizes
 {
-  std::int64_t rays = 1 << 16;  ///< 2^19 points; some 80 MB, three times as much where they are lit
-  std::int64_t paths = 1 << 17; ///< 2^17 points; some 100 MB
+  std::int64_t rays = 1 << 16;  ///< 2^19 points; 78 MB, and 129 MB where they are lit
+  std::int64_t paths = 1 << 17; ///< 2^17 points; 77 MB
 };
 
 /// Draws frames straight from the network by kernels on a machine; see AcceleratedRenderer. Time

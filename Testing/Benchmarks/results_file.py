@@ -21,11 +21,12 @@ FOLDER = Path(__file__).resolve().parent / "results"
 def cpu_name():
     """The processor's model, with what tells apart machines that hide it behind a family name."""
     text = Path("/proc/cpuinfo").read_text()
-    fields = {key: re.search(rf"^{key}\s*: (.*)$", text, re.M)[1]
-              for key in ("model name", "cpu family", "model")}
-    sets = [name for name in ("avx2", "avx512f", "amx_bf16") if re.search(rf"\b{name}\b", text)]
-    return (f"{fields['model name']} (family {fields['cpu family']}, model {fields['model']}; "
-            f"{' '.join(sets)})")
+    name, family, model = (re.search(rf"^{key}\s*: (.*)$", text, re.M)
+                           for key in ("model name", "cpu family", "model"))
+    if not (name and family and model):  # only x86 is told in these words
+        return platform.machine()
+    sets = [known for known in ("avx2", "avx512f", "amx_bf16") if re.search(rf"\b{known}\b", text)]
+    return f"{name[1]} (family {family[1]}, model {model[1]}; {' '.join(sets)})"
 
 
 def output(*command):

@@ -90,6 +90,10 @@ expect 1 "== FAILED: test_cuda, status 124, not at its end after 3 s: C.Hangs|6 
   GPU=B HANGS=1 INR_TIME_LIMIT=3
 expect 0 "|4 passed, 0 failed, 0 skipped" GPU=B -- sanitizers
 expect 0 "benchmark: Testing/Benchmarks/cuda.py build-cuda/Testing/CUDA|2 passed" GPU=B -- benchmark
+mkdir -p toolkit/bin
+mv bin/compute-sanitizer toolkit/bin/
+expect 0 "|4 passed, 0 failed, 0 skipped" GPU=B CUDA_PATH="$PWD/toolkit" -- sanitizers
+expect 0 "there is no compute-sanitizer" GPU=B -- sanitizers
 expect 2 "There is no part 'tests'" -- tests
 expect 2 "INR_TIME_LIMIT is '30m'" INR_TIME_LIMIT=30m
 
