@@ -23,8 +23,10 @@ TracedTiles CachedRenderer::tracePaths(const PathRound& round, const Majorants& 
     this->beginFrame();
   }
   const OnPathMiss onMiss = this->onPathMiss(limit);
-  // Inferring takes many times as long as the round before that said how long a round is.
-  const bool hurries = onMiss == OnPathMiss::Infer && !round.first && limit.isTimed();
+  // A picture that shows something everywhere can wait for the rest of another path. Before, it is
+  // inferring that does: it takes many times as long as the round that said how long a round is.
+  const bool hurries =
+      limit.isTimed() && (!round.blank || (onMiss == OnPathMiss::Infer && !round.first));
   PassClock clock(limit, hurries);
   RequestRanking requests;
   TracedTiles traced = TraceThroughCache(round, {bricks, *this->Field, onMiss}, clock,

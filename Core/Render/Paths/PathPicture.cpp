@@ -74,6 +74,11 @@ void PathPicture::finishTiles(const TracedTiles& traced)
   this->Latest = unfinished;
 }
 
+bool PathPicture::isBlank() const
+{
+  return std::find(this->Reached.begin(), this->Reached.end(), 0) != this->Reached.end();
+}
+
 void PathPicture::traceRound(const PathMedium& medium, const TraceTiles& trace)
 {
   Frame sample = this->Picture->frame();
@@ -87,7 +92,7 @@ void PathPicture::traceRound(const PathMedium& medium, const TraceTiles& trace)
   const PassOutput output{this->Sample, &this->SampleDepth};
   const bool first =
       std::find(this->Reached.begin(), this->Reached.end(), 1) == this->Reached.end();
-  this->finishTiles(trace({tracer, this->Pending, output, whole, first}));
+  this->finishTiles(trace({tracer, this->Pending, output, whole, first, this->isBlank()}));
   if (this->Pending.empty()) {
     this->Colors.add(this->Sample);
     this->Depths.add(this->SampleDepth);
@@ -129,8 +134,7 @@ FrameStatistics PathPicture::advance(const Frame& frame, const PathMedium& mediu
   this->show(output);
   FrameStatistics statistics = this->Latest;
   statistics.paths = this->Colors.samples();
-  statistics.blank =
-      std::find(this->Reached.begin(), this->Reached.end(), 0) != this->Reached.end();
+  statistics.blank = this->isBlank();
   statistics.complete = this->Colors.samples() == frame.samplesPerPixel;
   statistics.work = this->Work;
   return statistics;

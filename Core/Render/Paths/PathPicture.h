@@ -32,6 +32,7 @@ struct PathRound
   const PassOutput& output; ///< with a depth
   bool whole;               ///< these are all tiles
   bool first;               ///< nothing of this picture was traced before
+  bool blank;               ///< nor was something of each of its tiles
 };
 
 struct TracedTiles
@@ -71,6 +72,7 @@ private:
   void start(const Frame& frame);
   void traceRound(const PathMedium& medium, const TraceTiles& trace);
   void finishTiles(const TracedTiles& traced);
+  bool isBlank() const; ///< some tile shows nothing yet
   void show(const PassOutput& output) const;
 
   bool Begun = false;

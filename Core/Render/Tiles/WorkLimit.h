@@ -16,8 +16,8 @@ namespace inr {
 /// - how many bricks are loaded within a frame, and how far one gets that wants more of them than
 ///   the cache holds,
 /// - whether the field is measured further for an error tolerance,
-/// - through how many tiles rays or paths go, where all of them take twice as long as there is, or
-///   the network is asked what paths meet,
+/// - through how many tiles rays or paths go, where all of them take twice as long as there is, one
+///   path is there everywhere, or the network is asked what paths meet,
 /// - how many rounds of paths are traced or, by an accelerator whose cache is too small, how far
 ///   they get.
 /// Counted, it is one pass, CacheOptions::maximumRequests bricks at most (so many for each pass

@@ -100,6 +100,17 @@ TEST(PathsInParts, InferNoMoreTilesThanThereIsTimeFor)
   EXPECT_LT(calls, 300);
 }
 
+TEST(PathsInParts, TakeNoMoreThanTheirTimeOnceSomethingIsEverywhere)
+{
+  inr::Renderer renderer = MakeRenderer(true);
+  const inr::Frame frame = LitFrame(64); // 16 tiles, more than between two looks at the time
+  Render(renderer, frame);               // so that all bricks are there
+  inr::Frame other = frame;
+  other.view = 1;
+  inr::Image image;
+  EXPECT_GE(RenderInParts(renderer, other, image), 2 * frame.samplesPerPixel - 1);
+}
+
 /// Calls for one view after the other until all pictures are complete; how many for each of them.
 int RenderByTurns(inr::Renderer& renderer, std::vector<inr::Frame> frames,
                   std::vector<inr::Image>& images)
