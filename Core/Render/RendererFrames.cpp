@@ -87,7 +87,7 @@ FrameStatistics Renderer::Implementation::march(const Frame& frame, const PassOu
 {
   this->Paths.forget(frame.view);
   MarchSetup setup = this->setupFor(frame);
-  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+  const WorkLimit limit(frame.timeLimit, this->Options.deterministic, frame.sharedBy);
   const DrawCall call{output, limit, keepGoing};
   this->proveDevice(frame, keepGoing);
   if (this->isForDevice(frame)) {
@@ -194,7 +194,7 @@ FrameStatistics Renderer::Implementation::tracePaths(const Frame& frame, const P
                                                      const std::function<bool()>& keepGoing)
 {
   PathPicture& picture = this->Paths.of(frame.view);
-  const WorkLimit limit(frame.timeLimit, this->Options.deterministic);
+  const WorkLimit limit(frame.timeLimit, this->Options.deterministic, frame.sharedBy);
   if (!picture.continues(frame)) { // in its midst another would take the device's place
     this->proveDevice(frame, keepGoing);
   }

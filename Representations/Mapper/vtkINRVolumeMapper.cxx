@@ -263,9 +263,10 @@ const char* vtkINRVolumeMapper::GetWhyNotDrawn() const { return this->Self->Last
 
 bool vtkINRVolumeMapper::GetOpaqueDepthRead() const { return this->Self->Painter.last().depthRead; }
 
-inr::PaintSettings vtkINRVolumeMapper::PresentSettings()
+inr::PaintSettings vtkINRVolumeMapper::PresentSettings(vtkRenderer* renderer, vtkVolume* volume)
 {
   inr::PaintSettings settings = this->Settings();
+  settings.volumes = inr::VolumesWith(renderer, volume);
   settings.renderer.accelerator = this->WantedAccelerator();
   if (this->GetDrawsTogether() && !this->ProcessOrder.empty()) {
     settings.group = inr::PictureGroup(this->Self->Controller, this->ProcessOrder);
@@ -287,8 +288,10 @@ void vtkINRVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
     return;
   }
   this->DrawVolumesBehind(renderer, volume);
-  const std::string problem = ProblemOf(
-      [&] { return this->Self->Painter.paint(this, renderer, volume, this->PresentSettings()); });
+  const std::string problem = ProblemOf([&] {
+    return this->Self->Painter.paint(this, renderer, volume,
+                                     this->PresentSettings(renderer, volume));
+  });
   this->TimeToDraw = this->Self->Painter.last().seconds;
   if (!this->Self->Painter.last().rgba.pixels.empty()) {
     this->Self->Drawn.Modified();
@@ -310,7 +313,8 @@ void vtkINRVolumeMapper::RenderForSelection(vtkRenderer* renderer, vtkVolume* vo
   }
   selector->BeginRenderProp();
   const std::string problem = ProblemOf([&] {
-    return this->Self->Painter.mark(this, renderer, volume, this->PresentSettings(), over);
+    return this->Self->Painter.mark(this, renderer, volume, this->PresentSettings(renderer, volume),
+                                    over);
   });
   selector->EndRenderProp();
   if (!problem.empty()) { // else what was reported of the frame stays reported

@@ -369,8 +369,9 @@ public:
    * takes the place of one that is still refined is such a short one, too. Where a ray or
    * path through each pixel takes more than twice as long, and a quarter of a second, one with
    * fewer pixels is shown until there was time for all (not where a GPU draws, and rays not
-   * with NETWORK_ONLY). 0: a still frame is complete, however long it takes. Below 0, the
-   * default: 0.5 where the window has an interactor, else 0. ParaView's screenshots, tiles of
+   * with NETWORK_ONLY). Volumes of such mappers that a renderer shows share all these times. 0: a
+   * still frame is complete, however long it takes. Below 0, the default: 0.5 where the window has
+   * an interactor, else 0. ParaView's screenshots, tiles of
    * larger ones (SetTileScale) and offscreen windows are always complete; of others that render the
    * window anew, as vtkWindowToImageFilter does by default, set it to 0 before.
    */
@@ -588,7 +589,7 @@ private:
   void DrawVolumesBehind(vtkRenderer* renderer, vtkVolume* volume);
 
   inr::PaintSettings Settings() const;
-  inr::PaintSettings PresentSettings();
+  inr::PaintSettings PresentSettings(vtkRenderer* renderer, vtkVolume* volume);
 
   int RenderMode = RAY_MARCHING;
   int Backend = AUTO;

@@ -116,6 +116,9 @@ struct Frame
   /// FrameStatistics::blank). 0: as long as it takes to be complete. Without a cache rays take no
   /// notice of it, and paths end between two rounds.
   double timeLimit = 0;
+  /// Pictures, this one included, that the host makes in these seconds, as of volumes in a view:
+  /// each has an equal part of them, and of the quarter of a second.
+  int sharedBy = 1;
 
   /// Offsets of the samples along their rays, but for preIntegration, extremes and isosurfaces, and
   /// paths are random in (seed, frameIndex, pixel).

@@ -59,6 +59,7 @@ void CheckSampling(const Frame& frame)
   Require(frame.levelOfDetailScale >= 0 && std::isfinite(frame.levelOfDetailScale),
           "the level-of-detail scale must be finite and not negative");
   Require(frame.timeLimit >= 0, "the time limit must not be negative");
+  Require(frame.sharedBy >= 1, "the time limit must be shared by a picture at least");
 }
 
 void CheckModes(const Frame& frame)

@@ -28,8 +28,11 @@ namespace inr {
 class WorkLimit
 {
 public:
-  /// Of a frame that begins now; `seconds` as Frame::timeLimit.
-  WorkLimit(double seconds, bool counted) : Clock(seconds), Seconds(seconds), Counted(counted) {}
+  /// Of a frame that begins now; `seconds` as Frame::timeLimit, `sharedBy` as there.
+  WorkLimit(double seconds, bool counted, int sharedBy = 1)
+      : Clock(seconds / sharedBy), Seconds(seconds / sharedBy), Least(0.25 / sharedBy),
+        Counted(counted)
+  {}
 
   bool isLimited() const { return this->Seconds > 0; }
   bool isTimed() const { return this->isLimited() && !this->Counted; }
@@ -43,12 +46,11 @@ public:
   double secondsForPass(bool hurries) const
   {
     constexpr double patience = 2; // times the limit
-    constexpr double least = 0.25; // seconds
     if (!this->isTimed()) {
       return std::numeric_limits<double>::infinity();
     }
     return hurries ? this->Clock.left()
-                   : std::max(patience * this->Seconds, least) - this->Clock.seconds();
+                   : std::max(patience * this->Seconds, this->Least) - this->Clock.seconds();
   }
   /// Where it is timed: what is left, but at least a part of the limit and of what the frame has
   /// taken so far. However long rendering itself takes, part/(1 + part) of all the time is for what
@@ -61,6 +63,7 @@ public:
 private:
   Timer Clock;
   double Seconds;
+  double Least; ///< for a pass through all pixels
   bool Counted;
 };
 

@@ -44,6 +44,12 @@ std::function<bool()> Unless(vtkRenderWindow* window, const Timer& deadline)
   };
 }
 
+/// At which a window wants pictures of each of so many volumes, if it wants them soon.
+double RateOf(vtkRenderWindow* window, int volumes)
+{
+  return window->GetDesiredUpdateRate() * (IsInteractive(window) ? volumes : 1);
+}
+
 /// Whether it can become no better.
 bool IsFinal(const FrameStatistics& statistics)
 {
@@ -203,6 +209,7 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
   this->CountSamples = settings.countSamples;
   frame.sampleDistance *= IsInteractive(renderer->GetRenderWindow()) ? 2 : 1;
   frame.timeLimit = TimeLimit(renderer, settings);
+  frame.sharedBy = settings.volumes;
   return {};
 }
 
@@ -235,7 +242,7 @@ bool FramePainter::draw(const Job& job)
   TranslucentPeeler* const peeler = job.scene.blending.projects() ? nullptr : &this->Peeler;
   const Surroundings around = LookAround(renderer, viewport, this->Group, peeler);
   job.picture.last().depthRead = around.depthRead;
-  const double rate = renderer->GetRenderWindow()->GetDesiredUpdateRate();
+  const double rate = RateOf(renderer->GetRenderWindow(), job.scene.sharedBy);
   int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
   Timer deadline = this->deadline(rate, reduction);
   Surroundings here = this->reduced(around, viewport, reduction);
@@ -287,8 +294,8 @@ bool FramePainter::renderTogether(const Job& job, const Surroundings& around, in
 std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surroundings& around,
                                                       const Viewport& viewport)
 {
-  constexpr double patience = 0.25; // seconds, beyond what the finer one took
-  constexpr double once = 0.01;     // of rays: with what there is
+  const double patience = 0.25 / job.scene.sharedBy; // seconds, beyond what the finer one took
+  constexpr double once = 0.01;                      // of rays: with what there is
   PaintedFrame& fine = job.picture.last();
   ViewPicture& picture = job.picture.coarser();
   const PaintedFrame& coarse = picture.last();

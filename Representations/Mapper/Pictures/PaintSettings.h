@@ -23,6 +23,7 @@ struct PaintSettings
   std::optional<double> errorTolerance;
   bool countSamples = false;   ///< into PaintedFrame::samples
   double stillTimeLimit = -1;  ///< seconds; below 0: see vtkINRVolumeMapper
+  int volumes = 1;             ///< that are drawn into the picture and share its time
   bool shownElsewhere = false; ///< see there
   bool forSelection = false;   ///< see there
   std::uint64_t seed = 0;

@@ -119,6 +119,12 @@ std::vector<vtkVolume*> VolumesBefore(vtkRenderer* renderer, vtkVolume* volume)
                       [&](const Box& other, const Box& own) { return IsBehind(eye, own, other); });
 }
 
+int VolumesWith(vtkRenderer* renderer, vtkVolume* volume)
+{
+  const auto others = OtherVolumes(renderer, volume, [](const Box&, const Box&) { return true; });
+  return 1 + static_cast<int>(others.size());
+}
+
 DrawingOrder::DrawingOrder()
 {
   this->Command->SetClientData(this);

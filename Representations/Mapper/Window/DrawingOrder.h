@@ -18,6 +18,8 @@ namespace inr {
 std::vector<vtkVolume*> VolumesBehind(vtkRenderer* renderer, vtkVolume* volume);
 /// Those that it lies behind.
 std::vector<vtkVolume*> VolumesBefore(vtkRenderer* renderer, vtkVolume* volume);
+/// How many it is drawn with, itself included.
+int VolumesWith(vtkRenderer* renderer, vtkVolume* volume);
 
 /// Remembers which volumes a mapper has drawn in the present frame: those behind another one are
 /// drawn before it, ahead of their turn.

@@ -22,9 +22,9 @@ template <typename... Field> std::size_t Count(const Field&...) { return sizeof.
 
 std::size_t FieldsOf(const inr::Frame& frame)
 {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z] =
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, last] =
       frame;
-  return Count(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z);
+  return Count(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, last);
 }
 
 std::size_t FieldsOf(const inr::Material& material)
@@ -169,6 +169,7 @@ TEST(Frame, MakesAnotherPictureWithAnotherValueOfAnyFieldThatCounts)
       // How much is done for it, not what it shows.
       {"samplesPerPixel", [](Frame& frame) { frame.samplesPerPixel = 1; }, false},
       {"timeLimit", [](Frame& frame) { frame.timeLimit = 1; }, false},
+      {"sharedBy", [](Frame& frame) { frame.sharedBy = 2; }, false},
       {"view", [](Frame& frame) { frame.view = 1; }, false},
       // The same, kept elsewhere.
       {"opaqueDepth", [copy = Depth](Frame& frame) { frame.opaqueDepth = copy.data(); }, false},

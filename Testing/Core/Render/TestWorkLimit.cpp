@@ -40,6 +40,16 @@ TEST(WorkLimit, GivesLoadingNoMoreThanThatOrWhatIsLeft)
   }
 }
 
+TEST(WorkLimit, OfSeveralPicturesIsAnEqualPartOfAllTimes)
+{
+  const inr::WorkLimit shared(0.4, false, 4);
+  EXPECT_TRUE(shared.endsWithin(0.1));
+  EXPECT_LE(shared.secondsForPass(true), 0.1);
+  EXPECT_LE(shared.secondsForPass(false), 0.2);
+  EXPECT_LE(inr::WorkLimit(1e-9, false, 4).secondsForPass(false), 0.25 / 4);
+  EXPECT_FALSE(inr::WorkLimit(0, false, 4).isLimited());
+}
+
 TEST(WorkLimit, EndsNothingWhereThereIsNone)
 {
   const inr::WorkLimit none(0, false);

@@ -275,7 +275,7 @@ TEST(Views, MayBeRedrawnByTheTimersOfWhatRefinesThem)
     idle.one.scene.window->Render();
     return ++events < 30;
   });
-  idle.one.mapper->SetSamplesPerPixel(60);
+  idle.one.mapper->SetSamplesPerPixel(20);
   idle.one.scene.window->Render();
   EXPECT_FALSE(idle.one.mapper->GetConverged());
   EXPECT_TRUE(RunUntilIdle(idle.one.scene.window, idle.interactor, [] {}));
