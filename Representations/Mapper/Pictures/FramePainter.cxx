@@ -50,6 +50,26 @@ double RateOf(vtkRenderWindow* window, int volumes)
   return window->GetDesiredUpdateRate() * (IsInteractive(window) ? volumes : 1);
 }
 
+/// Steps between samples of a picture for a window, of those of a still one.
+double StepFactor(vtkRenderWindow* window) { return IsInteractive(window) ? 2 : 1; }
+
+/// Of a frame that is prepared for a window, the still one.
+Frame AsStill(Frame frame, vtkRenderWindow* window)
+{
+  frame.sampleDistance /= StepFactor(window);
+  return frame;
+}
+
+/// Whether it is captured in another size than it is shown in, or in tiles.
+bool IsCapturedOtherwise(vtkRenderer* renderer, const ViewPicture& picture)
+{
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  const Viewport viewport = GetViewport(renderer);
+  const int* tiles = window->GetTileScale();
+  return RefinementTimer::isCaptured(window) &&
+         (tiles[0] > 1 || tiles[1] > 1 || !picture.hasSize(viewport.width, viewport.height));
+}
+
 /// Whether it can become no better.
 bool IsFinal(const FrameStatistics& statistics)
 {
@@ -68,7 +88,8 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   const Timer timer;
   this->Group = settings.group;
   ViewPicture& picture = this->Pictures.of(renderer, volume);
-  picture.begin();
+  vtkRenderWindow* window = renderer->GetRenderWindow();
+  picture.begin(IsInteractive(window) || IsCapturedOtherwise(renderer, picture));
   Frame frame;
   std::string problem;
   this->Group.together([&] { problem = this->prepare(mapper, renderer, volume, settings, frame); });
@@ -82,19 +103,22 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
     this->Stills.followUp(picture, renderer->GetRenderWindow(), settings);
     return {};
   }
+  const Frame still = AsItIsDrawn(AsStill(frame, window), settings.renderer.cached);
   frame = AsItIsDrawn(std::move(frame), settings.renderer.cached);
-  frame.view = picture.number();
-  if ((picture.requested || picture.goesOn) && !IsInteractive(renderer->GetRenderWindow())) {
+  frame.view = picture.frameView();
+  if ((picture.requested || picture.goesOn) && !picture.passes()) {
     // Nobody waits for what follows the first look; the application's events do.
     constexpr double piece = 0.1;
     frame.timeLimit = std::min(frame.timeLimit, piece);
   }
-  const Job job{frame, renderer, picture};
-  if (!this->draw(job)) {
+  const DepictedScene stillScene = this->depicted(still, renderer, volume);
+  // Of a group's processes, each would have to know whether nothing has changed in the others.
+  const bool mayBeStill = IsInteractive(window) && this->Group.isAlone();
+  if (!this->draw({frame, renderer, picture, mayBeStill ? &stillScene : nullptr})) {
     problem = "The picture cannot be drawn into this window; it needs OpenGL 3.2 with "
               "float textures.";
   }
-  picture.depict(this->depicted(frame, renderer, volume));
+  picture.depict(picture.passes() ? this->depicted(frame, renderer, volume) : stillScene);
   picture.last().seconds = timer.seconds();
   this->Stills.followUp(picture, renderer->GetRenderWindow(), settings);
   return problem;
@@ -140,7 +164,7 @@ const ViewPicture& FramePainter::look(const Frame& scene, vtkRenderer* renderer,
   }
   Frame rays = scene; // paths are long, and end where rays do
   rays.mode = RenderMode::RayMarching;
-  rays.view = this->Selected.number(); // no view's: what these make goes on
+  rays.view = this->Selected.frameView(); // no view's: what these make goes on
   rays.shading.reset();
   rays = AsItIsDrawn(std::move(rays), cached);
   if (!this->Selected.depicts(this->depicted(rays, renderer, volume))) {
@@ -207,7 +231,7 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
   this->makeRenderer(*input.array, options);
   this->Caster->setTransferFunction(colors);
   this->CountSamples = settings.countSamples;
-  frame.sampleDistance *= IsInteractive(renderer->GetRenderWindow()) ? 2 : 1;
+  frame.sampleDistance *= StepFactor(renderer->GetRenderWindow());
   frame.timeLimit = TimeLimit(renderer, settings);
   frame.sharedBy = settings.volumes;
   return {};
@@ -242,6 +266,9 @@ bool FramePainter::draw(const Job& job)
   TranslucentPeeler* const peeler = job.scene.blending.projects() ? nullptr : &this->Peeler;
   const Surroundings around = LookAround(renderer, viewport, this->Group, peeler);
   job.picture.last().depthRead = around.depthRead;
+  if (job.still && job.picture.showStill(*job.still, viewport.width, viewport.height)) {
+    return this->blend(job, around);
+  }
   const double rate = RateOf(renderer->GetRenderWindow(), job.scene.sharedBy);
   int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
   Timer deadline = this->deadline(rate, reduction);
@@ -300,7 +327,7 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
   ViewPicture& picture = job.picture.coarser();
   const PaintedFrame& coarse = picture.last();
   Frame scene = job.scene;
-  scene.view = picture.number();
+  scene.view = picture.frameView();
   if (scene.mode == RenderMode::RayMarching) {
     scene.timeLimit = std::min(scene.timeLimit, once);
   }
@@ -323,7 +350,7 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
   for (bool blank = true; blank; reduction = std::min(4 * reduction, ImageReduction::Largest)) {
     here = this->reduced(around, viewport, reduction);
     picture.begin();
-    if (!this->renderTogether({scene, job.renderer, picture, true}, here, reduction,
+    if (!this->renderTogether({scene, job.renderer, picture, nullptr, true}, here, reduction,
                               Timer(Unlimited))) {
       const bool depthRead = fine.depthRead;
       fine = {}; // nobody has seen it

@@ -73,6 +73,9 @@ private:
     const Frame& scene;
     vtkRenderer* renderer;
     ViewPicture& picture;
+    /// What a still picture of the same would be of, to be shown instead where there is one; null:
+    /// none.
+    const DepictedScene* still = nullptr;
     /// Shown until there is a better one: it is not made again though it is not complete.
     bool standsIn = false;
   };

@@ -36,6 +36,11 @@ public:
   /// Whether that can be asked. False while the picture is being captured: a screenshot has no
   /// later.
   static bool canRefine(vtkRenderWindow* window);
+  /// Whether the picture of such a window is captured instead.
+  static bool isCaptured(vtkRenderWindow* window)
+  {
+    return isWatched(window) && !canRefine(window);
+  }
   /// One more picture in `pause` seconds, instead of one that was asked for before.
   void request(vtkRenderWindow* window, double pause);
   /// If one is asked for, not before somebody has stopped to ask for interactive ones.

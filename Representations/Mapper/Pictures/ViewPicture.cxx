@@ -5,45 +5,95 @@
 
 namespace inr {
 
-void ViewPicture::begin()
+namespace {
+
+Frame InAnyTime(Frame frame)
 {
-  this->Before = this->Fine ? std::move(*this->Fine) : std::exchange(this->Last, {});
+  frame.timeLimit = 0; // how long it may take is nothing that it shows
+  return frame;
+}
+
+} // namespace
+
+ViewPicture::Depiction::Depiction(const DepictedScene& scene)
+    : key(InAnyTime(scene.frame), false, scene.colors), surroundings(scene.surroundings)
+{}
+
+bool ViewPicture::Depiction::isOf(const DepictedScene& scene) const
+{
+  return this->surroundings == scene.surroundings &&
+         this->key.matches(scene.frame, false, scene.colors);
+}
+
+bool ViewPicture::hasSize(int width, int height) const
+{
+  const PaintedFrame& own = this->Passes ? this->Before : this->Fine ? *this->Fine : this->Last;
+  return own.rgba.pixels.empty() || (own.rgba.width == width && own.rgba.height == height);
+}
+
+void ViewPicture::begin(bool passes)
+{
+  if (!this->Passes) {
+    this->Before = this->Fine ? std::move(*this->Fine) : std::move(this->Last);
+    this->SceneBefore = std::move(this->Scene);
+  }
+  this->Passes = passes;
   this->Fine.reset();
   this->Last = {};
   this->Scene.reset();
 }
 
-bool ViewPicture::showAgain(const Frame& frame, bool countsSamples, std::int64_t colors)
+void ViewPicture::takeBefore()
 {
-  const bool isThere = this->Key && !this->Before.rgba.pixels.empty();
-  if (!isThere || !this->Key->matches(frame, countsSamples, colors)) {
-    this->Key.reset();
-    this->Before = {};
-    return false;
-  }
   this->Before.depthRead = this->Last.depthRead;
   this->Before.statistics.work = {};
   this->Last = std::exchange(this->Before, {});
+  this->Scene = std::move(this->SceneBefore);
+  this->Passes = false;
+}
+
+bool ViewPicture::showStill(const DepictedScene& scene, int width, int height)
+{
+  const Image& rgba = this->Before.rgba;
+  const bool isThere = this->Passes && !rgba.pixels.empty() && !this->Before.statistics.blank;
+  if (!isThere || rgba.width != width || rgba.height != height || !this->SceneBefore ||
+      !this->SceneBefore->isOf(scene)) {
+    return false;
+  }
+  this->takeBefore();
   return true;
+}
+
+bool ViewPicture::showAgain(const Frame& frame, bool countsSamples, std::int64_t colors)
+{
+  const bool isThere = this->Key && !this->Before.rgba.pixels.empty();
+  if (isThere && this->Key->matches(frame, countsSamples, colors)) {
+    this->takeBefore();
+    return true;
+  }
+  if (!this->Passes) {
+    this->Key.reset();
+    this->Before = {};
+    this->SceneBefore.reset();
+  }
+  return false;
 }
 
 void ViewPicture::finish(const Frame& frame, bool countsSamples, std::int64_t colors)
 {
-  this->Key.emplace(frame, countsSamples, colors);
+  if (!this->Passes) {
+    this->Key.emplace(frame, countsSamples, colors);
+  }
 }
 
 void ViewPicture::depict(const DepictedScene& scene)
 {
-  Frame frame = scene.frame;
-  frame.timeLimit = 0; // how long it may take is nothing that it shows
-  this->Scene.emplace(frame, false, scene.colors);
-  this->Surroundings = scene.surroundings;
+  this->Scene = std::make_unique<Depiction>(scene);
 }
 
 bool ViewPicture::depicts(const DepictedScene& scene) const
 {
-  return !this->Last.rgba.pixels.empty() && this->Surroundings == scene.surroundings &&
-         this->Scene && this->Scene->matches(scene.frame, false, scene.colors);
+  return !this->Last.rgba.pixels.empty() && this->Scene && this->Scene->isOf(scene);
 }
 
 ViewPicture& ViewPicture::coarser()
@@ -79,6 +129,7 @@ void ViewPicture::outdate()
   this->Coarser.reset();
   this->Key.reset();
   this->Scene.reset();
+  this->SceneBefore.reset();
 }
 
 } // namespace inr

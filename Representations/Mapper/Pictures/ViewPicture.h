@@ -41,22 +41,35 @@ struct DepictedScene
 /// What a view shows of a volume. A picture that is complete is not made again while everything
 /// stays as it is: windows are drawn anew for many reasons.
 ///
-/// For each picture: begin(), then showAgain() and, where that finds none, the drawing into last()
-/// and finish() if it is complete; then depict(). Of one that was not drawn, last() is empty.
+/// For each picture: begin(), then showStill() or showAgain() and, where these find none, the
+/// drawing into last() and finish() if it is complete; then depict(). Of one that was not drawn,
+/// last() is empty.
+///
+/// A picture that passes, as one of a moving camera or one that is captured at another size, does
+/// not end the view's own: that goes on when it is asked for again.
 class ViewPicture
 {
 public:
-  /// `number`: see Frame::view.
+  /// `number`: Frame::view, but of pictures that pass; not below NobodysPicture.
   explicit ViewPicture(int number) : Number(number) {}
   ViewPicture(const ViewPicture&) = delete;
   ViewPicture& operator=(const ViewPicture&) = delete;
 
   int number() const { return this->Number; }
+  /// Frame::view of the picture that has begun: a view's that pass go on with each other.
+  int frameView() const { return this->Passes ? NobodysPicture - 1 - this->Number : this->Number; }
   PaintedFrame& last() { return this->Last; }
   const PaintedFrame& last() const { return this->Last; }
 
-  /// Before a picture is made: there is none until then.
-  void begin();
+  /// Whether the picture that has begun does.
+  bool passes() const { return this->Passes; }
+  /// Whether the view's own picture, if there is one, has so many pixels.
+  bool hasSize(int width, int height) const;
+  /// Before a picture is made, which `passes` or not: there is none until then.
+  void begin(bool passes = false);
+  /// In place of one that passes, the view's own, if that is of the same scene and size, in pixels,
+  /// and shows something everywhere. It does not have to be complete.
+  bool showStill(const DepictedScene& scene, int width, int height);
   /// Shows the one from before it began, if that is what `frame` asks for. The rest is as for
   /// PictureKey.
   bool showAgain(const Frame& frame, bool countsSamples, std::int64_t colors);
@@ -79,13 +92,26 @@ public:
   bool goesOn = false;
 
 private:
+  struct Depiction
+  {
+    explicit Depiction(const DepictedScene& scene);
+    bool isOf(const DepictedScene& scene) const;
+
+    PictureKey key;
+    std::uint64_t surroundings;
+  };
+
+  /// Makes the picture from before the last one.
+  void takeBefore();
+
   int Number;
   PaintedFrame Last;
   std::optional<PaintedFrame> Fine; ///< the last picture made, where a coarser one is shown
   PaintedFrame Before;              ///< until there is another
-  std::optional<PictureKey> Key;    ///< of what was drawn last, if it is complete
-  std::optional<PictureKey> Scene;
-  std::uint64_t Surroundings = 0;
+  bool Passes = false;              ///< the last picture; the one before is the view's own
+  std::optional<PictureKey> Key;    ///< of the view's own, if it is complete
+  std::unique_ptr<Depiction> Scene; ///< of the last picture
+  std::unique_ptr<Depiction> SceneBefore;
   std::unique_ptr<ViewPicture> Coarser;
 };
 

@@ -195,4 +195,52 @@ TEST(Frames, AreNotMadeAgainWhileNothingChanges)
   }
 }
 
+TEST(Frames, AreTheStillOnesWhileNothingMoves)
+{
+  for (const int mode : {vtkINRVolumeMapper::RAY_MARCHING, vtkINRVolumeMapper::PATH_TRACING}) {
+    OneVolume one;
+    one.mapper->SetRenderMode(mode);
+    one.mapper->SetSamplesPerPixel(2);
+    const inr::Image shown = one.scene.capture();
+    EXPECT_TRUE(one.mapper->GetConverged());
+    one.scene.window->SetDesiredUpdateRate(1e6); // as while somebody drags what is no volume
+    for (int picture = 0; picture < 2; ++picture) {
+      EXPECT_EQ(one.scene.capture().pixels, shown.pixels);
+      EXPECT_EQ(one.mapper->GetNumberOfVisitedCells(), 0);
+      EXPECT_EQ(one.mapper->GetImageReduction(), 1);
+      EXPECT_TRUE(one.mapper->GetConverged());
+    }
+    one.addCube();
+    EXPECT_NE(one.scene.capture().pixels, shown.pixels);
+    EXPECT_GT(one.mapper->GetNumberOfVisitedCells(), 0);
+  }
+}
+
+TEST(Frames, GoOnAfterOthersThatPass)
+{
+  OneVolume one;
+  vtkCamera* camera = one.renderer->GetActiveCamera();
+  const double angle = camera->GetViewAngle();
+  one.mapper->SetRenderMode(vtkINRVolumeMapper::PATH_TRACING);
+  one.mapper->SetSamplesPerPixel(1000);
+  one.mapper->SetStillTimeLimit(1e-3);
+  one.mapper->ShownElsewhereOn();
+  vtkIdType paths = 0;
+  for (int turn = 0; turn < 3; ++turn) {
+    const vtkIdType before = paths;
+    for (int pictures = 0; paths < before + 2; ++pictures) {
+      ASSERT_LT(pictures, 500);
+      one.scene.capture();
+      EXPECT_GE(one.mapper->GetNumberOfPaths(), paths);
+      paths = one.mapper->GetNumberOfPaths();
+    }
+    ASSERT_FALSE(one.mapper->GetConverged());
+    one.scene.window->SetDesiredUpdateRate(1e6);
+    camera->SetViewAngle(0.9 * angle);
+    one.scene.capture();
+    camera->SetViewAngle(angle);
+    one.scene.window->SetDesiredUpdateRate(0.002);
+  }
+}
+
 } // namespace

@@ -266,6 +266,30 @@ private:
   vtkNew<vtkCallbackCommand> Command;
 };
 
+TEST(Views, GoOnAfterOneWasCapturedInTiles)
+{
+  IdleWindow idle;
+  vtkRenderWindow* window = idle.one.scene.window;
+  idle.one.mapper->SetSamplesPerPixel(20);
+  vtkIdType paths = 0;
+  for (int pictures = 0; paths < 2; ++pictures) {
+    ASSERT_LT(pictures, 500);
+    window->Render();
+    paths = idle.one.mapper->GetNumberOfPaths();
+  }
+  window->SetTileScale(2);
+  window->SetTileViewport(0, 0, 0.5, 0.5);
+  window->Render();
+  EXPECT_TRUE(idle.one.mapper->GetConverged());
+  window->SetTileScale(1);
+  window->SetTileViewport(0, 0, 1, 1);
+  window->Render();
+  EXPECT_FALSE(idle.one.mapper->GetConverged());
+  EXPECT_GE(idle.one.mapper->GetNumberOfPaths(), paths);
+  EXPECT_TRUE(RunUntilIdle(window, idle.interactor, [] {}));
+  EXPECT_TRUE(idle.one.mapper->GetConverged());
+}
+
 // VTK's interactor for X must not lose the timer that it is telling of.
 TEST(Views, MayBeRedrawnByTheTimersOfWhatRefinesThem)
 {
