@@ -157,6 +157,12 @@ std::optional<AcceleratedField::Failure> Renderer::acceleratorFailure() const
   return field ? field->failure() : std::nullopt;
 }
 
+void Renderer::forgetPaths(int view)
+{
+  Drawing::RequireNone(this->Self->IsDrawing);
+  this->Self->Paths.forget(view);
+}
+
 int Renderer::threads() const { return this->Self->Threads.threads(); }
 
 void Renderer::setTransferFunction(const TransferFunction& transferFunction)

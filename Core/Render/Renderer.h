@@ -127,6 +127,10 @@ public:
   FrameStatistics render(const Frame& frame, Image& rgba, Image* depth = nullptr,
                          const std::function<bool()>& keepGoing = {}, Image* samples = nullptr);
 
+  /// Lets go of the paths that a view's picture would go on with; see Frame::view. Not in the
+  /// middle of rendering, as above.
+  void forgetPaths(int view);
+
 private:
   struct Implementation;
   std::unique_ptr<Implementation> Self;

@@ -120,7 +120,10 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
   }
   picture.depict(picture.passes() ? this->depicted(frame, renderer, volume) : stillScene);
   picture.last().seconds = timer.seconds();
-  this->Stills.followUp(picture, renderer->GetRenderWindow(), settings);
+  if (picture.passes() && !IsInteractive(window)) {
+    this->Caster->forgetPaths(picture.frameView()); // of many pixels, which nobody comes back to
+  }
+  this->Stills.followUp(picture, window, settings);
   return problem;
 }
 

@@ -155,6 +155,20 @@ TEST(PathsInParts, GoOnForEachViewByTurns)
 }
 
 /// As what a selection looks at.
+TEST(PathsInParts, BeginAnewWhereTheyWereForgotten)
+{
+  inr::Renderer renderer = MakeRenderer(true);
+  inr::Frame frame = LitFrame();
+  inr::Image image;
+  Render(renderer, frame);
+  ++frame.samplesPerPixel;
+  frame.timeLimit = 1e-9;
+  renderer.forgetPaths(frame.view + 1);
+  EXPECT_TRUE(renderer.render(frame, image).complete); // with one more
+  renderer.forgetPaths(frame.view);
+  EXPECT_EQ(renderer.render(frame, image).paths, 1);
+}
+
 TEST(PathsInParts, GoOnWhenRaysWereMarchedForAnotherView)
 {
   inr::Renderer renderer = MakeRenderer(true);
