@@ -28,6 +28,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace inr {
@@ -51,24 +52,29 @@ vtkIceTCompositePass* CompositePassOf(vtkRenderer* renderer)
   return nullptr;
 }
 
-/// What equal models have in common and others have not, but for very few; 0 of none.
-std::uint32_t ChecksumOf(vtkDataSet* data)
+/// That array if it is of a model, or else the first one that is; null for none.
+const vtkINRDataArray* FindModelArray(vtkPointData* points, const char* name)
 {
-  const auto* array =
-      vtkINRDataArray::SafeDownCast(data ? vtkINRDataArray::FindIn(data->GetPointData()) : nullptr);
+  const auto* named =
+      vtkINRDataArray::SafeDownCast(name ? points->GetAbstractArray(name) : nullptr);
+  return named ? named : vtkINRDataArray::SafeDownCast(vtkINRDataArray::FindIn(points));
+}
+
+/// What equal models have in common and others have not, but for very few; 0 of none.
+std::uint32_t ChecksumOf(const vtkINRDataArray* array)
+{
   if (!array || !array->GetModel()) {
     return 0;
   }
   constexpr std::size_t most = 4096; // parameters, evenly: no more than a millisecond of a model
   const Model& model = *array->GetModel();
   const VolumeInfo& volume = model.volume;
-  const double numbers[] = {static_cast<double>(volume.dims.x),
-                            static_cast<double>(volume.dims.y),
-                            static_cast<double>(volume.dims.z),
-                            volume.low,
-                            volume.high,
-                            static_cast<double>(model.parameters.size())};
-  std::uint32_t sum = ContinueChecksum(0, numbers, sizeof(numbers));
+  const double range[] = {volume.low, volume.high};
+  std::uint32_t sum = ContinueChecksum(0, &volume.dims, sizeof(volume.dims));
+  sum = ContinueChecksum(sum, &volume.spacing, sizeof(volume.spacing));
+  sum = ContinueChecksum(sum, &volume.origin, sizeof(volume.origin));
+  sum = ContinueChecksum(sum, &volume.direction, sizeof(volume.direction));
+  sum = ContinueChecksum(sum, range, sizeof(range));
   sum = ContinueChecksum(sum, volume.arrayName.data(), volume.arrayName.size());
   const std::size_t stride = model.parameters.size() / most + 1;
   for (std::size_t k = 0; k < model.parameters.size(); k += stride) {
@@ -119,7 +125,8 @@ std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer)
   vtkVolumeCollection* volumes = renderer->GetVolumes();
   volumes->InitTraversal(place);
   while (vtkVolume* volume = volumes->GetNextVolume(place)) {
-    if (volume->GetVisibility() != 0 && HasSize(volume) && vtkINRLODVolume::SafeDownCast(volume)) {
+    const auto* drawn = vtkINRLODVolume::SafeDownCast(volume);
+    if (drawn && !drawn->GetWithheld() && volume->GetVisibility() != 0 && HasSize(volume)) {
       shown.push_back(volume);
     }
   }
@@ -184,16 +191,22 @@ bool AllHave(vtkMultiProcessController* processes, bool something)
   return least > 0;
 }
 
-bool AllHaveSameModel(vtkMultiProcessController* processes, vtkDataSet* data)
+bool HaveSameModel(vtkMultiProcessController* processes, vtkDataSet* data, const char* name)
 {
-  const auto mine = static_cast<unsigned>(ChecksumOf(data));
-  unsigned least = mine;
-  unsigned largest = mine;
-  if (AreSeveral(processes)) {
-    processes->AllReduce(&mine, &least, 1, vtkCommunicator::MIN_OP);
-    processes->AllReduce(&mine, &largest, 1, vtkCommunicator::MAX_OP);
+  if (!AreSeveral(processes)) {
+    return true;
   }
-  return least == largest;
+  // Of who has no data, what changes neither.
+  unsigned low = std::numeric_limits<unsigned>::max();
+  unsigned high = 0;
+  if (data && data->GetNumberOfPoints() > 0) {
+    low = high = ChecksumOf(FindModelArray(data->GetPointData(), name));
+  }
+  unsigned least = low;
+  unsigned largest = high;
+  processes->AllReduce(&low, &least, 1, vtkCommunicator::MIN_OP);
+  processes->AllReduce(&high, &largest, 1, vtkCommunicator::MAX_OP);
+  return least >= largest;
 }
 
 } // namespace inr

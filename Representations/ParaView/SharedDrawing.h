@@ -24,7 +24,8 @@ std::vector<int> ProcessOrder(vtkRenderer* renderer);
 /// Whether it can be seen: a scale of zero makes it flat.
 bool HasSize(vtkVolume* volume);
 
-/// The INR volumes that `renderer` shows, in the same order in all processes.
+/// The INR volumes that `renderer` shows, in the same order in all processes; none that is
+/// withheld.
 std::vector<vtkVolume*> ShownVolumes(vtkRenderer* renderer);
 
 /// Where an axis of an image in a volume with that matrix leads in the world, as long as a unit of
@@ -48,8 +49,9 @@ bool ComposesOnePicture(vtkRenderer* renderer);
 /// there one without anything does not know its turn among several volumes.
 bool AllHave(vtkMultiProcessController* processes, bool something);
 
-/// Whether the processes' data are of the same model, or all of none: of its array and grid, and of
-/// some thousands of its parameters. All of them must ask, too.
-bool AllHaveSameModel(vtkMultiProcessController* processes, vtkDataSet* data);
+/// Whether those of the processes that have data have the same model, as far as its grid, range and
+/// some thousands of its parameters tell, or none: in the point array `name`, which may be null, or
+/// else in the first array that has one. All of them must ask, as above.
+bool HaveSameModel(vtkMultiProcessController* processes, vtkDataSet* data, const char* name);
 
 } // namespace inr

@@ -44,6 +44,7 @@ public:
 
   /// Draws nothing from now on, whatever it has; or does again.
   void Withhold(bool on) { this->Withheld = on; }
+  bool GetWithheld() const { return this->Withheld; }
 
 protected:
   vtkINRLODVolume() = default;

@@ -138,11 +138,22 @@ void vtkINRVolumeRepresentation::FindOthers()
   vtkDataSet* data = this->VolumeMapper->GetDataSetInput();
   const bool hasSome = data && data->GetNumberOfPoints() > 0;
   const bool haveAll = inr::AllHave(controller, hasSome);
-  this->Differ = haveAll && !inr::AllHaveSameModel(controller, data);
+  this->Differ = !inr::HaveSameModel(controller, data, this->GetColorArrayName());
   const bool share = haveAll && AreSeveral(controller) && !this->Differ;
   this->Others = share ? controller : nullptr;
   this->GetMapper()->SetController(this->Others);
   this->GetVolume()->Withhold(this->Differ);
+  if (this->Differ) { // said at once: nothing may be drawn here
+    this->ReportProblem();
+  }
+}
+
+const char* vtkINRVolumeRepresentation::GetColorArrayName()
+{
+  vtkInformation* colors = this->GetInputArrayInformation(0);
+  return colors && colors->Has(vtkDataObject::FIELD_NAME())
+             ? colors->Get(vtkDataObject::FIELD_NAME())
+             : nullptr;
 }
 
 void vtkINRVolumeRepresentation::ForgetOutlines()
@@ -185,7 +196,9 @@ void vtkINRVolumeRepresentation::Deliver(vtkInformation* in, vtkInformation* out
   const auto shown =
       inr::ShownVolumes(vtkPVRenderView::SafeDownCast(this->GetView())->GetRenderer());
   // Of a solid colour before, ParaView still hides it; it is to be drawn again in this picture.
-  const bool leads = shown.empty() ? inr::HasSize(this->Actor) : shown.front() == this->Actor.Get();
+  const bool mayLead =
+      shown.empty() ? inr::HasSize(this->Actor) : shown.front() == this->Actor.Get();
+  const bool leads = mayLead && !this->Differ; // or its boxes do not fill space
   double piece[6];
   std::copy_n(this->DataBounds, 6, piece);
   this->GetMapper()->GetPieceBounds(piece);
@@ -276,8 +289,8 @@ std::string vtkINRVolumeRepresentation::WhyNothingIsDrawn()
            "group as \"Volume\"";
   }
   if (this->Differ) {
-    return "The processes have different models, and none of them is drawn; give all of them the "
-           "same file and reload it";
+    return "The processes have different models, or some of them have none, so that they do not "
+           "draw this volume; give all of them the same file and reload it";
   }
   return inr::WhyBlank(this->Actor, this->VolumeMapper);
 }

@@ -7,8 +7,8 @@
  * presents to filters. Colour, opacity and placement are those of ParaView's own volume
  * representation. The values never leave the process that has them. Where that is not the process
  * that draws, the model is sent there, once, however many processes have it. A colouring that
- * leaves the picture blank is reported once. Pictures are not refined while an animation plays or a
- * modal dialog is open.
+ * leaves the picture blank is reported once. Pictures are not refined while an animation plays, a
+ * modal dialog is open or another view is turned.
  */
 #ifndef vtkINRVolumeRepresentation_h
 #define vtkINRVolumeRepresentation_h
@@ -122,6 +122,7 @@ private:
   vtkINRVolumeMapper* GetMapper();
   void UpdateStatus();
   void FindOthers();
+  const char* GetColorArrayName(); ///< null for none
   void ForgetOutlines();
   void Deliver(vtkInformation* in, vtkInformation* out);
   void TakeDelivery(vtkInformation* in);
