@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ClientWatch.h"
 
+#include "vtkCollection.h"
 #include "vtkCommand.h"
+#include "vtkSMComparativeViewProxy.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyIterator.h"
 #include "vtkSMProxyManager.h"
@@ -15,8 +17,9 @@ namespace inr {
 
 namespace {
 
-/// Between two pictures of somebody who turns a view, by the wheel or a slow mouse.
+/// Between two pictures of somebody who turns a view by the wheel, or who holds it still meanwhile.
 constexpr std::chrono::milliseconds MostBetweenPictures(300);
+constexpr std::chrono::seconds MostHeld(3);
 
 /// A function of the Qt that this process has loaded, if it is an application of it; else null.
 /// ParaView's window is Qt's, but its programs without a window run where Qt is not installed, and
@@ -81,8 +84,13 @@ void ClientWatch::update(const vtkObject& own)
     }
   }
   for (proxies->Begin("views"); !proxies->IsAtEnd(); proxies->Next()) {
-    if (proxies->GetProxy()->GetClientSideObject() != &own) {
-      this->watchView(proxies->GetProxy());
+    this->watchView(proxies->GetProxy(), own);
+    if (auto* comparative = vtkSMComparativeViewProxy::SafeDownCast(proxies->GetProxy())) {
+      vtkNew<vtkCollection> cells; // which nobody else knows, and somebody turns
+      comparative->GetViews(cells);
+      for (int k = 0; k < cells->GetNumberOfItems(); ++k) {
+        this->watchView(vtkSMProxy::SafeDownCast(cells->GetItemAsObject(k)), own);
+      }
     }
   }
 }
@@ -101,9 +109,9 @@ void ClientWatch::watchScene(vtkObject* scene)
   }
 }
 
-void ClientWatch::watchView(vtkObject* view)
+void ClientWatch::watchView(vtkSMProxy* view, const vtkObject& own)
 {
-  if (!this->isWatched(view)) {
+  if (view && view->GetClientSideObject() != &own && !this->isWatched(view)) {
     this->Watched.emplace_back(view);
     view->AddObserver(vtkCommand::EndEvent, this->Picture);
   }
@@ -115,10 +123,16 @@ bool ClientWatch::isBusy() { return this->Playing || IsModalDialogOpen() || this
 // nobody.
 bool ClientWatch::isTurning()
 {
-  if (this->Turned && Clock::now() - *this->Turned > MostBetweenPictures && !IsButtonDown()) {
+  if (!this->Turned) {
+    return false;
+  }
+  const auto since = Clock::now() - *this->Turned;
+  this->IsHeld = this->IsHeld && IsButtonDown();
+  const bool isTurning = since < (this->IsHeld ? Clock::duration(MostHeld) : MostBetweenPictures);
+  if (!isTurning) { // a button that is down later is down for something else
     this->Turned.reset();
   }
-  return this->Turned.has_value();
+  return isTurning;
 }
 
 void ClientWatch::OnPlay(vtkObject* scene, unsigned long event, void* self, void*)
@@ -130,7 +144,9 @@ void ClientWatch::OnPlay(vtkObject* scene, unsigned long event, void* self, void
 void ClientWatch::OnPicture(vtkObject*, unsigned long, void* self, void* isInteractive)
 {
   if (isInteractive && *static_cast<const int*>(isInteractive) != 0) {
-    static_cast<ClientWatch*>(self)->Turned = Clock::now();
+    auto* watch = static_cast<ClientWatch*>(self);
+    watch->Turned = Clock::now();
+    watch->IsHeld = IsButtonDown();
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 class vtkObject;
+class vtkSMProxy;
 
 namespace inr {
 
@@ -33,15 +34,17 @@ private:
 
   bool isWatched(const vtkObject* object) const;
   void watchScene(vtkObject* scene);
-  void watchView(vtkObject* view);
+  void watchView(vtkSMProxy* view, const vtkObject& own);
   bool isTurning();
   static void OnPlay(vtkObject* scene, unsigned long event, void* self, void* unused);
   static void OnPicture(vtkObject* view, unsigned long event, void* self, void* isInteractive);
 
   std::vector<vtkWeakPointer<vtkObject>> Watched;
   vtkWeakPointer<vtkObject> Playing;
-  /// When another view was last drawn for somebody who turns it, until that has ended.
+  /// When another view was last drawn for somebody who turns it, until that has ended, and whether
+  /// he held a mouse button down.
   std::optional<Clock::time_point> Turned;
+  bool IsHeld = false;
   vtkNew<vtkCallbackCommand> Play;
   vtkNew<vtkCallbackCommand> Picture;
 };

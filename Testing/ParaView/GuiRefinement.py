@@ -43,19 +43,20 @@ def pauses_while_a_button_is_down():
     interactor.InvokeEvent("EndInteractionEvent")
 
 
-def pauses_while_another_view_is_turned():
-    other = simple.CreateView("RenderView")
+def pauses_while_another_view_is_turned(name):
+    other = simple.CreateView(name)
     simple.AssignViewToLayout(view=other, layout=simple.GetLayout(view))
     simple.Show(simple.Sphere(), other)
     simple.Render(other)
-    yield from refinement.wait_for_pictures("beside another view")
-    other.SMProxy.InteractiveRender()
+    turned = other.SMProxy.GetRootView() if "Comparative" in name else other.SMProxy
+    yield from refinement.wait_for_pictures("beside " + name)
+    turned.InteractiveRender()
     start = time.time()
     while time.time() < start + 1.5:
-        other.SMProxy.InteractiveRender()
+        turned.InteractiveRender()
         yield
     pictures = refinement.pictures_since(start)
-    check(pictures == 0, "refined while another view is turned:", pictures)
+    check(pictures == 0, "refined while another view is turned,", name, pictures)
     yield from refinement.wait_for_pictures("after another view was turned")
     simple.Delete(other)
     simple.SetActiveView(view)
@@ -67,7 +68,8 @@ def watch():
     yield from refinement.wait_for_pictures("after the dialog")
     yield from pauses_while_a_button_is_down()
     yield from refinement.wait_for_pictures("after a click")
-    yield from pauses_while_another_view_is_turned()
+    yield from pauses_while_another_view_is_turned("RenderView")
+    yield from pauses_while_another_view_is_turned("ComparativeRenderView")
     refinement.selects()
     yield from refinement.wait_for_pictures("after a selection")
     yield from refinement.converges_and_stops()
