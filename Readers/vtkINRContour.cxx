@@ -46,10 +46,7 @@ public:
   PatchMaker(const inr::ModelPointer& model, const ContourBricks& bricks,
              const std::vector<double>& values, bool gradients)
       : Volume(model->volume), Evaluator(inr::MakeEvaluator(model)),
-        Voxels(
-            model->volume.dims, bricks.GetLevel(),
-            inr::PointsPerAxis(model->volume.dims, bricks.GetLevel(), inr::ResolutionOf(*model))),
-        Bricks(bricks), Values(values),
+        Voxels(*model, bricks.GetLevel()), Bricks(bricks), Values(values),
         GradientUnit(gradients ? model->volume.high - model->volume.low : 0)
   {}
 

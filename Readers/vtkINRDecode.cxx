@@ -197,9 +197,7 @@ bool vtkINRDecode::Fill(const NativeGrid& grid, const int extent[6], T* values, 
   const auto evaluator = inr::MakeEvaluator(grid.model);
   const inr::Arena arena;
   const inr::VolumeInfo& volume = grid.model->volume;
-  const inr::LevelVoxels voxels(
-      volume.dims, this->Level,
-      inr::PointsPerAxis(volume.dims, this->Level, inr::ResolutionOf(*grid.model)));
+  const inr::LevelVoxels voxels(*grid.model, this->Level);
   const std::int64_t width = extent[1] - extent[0] + 1;
   const std::int64_t height = extent[3] - extent[2] + 1;
   const std::int64_t depth = extent[5] - extent[4] + 1;

@@ -8,17 +8,20 @@ namespace inr {
 
 namespace {
 
-/// Means over 2 x 2 x 2 points of each of `size` voxels.
-std::vector<float> MeansOf(const std::vector<float>& points, const glm::i64vec3& size)
+/// Means over 2 x 2 x 2 points of each of `size` voxels; along an axis that has one for each, that
+/// counts twice.
+std::vector<float> MeansOf(const std::vector<float>& points, const glm::i64vec3& size,
+                           const glm::i64vec3& perVoxel)
 {
   std::vector<float> means;
   means.reserve(static_cast<std::size_t>(GridCount(size)));
   for (std::int64_t k = 0; k < GridCount(size); ++k) {
-    const glm::i64vec3 first = std::int64_t{2} * GridPlace(k, size);
+    const glm::i64vec3 first = perVoxel * GridPlace(k, size);
     float sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
-      const glm::i64vec3 at = first + glm::i64vec3(corner & 1, corner >> 1 & 1, corner >> 2);
-      sum += points[static_cast<std::size_t>(GridNumber(at, std::int64_t{2} * size))];
+      const glm::i64vec3 within(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::i64vec3 at = first + glm::min(within, perVoxel - std::int64_t{1});
+      sum += points[static_cast<std::size_t>(GridNumber(at, perVoxel * size))];
     }
     means.push_back(sum / 8);
   }
@@ -30,11 +33,11 @@ std::vector<float> MeansOf(const std::vector<float>& points, const glm::i64vec3&
 std::vector<float> LevelVoxels::coordinates(int axis, const GridBox& box) const
 {
   std::vector<float> coordinates;
-  for (std::int64_t k = 0; k < box.size[axis] * this->Points; ++k) {
-    const double within = (static_cast<double>(k) + 0.5) / static_cast<double>(this->Points);
+  for (std::int64_t k = 0; k < box.size[axis] * this->Points[axis]; ++k) {
+    const double within = (static_cast<double>(k) + 0.5) / static_cast<double>(this->Points[axis]);
     const double u =
         (static_cast<double>(box.first[axis]) + within) / static_cast<double>(this->Size[axis]);
-    coordinates.push_back(this->IsFlat[axis] ? 0.5f : static_cast<float>(u));
+    coordinates.push_back(static_cast<float>(u));
   }
   return coordinates;
 }
@@ -46,7 +49,10 @@ std::vector<float> LevelVoxels::in(const GridBox& box, const Evaluator& field) c
   std::vector<float> values(axes[0].size() * axes[1].size() * axes[2].size());
   field.evaluateGrid(axes, values.data());
   std::transform(values.begin(), values.end(), values.begin(), NormalisedOutput);
-  return this->Points == 1 ? values : MeansOf(values, box.size);
+  if (this->Points == glm::i64vec3(1)) {
+    return values;
+  }
+  return MeansOf(values, box.size, this->Points);
 }
 
 } // namespace inr

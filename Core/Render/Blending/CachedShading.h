@@ -23,7 +23,7 @@ private:
   /// Lights the first `count` samples; for how many of them that was possible.
   int shade(const CachedRay& ray, int count, glm::vec4* colors);
 
-  SampleShader Shader; // first: it has a batch, which begins at a cache line
+  SampleShader Shader; // before what is smaller: it has a batch, which begins at a cache line
   MarchedBatch& Batch;
   const CachedScene& Scene;
   std::unique_ptr<CachedColors> Colors;

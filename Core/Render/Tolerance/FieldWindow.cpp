@@ -58,9 +58,8 @@ void FieldWindow::extendTo(const VoxelSpan (&spans)[3])
 
 ValueBox FieldWindow::sample(const VoxelSpan (&spans)[3]) const
 {
-  ValueBox box(SizeOf(spans));
-  box.values = LevelVoxels(this->Dims, 0, 1).in({LowOf(spans), box.size}, this->Field);
-  return box;
+  const glm::i64vec3 size = SizeOf(spans);
+  return {size, LevelVoxels(this->Dims, 0, 1).in({LowOf(spans), size}, this->Field)};
 }
 
 void FieldWindow::put(const ValueBox& box, const VoxelSpan (&spans)[3])

@@ -6,6 +6,7 @@
 #include <glm/gtc/type_precision.hpp>
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace inr {
@@ -33,6 +34,10 @@ struct ValueBox
 {
   explicit ValueBox(const glm::i64vec3& size)
       : size(size), values(static_cast<std::size_t>(GridCount(size)))
+  {}
+
+  ValueBox(const glm::i64vec3& size, std::vector<float> values)
+      : size(size), values(std::move(values))
   {}
 
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const
