@@ -103,8 +103,10 @@ capabilities() {
   fi 2> /dev/null | tr -d '. '
 }
 
+# Where programs are, the toolkit's, too.
+tools=${CUDA_PATH:+$CUDA_PATH/bin:}$PATH:/usr/local/cuda/bin
+
 # The first of them that CMake/INRCuda.cmake builds for, with the nvcc that it finds; or nothing.
-tools=${CUDA_PATH:+$CUDA_PATH/bin:}$PATH:/usr/local/cuda/bin # where the toolkit's are, too
 capability() {
   local known one
   known=$(PATH=$tools nvcc --list-gpu-code 2> /dev/null)

@@ -42,8 +42,12 @@ public:
         Ranges(machine.template allocate<ValueRange>(this->Needs.cells))
   {
     const CacheLayout layout = LayOutCache(hierarchy, precision, bytes, this->Needs);
-    // What infers has its memory already.
-    machine.requireFree(layout.bytes - this->Needs.inference, "the cache of bricks");
+    // What infers and these have their memory already.
+    const std::int64_t taken =
+        this->Needs.inference +
+        this->LevelTable.size() * static_cast<std::int64_t>(sizeof(HierarchyLevel)) +
+        this->Ranges.size() * static_cast<std::int64_t>(sizeof(ValueRange));
+    machine.requireFree(layout.bytes - taken, "the cache of bricks");
     machine.toMachine(this->LevelTable.data(), &hierarchy.view().level(0), hierarchy.levels());
     this->putRanges(cells);
     this->allocate(layout);

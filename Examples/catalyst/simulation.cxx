@@ -16,6 +16,7 @@
 #include <vtkNew.h>
 #include <vtkOutputWindow.h>
 #include <vtkPointData.h>
+#include <vtkSmartPointer.h>
 
 #include <cstdlib>
 #include <iostream>
@@ -46,11 +47,10 @@ class ReportedErrors
 {
 public:
   ReportedErrors()
-  {
-    this->Observer = vtkOutputWindow::GetInstance()->AddObserver(vtkCommand::ErrorEvent, this,
-                                                                 &ReportedErrors::countOne);
-  }
-  ~ReportedErrors() { vtkOutputWindow::GetInstance()->RemoveObserver(this->Observer); }
+      : Window(vtkOutputWindow::GetInstance()),
+        Observer(this->Window->AddObserver(vtkCommand::ErrorEvent, this, &ReportedErrors::countOne))
+  {}
+  ~ReportedErrors() { this->Window->RemoveObserver(this->Observer); }
   ReportedErrors(const ReportedErrors&) = delete;
   ReportedErrors& operator=(const ReportedErrors&) = delete;
 
@@ -59,8 +59,9 @@ public:
 private:
   void countOne() { ++this->Count; }
 
+  vtkSmartPointer<vtkOutputWindow> Window;
+  unsigned long Observer;
   int Count = 0;
-  unsigned long Observer = 0;
 };
 
 // Whether Catalyst could do what the script wants, as far as this process has been told.
