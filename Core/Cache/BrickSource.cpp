@@ -25,6 +25,11 @@ GridBox BoxOf(const Hierarchy& hierarchy, const BrickId& id)
   return {first, glm::min(glm::i64vec3(hierarchy.brickDims()), hierarchy.size(id.level) - first)};
 }
 
+LevelVoxels VoxelsOf(const Hierarchy& hierarchy, int level)
+{
+  return {hierarchy.dims(), level, hierarchy.points(level)};
+}
+
 /// Of all cells that a brick's voxels reach into.
 ValueRange RangeWithin(const MacroCells& cells, const Hierarchy& hierarchy, BrickKey key)
 {
@@ -91,8 +96,7 @@ private:
     const glm::i64vec3 end(glm::min<std::int64_t>(x.last, box.size.x - 1),
                            glm::min<std::int64_t>(y.last, box.size.y - 1), first.z);
     const glm::i64vec3 count = end - first + std::int64_t{1};
-    const LevelVoxels voxels(this->hierarchy().dims(), id.level,
-                             this->hierarchy().points(id.level));
+    const LevelVoxels voxels = VoxelsOf(this->hierarchy(), id.level);
     const std::vector<float> inside = voxels.in({box.first + first, count}, *this->Field);
     const std::int64_t width = this->hierarchy().brickDims().x;
     for (std::int64_t row = y.first; row <= y.last; ++row) {
@@ -126,8 +130,7 @@ std::int64_t BrickSource::points(const BrickPart& part) const
       });
     }
   }
-  const std::int64_t points = this->Levels.points(IdOf(part.key).level);
-  return voxels * points * points * points;
+  return voxels * VoxelsOf(this->Levels, IdOf(part.key).level).pointsPerVoxel();
 }
 
 void BrickSource::infer(const BrickKey* keys, std::int64_t count, float* values,

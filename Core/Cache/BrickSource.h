@@ -30,8 +30,7 @@ public:
     (void)key;
     return {};
   }
-  /// Points at which the field is asked for the voxels of a part, along an axis of a single voxel as
-  /// many as along others.
+  /// Points at which the field is asked for the voxels of a part.
   std::int64_t points(const BrickPart& part) const;
 
   /// One layer of a brick's voxels, the `z`-th of brickDims().z: normalised values in [0, 1], x

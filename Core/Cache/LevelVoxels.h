@@ -10,6 +10,7 @@
 #include <glm/gtc/type_precision.hpp>
 #include <glm/vector_relational.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace inr {
@@ -31,6 +32,7 @@ public:
                     PointsPerAxis(model.volume.dims, level, ResolutionOf(model)))
   {}
 
+  std::int64_t pointsPerVoxel() const { return GridCount(this->Points); }
   /// Of those in a box, x fastest, in [0, 1] as NormalisedOutput makes them. Neither the box around
   /// a voxel nor the thread makes a difference to it. Means take eight floats more for each voxel.
   std::vector<float> in(const GridBox& box, const Evaluator& field) const;

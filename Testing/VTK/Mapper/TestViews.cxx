@@ -270,7 +270,7 @@ TEST(Views, GoOnAfterOneWasCapturedInTiles)
 {
   IdleWindow idle;
   vtkRenderWindow* window = idle.one.scene.window;
-  idle.one.mapper->SetSamplesPerPixel(20);
+  idle.one.mapper->SetSamplesPerPixel(8);
   vtkIdType paths = 0;
   for (int pictures = 0; paths < 2; ++pictures) {
     ASSERT_LT(pictures, 500);
@@ -299,7 +299,7 @@ TEST(Views, MayBeRedrawnByTheTimersOfWhatRefinesThem)
     idle.one.scene.window->Render();
     return ++events < 30;
   });
-  idle.one.mapper->SetSamplesPerPixel(20);
+  idle.one.mapper->SetSamplesPerPixel(10);
   idle.one.scene.window->Render();
   EXPECT_FALSE(idle.one.mapper->GetConverged());
   EXPECT_TRUE(RunUntilIdle(idle.one.scene.window, idle.interactor, [] {}));
