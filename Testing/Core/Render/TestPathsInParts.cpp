@@ -111,6 +111,19 @@ TEST(PathsInParts, TakeNoMoreThanTheirTimeOnceSomethingIsEverywhere)
   EXPECT_GE(RenderInParts(renderer, other, image), 2 * frame.samplesPerPixel - 1);
 }
 
+TEST(PathsInParts, HaveAPartOfTheTimeThatIsShared)
+{
+  inr::Renderer renderer = MakeRenderer(true);
+  inr::Frame frame = LitFrame(64); // 16 tiles, more than between two looks at the time
+  Render(renderer, frame);         // so that all bricks are there
+  frame.view = 1;
+  frame.timeLimit = 1e-9;
+  frame.sharedBy = 1000000;
+  inr::Image image;
+  EXPECT_TRUE(renderer.render(frame, image).blank);
+  EXPECT_FALSE(renderer.render(frame, image).blank);
+}
+
 /// Calls for one view after the other until all pictures are complete; how many for each of them.
 int RenderByTurns(inr::Renderer& renderer, std::vector<inr::Frame> frames,
                   std::vector<inr::Image>& images)
