@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ClientWatch.h"
 
+#include "QtApplication.h"
 #include "vtkCollection.h"
 #include "vtkCommand.h"
 #include "vtkSMComparativeViewProxy.h"
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <dlfcn.h>
 
 namespace inr {
 
@@ -20,31 +20,6 @@ namespace {
 /// Between two pictures of somebody who turns a view by the wheel, or who holds it still meanwhile.
 constexpr std::chrono::milliseconds MostBetweenPictures(300);
 constexpr std::chrono::seconds MostHeld(3);
-
-/// A function of the Qt that this process has loaded, if it is an application of it; else null.
-/// ParaView's window is Qt's, but its programs without a window run where Qt is not installed, and
-/// so should this library.
-template <typename Function> Function* FindInQt(const char* symbol)
-{
-  void* const* application =
-      static_cast<void* const*>(dlsym(RTLD_DEFAULT, "_ZN16QCoreApplication4selfE"));
-  return application && *application ? reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, symbol))
-                                     : nullptr;
-}
-
-bool IsModalDialogOpen()
-{
-  // QWindow* QGuiApplication::modalWindow()
-  auto* const modalWindow = FindInQt<void*()>("_ZN15QGuiApplication11modalWindowEv");
-  return modalWindow && modalWindow() != nullptr;
-}
-
-bool IsButtonDown()
-{
-  // Qt::MouseButtons QGuiApplication::mouseButtons(), which is returned as the int that it holds
-  auto* const mouseButtons = FindInQt<int()>("_ZN15QGuiApplication12mouseButtonsEv");
-  return mouseButtons && mouseButtons() != 0;
-}
 
 } // namespace
 
@@ -127,7 +102,7 @@ bool ClientWatch::isTurning()
     return false;
   }
   const auto since = Clock::now() - *this->Turned;
-  this->IsHeld = this->IsHeld && IsButtonDown();
+  this->IsHeld = this->IsHeld && IsMouseButtonDown();
   const bool isTurning = since < (this->IsHeld ? Clock::duration(MostHeld) : MostBetweenPictures);
   if (!isTurning) { // a button that is down later is down for something else
     this->Turned.reset();
@@ -146,7 +121,7 @@ void ClientWatch::OnPicture(vtkObject*, unsigned long, void* self, void* isInter
   if (isInteractive && *static_cast<const int*>(isInteractive) != 0) {
     auto* watch = static_cast<ClientWatch*>(self);
     watch->Turned = Clock::now();
-    watch->IsHeld = IsButtonDown();
+    watch->IsHeld = IsMouseButtonDown();
   }
 }
 
