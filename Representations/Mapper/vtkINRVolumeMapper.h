@@ -408,6 +408,18 @@ public:
 
   ///@{
   /**
+   * Whether somebody drags something that the picture follows, a slider or a point of a transfer
+   * function: where that has changed a still picture that is refined, see StillTimeLimit, one with
+   * fewer pixels is shown first, which takes no longer than an interactive one. Default off. It
+   * modifies nothing either.
+   */
+  void SetHurried(bool on) { this->Hurried = on; }
+  vtkGetMacro(Hurried, bool);
+  vtkBooleanMacro(Hurried, bool);
+  ///@}
+
+  ///@{
+  /**
    * For a mapper beside `window`, which shows what another one draws elsewhere: whether pictures
    * there may be refined, which those of a screenshot may not; and to have the window drawn again
    * in so many seconds, as for a picture of one's own, instead of what was asked for before. 0: not
@@ -617,6 +629,7 @@ private:
   double StillTimeLimit = -1.0;
   bool ShownElsewhere = false;
   bool ForSelection = false;
+  bool Hurried = false;
   int NumberOfThreads = 0;
   int Seed = 0;
   bool Deterministic = false;

@@ -55,6 +55,7 @@ inr::PaintSettings vtkINRVolumeMapper::Settings() const
   settings.stillTimeLimit = this->StillTimeLimit;
   settings.shownElsewhere = this->ShownElsewhere;
   settings.forSelection = this->ForSelection;
+  settings.hurried = this->Hurried;
   settings.countSamples = this->SampleChannels;
   settings.seed = static_cast<std::uint64_t>(this->Seed);
   inr::RendererOptions& renderer = settings.renderer;
@@ -102,6 +103,7 @@ void vtkINRVolumeMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "StillTimeLimit: " << this->StillTimeLimit << "\n"
      << indent << "ShownElsewhere: " << this->ShownElsewhere << "\n"
      << indent << "ForSelection: " << this->ForSelection << "\n"
+     << indent << "Hurried: " << this->Hurried << "\n"
      << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n"
      << indent << "Seed: " << this->Seed << "\n"
      << indent << "Deterministic: " << this->Deterministic << "\n"

@@ -95,6 +95,8 @@ public:
   void SetShownElsewhere(bool on);
   double GetRefinementPause();
   ///@}
+  /// In processes that draw, by the client before a still picture; see vtkINRVolumeMapper.
+  void SetHurried(bool on);
   ///@{
   /// The client's part: whether its window may be refined, and to have it drawn again.
   bool MayRefine();

@@ -124,6 +124,8 @@ void vtkINRVolumeRepresentation::SetShownElsewhere(bool on)
   this->GetMapper()->SetShownElsewhere(on);
 }
 
+void vtkINRVolumeRepresentation::SetHurried(bool on) { this->GetMapper()->SetHurried(on); }
+
 bool vtkINRVolumeRepresentation::GetConverged()
 {
   const bool isComplete = this->GetVolume()->GetOutOfSight() ||

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSMINRRepresentationProxy.h"
 
+#include "QtApplication.h"
 #include "vtkCallbackCommand.h"
 #include "vtkClientServerStream.h"
 #include "vtkCommand.h"
@@ -69,31 +70,36 @@ void vtkSMINRRepresentationProxy::OnRender(vtkObject*, unsigned long event, void
                                            void* isInteractive)
 {
   auto* proxy = static_cast<vtkSMINRRepresentationProxy*>(self);
-  if (*static_cast<int*>(isInteractive) != 0 || !proxy->IsDrawnElsewhere()) {
+  if (*static_cast<int*>(isInteractive) != 0 || !proxy->Here()) {
     return;
   }
-  if (event == vtkCommand::StartEvent) {
-    proxy->Announce();
-  } else {
-    proxy->GoOn();
+  const bool isStart = event == vtkCommand::StartEvent;
+  if (isStart) {
+    proxy->Here()->SetHurried(inr::IsMouseButtonDown());
+  }
+  if (proxy->IsDrawnElsewhere()) {
+    isStart ? proxy->Announce() : proxy->GoOn();
   }
 }
 
-/** Before a still picture: whether it is one that goes on. */
+/** Before a still picture: whether it is one that goes on, and whether it has to be short. */
 void vtkSMINRRepresentationProxy::Announce()
 {
   vtkINRVolumeRepresentation* here = this->Here();
   // One of another type, which all images have beside this one, draws nothing.
   const bool refines = here->MayRefine() && here->GetVisibility();
-  if (refines == this->Announced) {
+  const bool hurried = refines && inr::IsMouseButtonDown();
+  if (refines == this->Announced && hurried == this->Hurried) {
     return;
   }
-  vtkClientServerStream stream;
+  vtkClientServerStream stream; // which does not understand a bool
   stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "SetShownElsewhere"
-         << static_cast<int>(refines) // a bool is not understood
-         << vtkClientServerStream::End;
+         << static_cast<int>(refines) << vtkClientServerStream::End;
+  stream << vtkClientServerStream::Invoke << VTKOBJECT(this) << "SetHurried"
+         << static_cast<int>(hurried) << vtkClientServerStream::End;
   this->ExecuteStream(stream, false, vtkPVSession::RENDER_SERVER);
   this->Announced = refines;
+  this->Hurried = hurried;
 }
 
 /** After one. */

@@ -50,6 +50,7 @@ private:
   vtkWeakPointer<vtkSMProxy> View;
   vtkNew<vtkCallbackCommand> RenderCommand;
   bool Announced = false; ///< to the server: that its pictures are made again
+  bool Hurried = false;   ///< and that they are short
 };
 
 #endif

@@ -45,9 +45,11 @@ std::function<bool()> Unless(vtkRenderWindow* window, const Timer& deadline)
 }
 
 /// At which a window wants pictures of each of so many volumes, if it wants them soon.
-double RateOf(vtkRenderWindow* window, int volumes)
+double RateOf(vtkRenderWindow* window, bool hurried, int volumes)
 {
-  return window->GetDesiredUpdateRate() * (IsInteractive(window) ? volumes : 1);
+  constexpr double followed = 5; // by somebody's eye: ParaView's rate of interactive pictures
+  const double rate = hurried ? followed : window->GetDesiredUpdateRate();
+  return rate * (hurried || IsInteractive(window) ? volumes : 1);
 }
 
 /// Steps between samples of a picture for a window, of those of a still one.
@@ -112,6 +114,9 @@ std::string FramePainter::paint(vtkVolumeMapper* mapper, vtkRenderer* renderer, 
     frame.timeLimit = std::min(frame.timeLimit, piece);
   }
   const DepictedScene stillScene = this->depicted(still, renderer, volume);
+  const bool isChanged = !picture.wasOfSame(stillScene);
+  picture.hurried =
+      this->Group.all(settings.hurried && isChanged && !picture.passes() && frame.timeLimit > 0);
   // Of a group's processes, each would have to know whether nothing has changed in the others.
   const bool mayBeStill = IsInteractive(window) && this->Group.isAlone();
   if (!this->draw({frame, renderer, picture, mayBeStill ? &stillScene : nullptr})) {
@@ -272,20 +277,26 @@ bool FramePainter::draw(const Job& job)
   if (job.still && job.picture.showStill(*job.still, viewport.width, viewport.height)) {
     return this->blend(job, around);
   }
-  const double rate = RateOf(renderer->GetRenderWindow(), job.scene.sharedBy);
+  const double rate = RateOf(renderer->GetRenderWindow(), job.picture.hurried, job.scene.sharedBy);
   int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
-  Timer deadline = this->deadline(rate, reduction);
-  Surroundings here = this->reduced(around, viewport, reduction);
-  while (!this->renderTogether(job, here, reduction, deadline)) {
-    if (this->Group.all(deadline.left() > 0)) {
-      return true; // aborted
-    }
-    reduction = std::min(4 * reduction, ImageReduction::Largest);
+  Surroundings here;
+  bool blank = job.picture.hurried && reduction > 1; // there is no time for all of its pixels
+  if (!blank) {
+    Timer deadline = this->deadline(rate, reduction);
     here = this->reduced(around, viewport, reduction);
-    deadline = this->deadline(rate, reduction);
+    while (!this->renderTogether(job, here, reduction, deadline)) {
+      if (this->Group.all(deadline.left() > 0)) {
+        return true; // aborted
+      }
+      reduction = std::min(4 * reduction, ImageReduction::Largest);
+      here = this->reduced(around, viewport, reduction);
+      deadline = this->deadline(rate, reduction);
+    }
+    blank = !this->Group.all(!job.picture.last().statistics.blank);
+    reduction = blank ? this->coarserReduction(job) : reduction;
   }
-  if (!this->Group.all(!job.picture.last().statistics.blank)) {
-    std::optional<Surroundings> coarser = this->drawCoarser(job, around, viewport);
+  if (blank) {
+    std::optional<Surroundings> coarser = this->drawCoarser(job, around, viewport, reduction);
     if (!coarser) {
       return true;
     }
@@ -321,20 +332,11 @@ bool FramePainter::renderTogether(const Job& job, const Surroundings& around, in
   return this->Group.all(done);
 }
 
-std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surroundings& around,
-                                                      const Viewport& viewport)
+int FramePainter::coarserReduction(const Job& job)
 {
   const double patience = 0.25 / job.scene.sharedBy; // seconds, beyond what the finer one took
-  constexpr double once = 0.01;                      // of rays: with what there is
-  PaintedFrame& fine = job.picture.last();
-  ViewPicture& picture = job.picture.coarser();
-  const PaintedFrame& coarse = picture.last();
-  Frame scene = job.scene;
-  scene.view = picture.frameView();
-  if (scene.mode == RenderMode::RayMarching) {
-    scene.timeLimit = std::min(scene.timeLimit, once);
-  }
   // By what is known of this picture: what others took is another matter.
+  const PaintedFrame& fine = job.picture.last();
   const auto seconds = [&](int divided) {
     const double ratio = static_cast<double>(divided) / fine.reduction;
     return fine.statistics.marchSeconds / (ratio * ratio);
@@ -343,7 +345,21 @@ std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surr
   while (reduction < ImageReduction::Largest && seconds(reduction) > patience) {
     reduction *= 2;
   }
-  reduction = this->Group.largest(reduction);
+  return this->Group.largest(reduction);
+}
+
+std::optional<Surroundings> FramePainter::drawCoarser(const Job& job, const Surroundings& around,
+                                                      const Viewport& viewport, int reduction)
+{
+  constexpr double once = 0.01; // of rays: with what there is
+  PaintedFrame& fine = job.picture.last();
+  ViewPicture& picture = job.picture.coarser();
+  const PaintedFrame& coarse = picture.last();
+  Frame scene = job.scene;
+  scene.view = picture.frameView();
+  if (scene.mode == RenderMode::RayMarching) {
+    scene.timeLimit = std::min(scene.timeLimit, once);
+  }
   // What is around, the picture itself is told by.
   const DepictedScene depicted{scene, this->Caster->colorsVersion(), 0};
   if (this->Group.all(picture.depicts(depicted) && !coarse.statistics.blank)) {

@@ -97,10 +97,11 @@ private:
   /// The same of all processes, each with its part.
   bool renderTogether(const Job& job, const Surroundings& around, int reduction,
                       const Timer& deadline);
-  /// In place of a picture of which some pixels show nothing yet, one with fewer pixels; what is
-  /// around these. Nothing where it was stopped.
+  /// With which there is time for a picture in place of one that shows nothing in some pixels yet.
+  int coarserReduction(const Job& job);
+  /// Such a picture; what is around its pixels. Nothing where it was stopped.
   std::optional<Surroundings> drawCoarser(const Job& job, const Surroundings& around,
-                                          const Viewport& viewport);
+                                          const Viewport& viewport, int reduction);
   bool blend(const Job& job, const Surroundings& around);
   /// The picture for a selection.
   const ViewPicture& look(const Frame& scene, vtkRenderer* renderer, vtkVolume* volume);

@@ -26,6 +26,7 @@ struct PaintSettings
   int volumes = 1;             ///< that are drawn into the picture and share its time
   bool shownElsewhere = false; ///< see there
   bool forSelection = false;   ///< see there
+  bool hurried = false;        ///< see there
   std::uint64_t seed = 0;
   RendererOptions renderer;
   PictureGroup group; ///< with whom to draw, see there

@@ -51,7 +51,8 @@ void StillPictures::followUp(ViewPicture& picture, vtkRenderWindow* window,
   // Bricks are decoded in the pause, too; other work is done within pictures only.
   const bool waitsForBricks = settings.mode != RenderMode::PathTracing && !last.statistics.blank;
   const double share = waitsForBricks ? 1 : 0.25;
-  const double pause = std::clamp(share * last.seconds, 0.02, 0.5);
+  const double least = picture.hurried ? 0.3 : 0.02; // the next may come meanwhile
+  const double pause = std::clamp(share * last.seconds, least, 0.5);
   if (shownElsewhere) {
     this->Pause = std::max(this->Pause, pause); // of both eyes
   } else {

@@ -21,8 +21,12 @@ ViewPicture::Depiction::Depiction(const DepictedScene& scene)
 
 bool ViewPicture::Depiction::isOf(const DepictedScene& scene) const
 {
-  return this->surroundings == scene.surroundings &&
-         this->key.matches(scene.frame, false, scene.colors);
+  return this->surroundings == scene.surroundings && this->isOf(scene.frame, scene.colors);
+}
+
+bool ViewPicture::Depiction::isOf(const Frame& frame, std::int64_t colors) const
+{
+  return this->key.matches(frame, false, colors);
 }
 
 bool ViewPicture::hasSize(int width, int height) const
@@ -38,6 +42,7 @@ void ViewPicture::begin(bool passes)
     this->SceneBefore = std::move(this->Scene);
   }
   this->Passes = passes;
+  this->hurried = false;
   this->Fine.reset();
   this->Last = {};
   this->Scene.reset();
@@ -89,6 +94,11 @@ void ViewPicture::finish(const Frame& frame, bool countsSamples, std::int64_t co
 void ViewPicture::depict(const DepictedScene& scene)
 {
   this->Scene = std::make_unique<Depiction>(scene);
+}
+
+bool ViewPicture::wasOfSame(const DepictedScene& scene) const
+{
+  return this->SceneBefore && this->SceneBefore->isOf(scene.frame, scene.colors);
 }
 
 bool ViewPicture::depicts(const DepictedScene& scene) const

@@ -77,6 +77,8 @@ public:
   void finish(const Frame& frame, bool countsSamples, std::int64_t colors);
   /// What the picture is of.
   void depict(const DepictedScene& scene);
+  /// Whether the view's picture from before was of that, whatever was around it.
+  bool wasOfSame(const DepictedScene& scene) const;
   /// Whether there is a picture, of just that.
   bool depicts(const DepictedScene& scene) const;
   /// For when everything has changed: it is a picture of nothing that there is.
@@ -90,12 +92,15 @@ public:
   /// That the window be drawn again, to go on with this picture; and that this is being done.
   bool requested = false;
   bool goesOn = false;
+  /// That what it shows will have changed again in a moment.
+  bool hurried = false;
 
 private:
   struct Depiction
   {
     explicit Depiction(const DepictedScene& scene);
     bool isOf(const DepictedScene& scene) const;
+    bool isOf(const Frame& frame, std::int64_t colors) const;
 
     PictureKey key;
     std::uint64_t surroundings;

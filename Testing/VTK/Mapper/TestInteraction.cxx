@@ -116,6 +116,42 @@ TEST(Frames, HaveTwiceTheSampleDistanceWhileInteracting)
   EXPECT_GT(SamplesOf(dense, reduction), samples + samples / 2);
 }
 
+TEST(Frames, AreCoarserAtFirstWhileSomebodyDragsWhatTheyFollow)
+{
+  for (const int mode : {vtkINRVolumeMapper::RAY_MARCHING, vtkINRVolumeMapper::PATH_TRACING}) {
+    OneVolume one;
+    one.mapper->SetRenderMode(mode);
+    one.mapper->SetSamplesPerPixel(1);
+    one.mapper->DeterministicOn();
+    one.mapper->ShownElsewhereOn();
+    one.mapper->HurriedOn();
+    vtkVolumeProperty* property = one.volume->GetProperty();
+    const auto drawChanged = [&] {
+      property->SetScalarOpacityUnitDistance(0.9 * property->GetScalarOpacityUnitDistance());
+      one.scene.capture();
+      return one.mapper->GetImageReduction();
+    };
+    EXPECT_GT(drawChanged(), 1);
+    EXPECT_FALSE(one.mapper->GetConverged());
+    EXPECT_GE(one.mapper->TakeRefinementPause(), 0.3);
+    EXPECT_GT(drawChanged(), 1);
+    for (int picture = 0; picture < 100 && !one.mapper->GetConverged(); ++picture) {
+      one.scene.capture();
+      EXPECT_EQ(one.mapper->GetImageReduction(), 1);
+    }
+    EXPECT_TRUE(one.mapper->GetConverged());
+    one.addCube(); // what is around the volume is not what it follows
+    one.scene.capture();
+    EXPECT_EQ(one.mapper->GetImageReduction(), 1);
+    one.mapper->HurriedOff();
+    EXPECT_EQ(drawChanged(), 1);
+    one.mapper->HurriedOn();
+    one.mapper->ShownElsewhereOff(); // nobody would draw the rest
+    EXPECT_EQ(drawChanged(), 1);
+    EXPECT_TRUE(one.mapper->GetConverged());
+  }
+}
+
 TEST(Frames, RespectOpaqueDepthWhileInteracting)
 {
   OneVolume one;
