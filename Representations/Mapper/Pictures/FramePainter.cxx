@@ -227,8 +227,9 @@ std::string FramePainter::prepare(vtkVolumeMapper* mapper, vtkRenderer* renderer
     return problem;
   }
   frame = MakeFrame(input.grid, mapper, renderer, volume, settings);
-  const TransferFunction& colors = this->TransferFunctions.get(property);
   const Model& model = *input.array->GetModel();
+  const TransferFunction& colors =
+      this->TransferFunctions.get(property, {model.volume.low, model.volume.high});
   RendererOptions options = settings.renderer;
   if (!options.cached) {
     options.cache = {}; // nor is there another renderer for another one

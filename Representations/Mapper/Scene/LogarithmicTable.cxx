@@ -89,17 +89,4 @@ std::vector<double> AtRising(vtkPiecewiseFunction* function, const std::vector<d
   return values;
 }
 
-int LogarithmicIntervals(const std::vector<double>& nodes, double low, double high)
-{
-  double closest = std::numeric_limits<double>::infinity(); // ratio
-  for (std::size_t k = 1; k < nodes.size(); ++k) {
-    if (nodes[k - 1] > 0 && nodes[k] > nodes[k - 1] && nodes[k] > low && nodes[k - 1] < high) {
-      closest = std::min(closest, nodes[k] / nodes[k - 1]);
-    }
-  }
-  const double intervals = std::ceil(std::log(high / low) / std::log(closest));
-  constexpr int most = std::numeric_limits<int>::max();
-  return intervals < most ? static_cast<int>(intervals) : most; // also where the ratio rounds to 1
-}
-
 } // namespace inr

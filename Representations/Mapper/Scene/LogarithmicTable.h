@@ -30,9 +30,4 @@ template <typename Function> std::vector<double> NodesOf(Function* function)
   return places;
 }
 
-/// How many equal intervals of the logarithm from `low` to `high`, both positive, are as short as
-/// what is between the two closest nodes in there: 0 where there are no two, the largest integer
-/// where it cannot say how many.
-int LogarithmicIntervals(const std::vector<double>& nodes, double low, double high);
-
 } // namespace inr

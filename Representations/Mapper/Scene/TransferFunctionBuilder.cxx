@@ -2,6 +2,7 @@
 #include "Representations/Mapper/Scene/TransferFunctionBuilder.h"
 
 #include "Representations/Mapper/Scene/LogarithmicTable.h"
+#include "Representations/Mapper/Scene/TableIntervals.h"
 
 #include <vtkColorTransferFunction.h>
 #include <vtkPiecewiseFunction.h>
@@ -22,16 +23,6 @@ constexpr int SmallestTable = 1024;
 constexpr int LargestTable = 16384;
 /// Places that are looked at for each interval of the largest table, where nodes are closer.
 constexpr int MostPerInterval = 64;
-
-/// How many intervals two nodes of a function that are closest to each other ask for.
-template <typename Function> int IntervalsFor(Function* function, double low, double high)
-{
-  if (function->GetSize() < 2) {
-    return SmallestTable;
-  }
-  const int estimate = function->EstimateMinNumberOfSamples(low, high);
-  return estimate > 0 ? estimate : std::numeric_limits<int>::max(); // more than an int can say
-}
 
 /// A property's two functions behind one question: what is at this value?
 struct Functions
@@ -102,21 +93,21 @@ struct Functions
     return Functions::joined(rgb, AtRising(this->Opacity, places));
   }
 
-  int intervals(double low, double high) const
+  /// How many intervals of the value or, where that is asked for, of its logarithm the closest
+  /// nodes ask for.
+  int intervals(double low, double high, bool logarithmic) const
   {
-    if (this->areLogarithmic()) {
+    if (this->areLogarithmic() && !logarithmic) {
       constexpr int peaks = 4; // as the lowest nodes are closest
       return peaks * LargestTable;
     }
-    const int colour =
-        this->Rgb ? IntervalsFor(this->Rgb, low, high) : IntervalsFor(this->Gray, low, high);
-    return std::max(IntervalsFor(this->Opacity, low, high), colour);
+    return std::max(IntervalsBetween(NodesOf(this->Opacity), low, high, logarithmic),
+                    IntervalsBetween(this->colourNodes(), low, high, logarithmic));
   }
 
-  int intervalsInLogarithms(double low, double high) const
+  std::vector<double> colourNodes() const
   {
-    return std::max(LogarithmicIntervals(NodesOf(this->Opacity), low, high),
-                    LogarithmicIntervals(NodesOf(this->Rgb), low, high));
+    return this->Rgb ? NodesOf(this->Rgb) : NodesOf(this->Gray);
   }
 
   vtkObject* colour() const { return this->Rgb ? static_cast<vtkObject*>(this->Rgb) : this->Gray; }
@@ -201,7 +192,8 @@ struct Range
   }
 };
 
-Range TableRange(const Functions& functions, bool logarithmic)
+/// From the lowest to the highest node.
+Range NodeRange(const Functions& functions, bool logarithmic)
 {
   Range range;
   range.extend(functions.Rgb);
@@ -215,25 +207,42 @@ Range TableRange(const Functions& functions, bool logarithmic)
   return range;
 }
 
-/// The range, kept just inside: with clamping off VTK's functions end at their outer nodes, and it
-/// takes logarithms of its own, rounded once more.
-Range Inside(const TransferFunction& table)
+/// What of it there are values in; all where there are none, and all of these are alike.
+Range SeenOf(const Range& nodes, const ValueSpan& values)
 {
-  const auto inset = [&](double end) {
-    return std::max(1e-12 * (table.high - table.low), 1e-14 * std::abs(end));
-  };
-  Range range;
-  range.low = table.logarithmic ? table.low * (1 + 1e-12) : table.low + inset(table.low);
-  range.high = std::max(range.low, table.high - inset(table.high));
-  return range;
+  // A single value is seen by what is around it, as narrow as one may care for.
+  const double around = values.low < values.high ? 0 : std::max(1e-3 * std::abs(values.low), 1e-30);
+  Range seen;
+  seen.low = std::max(nodes.low, values.low - around);
+  seen.high = std::min(nodes.high, values.high + around);
+  return seen.low < seen.high ? seen : nodes;
 }
 
 /// At n places from one end to the other.
 std::vector<glm::vec4> Sampled(const Functions& functions, const TransferFunction& table, int n)
 {
-  const Range range = Inside(table);
-  return table.logarithmic ? functions.evenlyInLogarithms(range.low, range.high, n)
-                           : functions.evenly(range.low, range.high, n);
+  std::vector<glm::vec4> entries = table.logarithmic
+                                       ? functions.evenlyInLogarithms(table.low, table.high, n)
+                                       : functions.evenly(table.low, table.high, n);
+  // With clamping off VTK's functions begin behind their first node, and end where a rounding is
+  // beyond the last.
+  entries.front() = functions.at(std::nextafter(table.low, table.high));
+  entries.back() = functions.at(table.high);
+  return entries;
+}
+
+/// Where the functions have their nodes; see IntervalsForBends.
+std::vector<double> NodePlaces(const Functions& functions, const TransferFunction& table)
+{
+  std::vector<double> places = NodesOf(functions.Opacity);
+  const std::vector<double> colours = functions.colourNodes();
+  places.insert(places.end(), colours.begin(), colours.end());
+  for (double& place : places) {
+    const double value = std::clamp(place, table.low, table.high);
+    place = table.logarithmic ? std::log(value / table.low) / std::log(table.high / table.low)
+                              : (value - table.low) / (table.high - table.low);
+  }
+  return places;
 }
 
 /// Every n-th of them, each the mean of those around it, the less the further: a peak between two
@@ -260,45 +269,55 @@ std::vector<glm::vec4> Thinned(const std::vector<glm::vec4>& fine, int n)
 
 std::vector<glm::vec4> Entries(const Functions& functions, const TransferFunction& table)
 {
-  const int wanted = table.logarithmic ? functions.intervalsInLogarithms(table.low, table.high)
-                                       : functions.intervals(table.low, table.high);
-  if (wanted <= LargestTable) {
-    return Sampled(functions, table, std::max(wanted, SmallestTable) + 1);
+  const int wanted = functions.intervals(table.low, table.high, table.logarithmic);
+  if (wanted > LargestTable) {
+    const int finer = std::min(wanted / LargestTable + 1, MostPerInterval);
+    return Thinned(Sampled(functions, table, LargestTable * finer + 1), finer);
   }
-  const int finer = std::min(wanted / LargestTable + 1, MostPerInterval);
-  return Thinned(Sampled(functions, table, LargestTable * finer + 1), finer);
+  std::vector<glm::vec4> fine = Sampled(functions, table, LargestTable + 1);
+  const int intervals =
+      IntervalsForBends(NodePlaces(functions, table), fine, std::max(wanted, SmallestTable));
+  return intervals < LargestTable ? Sampled(functions, table, intervals + 1) : fine;
 }
 
 } // namespace
 
-TransferFunction BuildTransferFunction(vtkVolumeProperty* property)
+TransferFunction BuildTransferFunction(vtkVolumeProperty* property, const ValueSpan& values)
 {
   const Functions functions(property);
   TransferFunction result;
   result.logarithmic = functions.areLogarithmic() && !functions.varyBelowZero();
-  const Range range = TableRange(functions, result.logarithmic);
-  result.low = range.low;
-  result.high = range.high;
+  const Range nodes = NodeRange(functions, result.logarithmic);
+  const Range seen = SeenOf(nodes, values);
+  result.low = seen.low;
+  result.high = seen.high;
   result.table = Entries(functions, result);
-  const double ratio = range.high / range.low;
-  const double width = range.high - range.low;
-  result.below = functions.at(result.logarithmic ? range.low / ratio : range.low - width);
-  result.above = functions.at(result.logarithmic ? range.high * ratio : range.high + width);
+  const double ratio = nodes.high / nodes.low;
+  const double width = nodes.high - nodes.low;
+  // No value is on the side where some of the nodes are not seen.
+  result.below = seen.low > nodes.low
+                     ? result.table.front()
+                     : functions.at(result.logarithmic ? nodes.low / ratio : nodes.low - width);
+  result.above = seen.high < nodes.high
+                     ? result.table.back()
+                     : functions.at(result.logarithmic ? nodes.high * ratio : nodes.high + width);
   return result;
 }
 
-TransferFunctionCache::Key TransferFunctionCache::makeKey(vtkVolumeProperty* property)
+TransferFunctionCache::Key TransferFunctionCache::makeKey(vtkVolumeProperty* property,
+                                                          const ValueSpan& values)
 {
   const Functions functions(property);
   return {functions.colour(), functions.Opacity, functions.colour()->GetMTime(),
-          functions.Opacity->GetMTime()};
+          functions.Opacity->GetMTime(), values};
 }
 
-const TransferFunction& TransferFunctionCache::get(vtkVolumeProperty* property)
+const TransferFunction& TransferFunctionCache::get(vtkVolumeProperty* property,
+                                                   const ValueSpan& values)
 {
-  const Key key = TransferFunctionCache::makeKey(property);
+  const Key key = TransferFunctionCache::makeKey(property, values);
   if (!(key == this->Built)) {
-    this->Table = BuildTransferFunction(property);
+    this->Table = BuildTransferFunction(property, values);
     this->Built = key;
   }
   return this->Table;

@@ -8,8 +8,10 @@
 
 #include <vtkActor2D.h>
 #include <vtkCamera.h>
+#include <vtkColorTransferFunction.h>
 #include <vtkCullerCollection.h>
 #include <vtkNew.h>
+#include <vtkPiecewiseFunction.h>
 #include <vtkPlane.h>
 #include <vtkProperty.h>
 #include <vtkTransform.h>
@@ -142,6 +144,18 @@ TEST(Frames, DoNotDependOnThePresentedGrid)
   OneVolume native(test::InrMapper(file, 0));
   OneVolume coarse(test::InrMapper(file, 1000));
   EXPECT_LT(inr::ImageMaximumError(native.scene.capture(), coarse.scene.capture()), 2.5f / 255);
+}
+
+/// As where several arrays of one name share their colours.
+TEST(Frames, DoNotDependOnColorsThatNoValueHas)
+{
+  OneVolume one;
+  const inr::Image shown = one.scene.capture();
+  vtkVolumeProperty* property = one.volume->GetProperty();
+  property->GetRGBTransferFunction()->AddRGBPoint(1e9, 1, 1, 1);
+  property->GetScalarOpacity()->AddPoint(1e9, 1);
+  EXPECT_GT(one.mapper->GetNumberOfVisitedCells(), 0);
+  EXPECT_GT(inr::ImagePsnr(one.scene.capture(), shown), 40);
 }
 
 TEST(Frames, DoNotDependOnThreads)

@@ -16,6 +16,8 @@
 
 namespace {
 
+constexpr inr::ValueSpan Everything{-1e300, 1e300};
+
 class TransferFunctions : public testing::Test
 {
 protected:
@@ -23,6 +25,11 @@ protected:
   {
     this->property->SetColor(this->colour);
     this->property->SetScalarOpacity(this->opacity);
+  }
+
+  inr::TransferFunction build(const inr::ValueSpan& values = Everything)
+  {
+    return inr::BuildTransferFunction(this->property, values);
   }
 
   vtkNew<vtkColorTransferFunction> colour;
@@ -59,7 +66,7 @@ TEST_F(TransferFunctions, AgreeWithVtkBetweenTheNodes)
   this->opacity->AddPoint(0, 0);
   this->opacity->AddPoint(4, 0.7);
   this->opacity->AddPoint(20, 0.1);
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   EXPECT_EQ(table.low, -3);
   EXPECT_EQ(table.high, 20);
   EXPECT_FALSE(table.logarithmic);
@@ -78,13 +85,13 @@ TEST_F(TransferFunctions, EndWhereClampingIsOff)
   this->colour->AddRGBPoint(1, 1, 0, 1);
   this->opacity->AddPoint(0, 0.5);
   this->opacity->AddPoint(1, 0.25);
-  auto table = inr::BuildTransferFunction(this->property);
+  auto table = this->build();
   EXPECT_EQ(table.below, glm::vec4(1, 1, 0, 0.5));
   EXPECT_EQ(table.above, glm::vec4(1, 0, 1, 0.25));
 
   this->opacity->ClampingOff();
   this->colour->ClampingOff();
-  table = inr::BuildTransferFunction(this->property);
+  table = this->build();
   EXPECT_EQ(table.below, glm::vec4(0));
   EXPECT_EQ(table.above, glm::vec4(0));
   ExpectColour(table.table.front(), 1, 1, 0, 1e-6);
@@ -103,7 +110,7 @@ TEST_F(TransferFunctions, ShowColoursBelowAndAboveTheRange)
   this->colour->UseAboveRangeColorOn();
   this->opacity->AddPoint(0, 1);
   this->opacity->AddPoint(1, 1);
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   ExpectColour(table.below, 0.1, 0.2, 0.3, 1e-6);
   ExpectColour(table.above, 0.4, 0.5, 0.6, 1e-6);
   ExpectColour(table.table.front(), 1, 1, 0, 1e-6);
@@ -118,7 +125,7 @@ TEST_F(TransferFunctions, AreSampledInLogSpaceForALogScale)
   this->opacity->AddPoint(1e-3, 0);
   this->opacity->AddPoint(1e3, 1);
   this->colour->ClampingOff();
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   EXPECT_TRUE(table.logarithmic);
   // In log space 1 is half way, 0.01 one sixth; the opacity stays linear in the value.
   ExpectColour(LookUp(table, 1.0), 0.5, 0.5, 0.5, 0.005);
@@ -141,7 +148,7 @@ TEST_F(TransferFunctions, OfALogScaleAreAsFineAsItsLogarithmsAskFor)
   this->opacity->AddPoint(100, 0.6);
   this->opacity->AddPoint(1000, 0.4);
   this->opacity->ClampingOff();
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   EXPECT_EQ(table.table.size(), 1025u);
   for (double value = 1.001; value < 1e4; value *= 1.037) {
     double rgb[3];
@@ -165,7 +172,7 @@ TEST_F(TransferFunctions, OfALogScaleHaveOpacitiesBelowZero)
   this->opacity->AddPoint(100, 0.9);
   this->opacity->AddPoint(-50, 0.1);
   this->opacity->AddPoint(-49.9, 0.6);
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   EXPECT_EQ(table.below.a, 0);
   for (const double value : {-199.0, -100.0, -50.5, -49.0, -1.0, 0.0, 3.0, 20.0, 99.0}) {
     double rgb[3];
@@ -190,7 +197,7 @@ TEST_F(TransferFunctions, OfALogScaleKeepWhatTheFunctionsAreSetTo)
   this->opacity->AddPoint(1, 0.1);
   this->opacity->AddPoint(1e4, 0.9);
   this->opacity->UseLogScaleOn();
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   ExpectColour(LookUp(table, 5), 0.1, 0.2, 0.3, 1e-6);
   ExpectColour(LookUp(table, 5000), 0.4, 0.5, 0.6, 1e-6);
   for (double value = 1.1; value < 9e3; value *= 1.7) {
@@ -212,7 +219,7 @@ TEST_F(TransferFunctions, OfALogScaleLeapWhereTheFunctionDoes)
   this->opacity->AddPoint(240, 0.5);
   for (const bool allowed : {true, false}) { // what is there stays
     this->colour->SetAllowDuplicateScalars(allowed);
-    const auto table = inr::BuildTransferFunction(this->property);
+    const auto table = this->build();
     for (const double value : {2.0, 30.0, 59.0, 61.0, 120.0}) {
       double rgb[3];
       this->colour->GetColor(value, rgb);
@@ -235,7 +242,7 @@ TEST_F(TransferFunctions, OfALogScaleMayHaveTenThousandOpacities)
   this->colour->AddRGBPoint(1, 0, 0, 0);
   this->colour->AddRGBPoint(1e4, 1, 1, 1);
   this->colour->SetScaleToLog10();
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   for (double x = 0.001; x < 3.999; x += 0.00737) {
     const glm::vec4 actual = LookUp(table, std::pow(10.0, x));
     ExpectColour(actual, x / 4, x / 4, x / 4, 0.002);
@@ -252,7 +259,7 @@ TEST_F(TransferFunctions, KeepALogScaleWhereNoOpacityIsLostByIt)
   this->opacity->AddPoint(0, 0); // which hides what is 0
   this->opacity->AddPoint(0.1, 1);
   this->opacity->AddPoint(1e6, 1);
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   EXPECT_TRUE(table.logarithmic);
   EXPECT_EQ(table.low, 0.1);
   EXPECT_NEAR(table.below.a, 0, 0.01);
@@ -266,7 +273,7 @@ TEST_F(TransferFunctions, ResolveNodesThatAreCloseTogether)
   this->opacity->AddPoint(5001, 1);
   this->opacity->AddPoint(5002, 0);
   this->opacity->AddPoint(10000, 0);
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   EXPECT_GT(LookUp(table, 5001.0).a, 0.7);
   EXPECT_LE(table.table.size(), 16385u);
 }
@@ -289,7 +296,7 @@ TEST_F(TransferFunctions, HavePeaksThatAreNarrowerThanAnEntry)
       this->opacity->AddPoint(middle, 0.8);
       this->opacity->AddPoint(middle + half, 0);
       this->opacity->AddPoint(1e6, 0);
-      const auto table = inr::BuildTransferFunction(this->property);
+      const auto table = this->build();
       ASSERT_EQ(table.table.size(), 16385u);
       double area = 0;
       glm::dvec4 shown(0);
@@ -303,6 +310,99 @@ TEST_F(TransferFunctions, HavePeaksThatAreNarrowerThanAnEntry)
   }
 }
 
+/// Whatever their width and wherever they are; rays and surfaces at their top look there.
+TEST_F(TransferFunctions, ReachTheTopOfPeaks)
+{
+  this->colour->AddRGBPoint(0, 1, 1, 1);
+  for (const double half : {0.05, 0.01, 0.002, 0.001, 0.0003}) {
+    for (const double middle : {0.5 + 0.5 / 1024, 0.3, 0.7071}) {
+      this->opacity->RemoveAllPoints();
+      for (const double side : {-1.0, 0.0, 1.0}) {
+        this->opacity->AddPoint(middle + side * half, side == 0 ? 0.9 : 0);
+      }
+      this->opacity->AddPoint(0, 0);
+      this->opacity->AddPoint(1, 0);
+      EXPECT_NEAR(LookUp(this->build(), middle).a, 0.9, 0.012) << half << " around " << middle;
+    }
+  }
+}
+
+TEST_F(TransferFunctions, HaveTheirEntriesWhereThereAreValues)
+{
+  const inr::ValueSpan values{-1, 1};
+  for (const double far : {2.0, 1e4, 1e9, 1e300}) {
+    for (const double side : {-1.0, 1.0}) {
+      this->colour->RemoveAllPoints();
+      this->opacity->RemoveAllPoints();
+      this->colour->AddRGBPoint(-1, 0, 0, 1);
+      this->colour->AddRGBPoint(1, 1, 0, 0);
+      this->colour->AddRGBPoint(side * far, 1, 1, 1);
+      this->opacity->AddPoint(-0.25, 0);
+      this->opacity->AddPoint(0, 0.5);
+      this->opacity->AddPoint(0.25, 0);
+      this->opacity->AddPoint(side * far, 1);
+      const auto table = this->build(values);
+      for (double value = -1; value <= 1; value += 0.0625) {
+        double rgb[3];
+        this->colour->GetColor(value, rgb);
+        ExpectColour(LookUp(table, value), rgb[0], rgb[1], rgb[2], 0.005);
+        EXPECT_NEAR(LookUp(table, value).a, this->opacity->GetValue(value), 0.005) << value;
+      }
+      // What no value meets is not to be thought opaque.
+      EXPECT_LT(side < 0 ? table.below.a : table.above.a, 0.5);
+    }
+  }
+}
+
+TEST_F(TransferFunctions, OfALogScaleHaveTheirEntriesWhereThereAreValues)
+{
+  this->colour->AddRGBPoint(1e-30, 0, 0, 0);
+  this->colour->AddRGBPoint(1e30, 1, 1, 1);
+  this->colour->SetScaleToLog10();
+  this->opacity->AddPoint(1.5, 0);
+  this->opacity->AddPoint(1.6, 0.5);
+  this->opacity->AddPoint(1.7, 0);
+  const auto table = this->build({1, 10});
+  EXPECT_EQ(table.low, 1);
+  EXPECT_EQ(table.high, 10);
+  for (double value = 1; value < 10; value *= 1.02) {
+    EXPECT_NEAR(LookUp(table, value).a, this->opacity->GetValue(value), 0.005) << value;
+    EXPECT_NEAR(LookUp(table, value).g, (std::log10(value) + 30) / 60, 0.001) << value;
+  }
+}
+
+/// All that a double can tell apart.
+TEST_F(TransferFunctions, MayBeNarrowBesideTheirValues)
+{
+  constexpr double low = 1e15;
+  constexpr double width = 64; // of 512 values
+  this->colour->AddRGBPoint(low, 0, 0, 0);
+  this->colour->AddRGBPoint(low + width, 1, 1, 1);
+  this->opacity->AddPoint(low, 0.2);
+  this->opacity->AddPoint(low + width, 0.8);
+  const auto table = this->build({low, low + width});
+  for (double k = 0; k <= width; k += 4) {
+    EXPECT_NEAR(LookUp(table, low + k).r, k / width, 0.005) << k;
+    EXPECT_NEAR(LookUp(table, low + k).a, 0.2 + 0.6 * k / width, 0.005) << k;
+  }
+}
+
+TEST_F(TransferFunctions, ShowASingleValue)
+{
+  this->colour->AddRGBPoint(-1e6, 0, 0, 0);
+  this->colour->AddRGBPoint(1e6, 1, 1, 1);
+  this->opacity->AddPoint(-1e6, 0);
+  this->opacity->AddPoint(0, 0.75);
+  this->opacity->AddPoint(0.001, 0);
+  this->opacity->AddPoint(7, 0);
+  this->opacity->AddPoint(7.01, 0.5);
+  this->opacity->AddPoint(7.02, 0);
+  for (const double value : {0.0, 7.01, -2e6, 2e6}) {
+    EXPECT_NEAR(LookUp(this->build({value, value}), value).a, this->opacity->GetValue(value), 0.005)
+        << value;
+  }
+}
+
 /// More of them next to each other than an int can count intervals for.
 TEST_F(TransferFunctions, MayJump)
 {
@@ -311,7 +411,7 @@ TEST_F(TransferFunctions, MayJump)
   this->opacity->AddPoint(0.5, 0.1);
   this->opacity->AddPoint(0.5 + 1e-12, 0.7);
   this->opacity->AddPoint(1, 0.7);
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   EXPECT_EQ(table.table.size(), 16385u);
   EXPECT_FLOAT_EQ(LookUp(table, 0.4999).a, 0.1f);
   EXPECT_FLOAT_EQ(LookUp(table, 0.5001).a, 0.7f);
@@ -335,7 +435,7 @@ TEST_F(TransferFunctions, MayHaveTenThousandNodes)
   }
   this->colour->FillFromDataPointer(colourCount, colours.data());
   this->opacity->FillFromDataPointer(count, opacities.data());
-  const auto table = inr::BuildTransferFunction(this->property);
+  const auto table = this->build();
   for (double x = 0.001; x < 0.999; x += 0.00137) {
     const glm::vec4 actual = LookUp(table, x);
     ExpectColour(actual, red(x), 0.25, 1 - red(x), 0.002);
@@ -345,13 +445,13 @@ TEST_F(TransferFunctions, MayHaveTenThousandNodes)
 
 TEST_F(TransferFunctions, ExistForFunctionsWithoutOrWithOneNode)
 {
-  auto table = inr::BuildTransferFunction(this->property);
+  auto table = this->build();
   EXPECT_LT(table.low, table.high);
   EXPECT_GE(table.table.size(), 2u);
 
   this->colour->AddRGBPoint(7, 0.5, 0.25, 0.75);
   this->opacity->AddPoint(7, 0.5);
-  table = inr::BuildTransferFunction(this->property);
+  table = this->build();
   EXPECT_EQ(table.low, 7);
   EXPECT_LT(table.low, table.high);
   EXPECT_EQ(LookUp(table, 7), glm::vec4(0.5, 0.25, 0.75, 0.5));
@@ -365,7 +465,7 @@ TEST_F(TransferFunctions, TakeAGrayFunctionToo)
   gray->AddPoint(0, 0.2);
   gray->AddPoint(1, 0.6);
   this->property->SetColor(gray);
-  ExpectColour(LookUp(inr::BuildTransferFunction(this->property), 0.5), 0.4, 0.4, 0.4, 0.005);
+  ExpectColour(LookUp(this->build(), 0.5), 0.4, 0.4, 0.4, 0.005);
 }
 
 TEST_F(TransferFunctions, AreRebuiltOnlyWhenTheyChange)
@@ -374,11 +474,11 @@ TEST_F(TransferFunctions, AreRebuiltOnlyWhenTheyChange)
   this->opacity->AddPoint(0, 0);
   this->opacity->AddPoint(1, 1);
   inr::TransferFunctionCache cache;
-  const glm::vec4* entries = cache.get(this->property).table.data();
+  const glm::vec4* entries = cache.get(this->property, Everything).table.data();
   this->property->SetScalarOpacityUnitDistance(3);
-  EXPECT_EQ(cache.get(this->property).table.data(), entries);
+  EXPECT_EQ(cache.get(this->property, Everything).table.data(), entries);
   this->opacity->AddPoint(1, 0.5);
-  EXPECT_EQ(LookUp(cache.get(this->property), 1.0).a, 0.5f);
+  EXPECT_EQ(LookUp(cache.get(this->property, Everything), 1.0).a, 0.5f);
 }
 
 } // namespace
