@@ -169,7 +169,10 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   tell();
   checkpoint.remove(group.rank());
   this->UpdateProgress(1.0);
-  this->Internal->Previous = model->volume.time ? model : nullptr;
+  const bool isConstant = model->training->steps == 0; // from which nothing can be learnt
+  if (!model->volume.time || !isConstant) {
+    this->Internal->Previous = model->volume.time ? model : nullptr;
+  }
   const bool showsHidden = group.any(this->Internal->ShowsHidden);
   if (group.rank() == 0) {
     this->WarnOfModel(*model, options, showsHidden);

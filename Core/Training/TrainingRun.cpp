@@ -40,10 +40,17 @@ ValueRange OnlyRangeOf(const ModelPointer& model)
   return {value, value};
 }
 
+/// Whether there is more than zeros, as of a constant volume: no gradient leads away from these.
+bool HasLearnt(const Model& model)
+{
+  return std::any_of(model.parameters.begin(), model.parameters.end(),
+                     [](float parameter) { return parameter != 0.0f; });
+}
+
 /// Goes on from the start's parameters where these fit, which is then on record.
 void StartFrom(const ModelPointer& start, Model& model, GradientDescent& descent)
 {
-  if (start && start->description == model.description) {
+  if (start && start->description == model.description && HasLearnt(*start)) {
     descent.startFrom(start->parameters);
     const TrainingRecord before = start->training.value_or(TrainingRecord());
     model.training->earlierSteps = before.steps + before.earlierSteps.value_or(0);

@@ -118,6 +118,18 @@ TEST_F(WarmStart, LeavesOutParametersOfAnotherMeaning)
   EXPECT_FALSE(tried->training->earlierSteps.has_value());
 }
 
+TEST_F(WarmStart, IsNotOfAModelOfZeros)
+{
+  Field<float> flat = Moved(0);
+  std::fill(flat.values.begin(), flat.values.end(), 0.5f);
+  const inr::ModelPointer start = inr::TrainModel(flat.data(), {}, StepsFrom(nullptr, 5));
+  const inr::ModelPointer cold = this->train(0, 5);
+  ASSERT_EQ(start->description, cold->description);
+  const inr::ModelPointer tried = this->train(0, 5, start);
+  EXPECT_EQ(tried->parameters, cold->parameters);
+  EXPECT_FALSE(tried->training->earlierSteps.has_value());
+}
+
 TEST_F(WarmStart, IsTheSameOnAnyNumberOfThreads)
 {
   const inr::ModelPointer start = this->train(0, 20);

@@ -106,6 +106,7 @@ public:
 
   std::vector<double> Times = {0.25, 0.5, 1.5, 2};
   double BadTime = -1;    ///< when there is no array
+  double FlatTime = -1;   ///< when all values are the same
   double SignalTime = -1; ///< when the user presses Ctrl-C
 
 protected:
@@ -140,8 +141,10 @@ protected:
     vtkNew<vtkDoubleArray> array;
     array->SetName("waves");
     for (int k = 0; k < 12 * 12 * 12; ++k) {
-      array->InsertNextValue(std::sin(0.5 * (k % 12 - 4 * time)) * std::cos(0.3 * (k / 12 % 12)) +
-                             0.02 * (k / 144));
+      array->InsertNextValue(time == this->FlatTime ? 0.5
+                                                    : std::sin(0.5 * (k % 12 - 4 * time)) *
+                                                              std::cos(0.3 * (k / 12 % 12)) +
+                                                          0.02 * (k / 144));
     }
     image->GetPointData()->SetScalars(array);
     return 1;
@@ -190,6 +193,23 @@ TEST_F(WriterOfSteps, MakesAFileOfEachWithItsTimeFromTheOneBefore)
   this->Algorithm->Write();
   EXPECT_EQ(inr::ReadModel(this->Folder / "waves_3.inr")->parameters, last->parameters);
   EXPECT_FALSE(this->header("waves_0.inr").training->earlierSteps.has_value());
+}
+
+TEST_F(WriterOfSteps, StartsFromTheLatestThatWasTrained)
+{
+  const auto earlierSteps = [&](int step) {
+    const auto name = "waves_" + std::to_string(step) + ".inr";
+    return this->header(name.c_str()).training->earlierSteps.value_or(0);
+  };
+  this->Source->FlatTime = this->Source->Times[1];
+  EXPECT_EQ(this->Algorithm->Write(), 1);
+  EXPECT_EQ(earlierSteps(2), 20u);
+  EXPECT_EQ(earlierSteps(3), 40u);
+  this->Source->FlatTime = this->Source->Times[0];
+  this->Source->Modified();
+  EXPECT_EQ(this->Algorithm->Write(), 1);
+  EXPECT_EQ(earlierSteps(1), 0u);
+  EXPECT_EQ(earlierSteps(2), 20u);
 }
 
 TEST_F(WriterOfSteps, StartsEachFromRandomNumbersWhenToldTo)
