@@ -100,20 +100,30 @@ vtkSMDoubleVectorProperty* GetDoubles(vtkSMProxy* proxy, const char* name)
   return vtkSMDoubleVectorProperty::SafeDownCast(proxy->GetProperty(name));
 }
 
-/// The value that the property's domain gives to new proxies.
-double DomainDefault(vtkSMDoubleVectorProperty* property)
-{
-  property->FindDomain<vtkSMBoundsDomain>()->SetDefaultValues(property, true);
-  const double value = property->GetUncheckedElement(0);
-  property->ClearUncheckedElements();
-  return value;
-}
-
 double LongestSide(const double bounds[6])
 {
   double sides[3];
   vtkBoundingBox(bounds).GetLengths(sides);
   return *std::max_element(sides, sides + 3);
+}
+
+/// A twentieth of the longest side, below 0 where there are no bounds: what the panel's domain
+/// gives to new proxies. But the second client of a server has another domain, as ParaView 5.11
+/// gives that the properties that the plugin overrides as they were.
+double DefaultUnitDistance(vtkSMProxy* representation)
+{
+  double bounds[6];
+  InputInformation(representation)->GetBounds(bounds);
+  return vtkBoundingBox(bounds).IsValid() ? LongestSide(bounds) / 20 : -1;
+}
+
+/// ParaView's own.
+double StockUnitDistance(vtkSMDoubleVectorProperty* property)
+{
+  property->FindDomain<vtkSMBoundsDomain>()->SetDefaultValues(property, true);
+  const double value = property->GetUncheckedElement(0);
+  property->ClearUncheckedElements();
+  return value;
 }
 
 /// That of the whole image that the representation's input has a piece of, as this process knows
@@ -160,7 +170,7 @@ void SetUnitDistance(vtkSMProxy* representation, bool isStock)
   auto* stock = GetDoubles(representation, "ScalarOpacityUnitDistance");
   auto* panel = GetDoubles(representation, "INRUnitDistance");
   const bool isNew = isStock && panel->GetElement(0) == stock->GetElement(0);
-  const double known = DomainDefault(panel); // below 0 where there are no bounds yet
+  const double known = DefaultUnitDistance(representation);
   const double wanted = known > 0 ? known / PartOfWhole(representation) : known;
   if ((isNew || !IsKnown(panel)) && wanted > 0) {
     panel->SetElement(0, wanted);
@@ -176,7 +186,7 @@ void SetUnitDistance(vtkSMProxy* representation, bool isStock)
 bool INRIsUnitDistanceStock(vtkSMProxy* representation)
 {
   auto* stock = GetDoubles(representation, "ScalarOpacityUnitDistance");
-  return stock->GetElement(0) == DomainDefault(stock);
+  return stock->GetElement(0) == StockUnitDistance(stock);
 }
 
 void INRGiveFirstLook(vtkSMProxy* proxy, bool isUnitDistanceStock)
