@@ -29,6 +29,7 @@ if (INR_WHEEL)
   list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN" "$ORIGIN/../${inr_vtk_package}")
 else ()
   set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
+  list(APPEND CMAKE_INSTALL_RPATH "$ORIGIN") # the two libraries, wherever they are moved to
 endif ()
 set(INR_MODULE_DIRECTORY "${CMAKE_INSTALL_LIBDIR}")
 # The modules share the host's process: nothing of our static libraries may be visible in it.

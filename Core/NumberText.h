@@ -17,4 +17,13 @@ inline std::string NumberText(double value, int digits = 6)
   return text.str();
 }
 
+/// The same, to so many digits behind the point.
+inline std::string DecimalText(double value, int digits)
+{
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
+}
+
 } // namespace inr

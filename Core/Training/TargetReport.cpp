@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Training/TargetReport.h"
 
-#include <cstdio>
+#include "Core/NumberText.h"
 
 namespace inr {
 
@@ -9,12 +9,7 @@ namespace {
 
 constexpr double Negligible = 0.1; // dB, which an estimate of ordinary data may be off
 
-std::string Decibels(double value)
-{
-  char text[64];
-  std::snprintf(text, sizeof(text), "%.2f dB", value);
-  return text;
-}
+std::string Decibels(double value) { return DecimalText(value, 2) + " dB"; }
 
 std::string Reason(const TrainingRecord& training, const TrainingOptions& options)
 {

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
+# script-version: 2.0
 """What Catalyst does with the simulation's grid: a model file every so many steps.
 
 INR_PLUGIN tells where INRVolume.so is (in the build folder), INR_EVERY the steps between two files (500), INR_STEPS the

@@ -2,6 +2,7 @@
 #include "Readers/Training/TrainingInput.h"
 
 #include "Core/Error.h"
+#include "Core/NumberText.h"
 #include "Readers/Grid/Scalars.h"
 
 #include <vtkCellData.h>
@@ -128,7 +129,7 @@ TrainingInput MakeTrainingInput(vtkImageData* image, vtkAbstractArray* values)
   for (int axis = 0; axis < 3; ++axis) {
     const double spacing = input.info.spacing[axis];
     Require(std::isfinite(spacing) && spacing != 0.0,
-            "the image's spacing is " + std::to_string(spacing) + " along an axis");
+            "the image's spacing is " + inr::NumberText(spacing) + " along an axis");
   }
   input.info.direction = glm::transpose(glm::make_mat3(image->GetDirectionMatrix()->GetData()));
   input.info.arrayName = name;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Readers/Training/TrainingReport.h"
 
+#include "Core/NumberText.h"
 #include "Core/Training/Samples/BatchSource.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace {
 
@@ -14,13 +14,6 @@ constexpr double SmallestFraction = 0.02;
 double Seconds(TrainingReport::Clock::duration time)
 {
   return std::chrono::duration<double>(time).count();
-}
-
-std::string Formatted(const char* format, double number)
-{
-  char text[64];
-  std::snprintf(text, sizeof(text), format, number);
-  return text;
 }
 
 const char* Name(inr::TrainingPhase phase)
@@ -42,8 +35,9 @@ std::string TimesOfGroup(const inr::TrainingRecord& training)
   if (training.exchangeSeconds == 0) {
     return "";
   }
-  return Formatted(", %.3g s of them to exchange gradients", training.exchangeSeconds) +
-         Formatted(" and %.3g s to wait for those of other processes", training.waitingSeconds);
+  return ", " + inr::NumberText(training.exchangeSeconds, 3) +
+         " s of them to exchange gradients and " + inr::NumberText(training.waitingSeconds, 3) +
+         " s to wait for those of other processes";
 }
 
 std::string TrainingReport::text(const inr::TrainingProgress& progress, Clock::time_point now)
@@ -64,12 +58,14 @@ std::string TrainingReport::text(const inr::TrainingProgress& progress, Clock::t
   const auto steps = static_cast<double>(latest - this->FirstSteps);
   if (training && steps > 0) {
     const double rate = steps * inr::BatchSize / Seconds(now - this->FirstStep);
-    text += Formatted(", %.3g M samples/s", rate / 1e6);
+    text += ", " + inr::NumberText(rate / 1e6, 3) + " M samples/s";
   }
   const double done = progress.fraction - this->FirstFraction;
   if (done > SmallestFraction) {
     const double left = Seconds(now - this->Start) * (1.0 - progress.fraction) / done;
-    text += left < 120 ? Formatted(", %.0f s left", left) : Formatted(", %.0f min left", left / 60);
+    const bool isLong = left >= 120;
+    text +=
+        ", " + inr::DecimalText(isLong ? left / 60 : left, 0) + (isLong ? " min left" : " s left");
   }
   return text;
 }

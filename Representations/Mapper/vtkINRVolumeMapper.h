@@ -9,8 +9,8 @@
  *
  * Honoured: every camera (perspective, parallel, stereo, off-axis), tiles and viewports, the
  * volume's matrix, the image's origin, spacing and direction, opaque geometry (its depth buffer is
- * read only when a visible prop has opaque geometry), the mapper's clipping planes and cropping
- * regions, and from
+ * read only when a visible prop has opaque geometry or nothing is erased before), the mapper's
+ * clipping planes and cropping regions, and from
  * vtkVolumeProperty the colour and scalar opacity functions of component 0, the
  * ScalarOpacityUnitDistance, a length in the volume's own space, whatever the volume's matrix makes
  * of it, and shading: ambient, diffuse, specular and

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Render/Acceleration/AcceleratedField.h"
 
+#include "Core/NumberText.h"
 #include "Core/Random.h"
 
 #include <algorithm>
@@ -20,8 +21,8 @@ void RequireEqual(const std::vector<float>& device, const std::vector<float>& cp
   for (std::size_t k = 0; k < cpu.size(); ++k) {
     const float allowed = LargestDifference * (1.0f + std::abs(cpu[k]));
     if (!(std::abs(device[k] - cpu[k]) <= allowed)) {
-      throw Error(ErrorCode::Device, "it gives " + std::to_string(device[k]) +
-                                         " where the CPU gives " + std::to_string(cpu[k]));
+      throw Error(ErrorCode::Device, "it gives " + NumberText(device[k]) + " where the CPU gives " +
+                                         NumberText(cpu[k]));
     }
   }
 }

@@ -53,7 +53,8 @@ std::vector<float> ReadBoundDepth(vtkRenderer* renderer, const Viewport& place)
 
 bool MayHaveOpaqueDepth(vtkRenderer* renderer)
 {
-  return renderer->GetPreserveDepthBuffer() || AnyProp(renderer, DrawsOpaque);
+  const bool erases = renderer->GetErase() && renderer->GetRenderWindow()->GetErase();
+  return renderer->GetPreserveDepthBuffer() || !erases || AnyProp(renderer, DrawsOpaque);
 }
 
 bool MayHideByWhatIsNotPicked(vtkRenderer* renderer)

@@ -10,7 +10,7 @@ class vtkRenderer;
 namespace inr {
 
 /// Whether the depth buffer can hold anything: a visible prop with opaque geometry (volumes and
-/// overlays have none), or an earlier layer's depth that the renderer keeps.
+/// overlays have none), or the depth of an earlier renderer or picture that this one keeps.
 bool MayHaveOpaqueDepth(vtkRenderer* renderer);
 
 /// Whether something in front of a volume, or in its midst, can be one that nobody selects, such as

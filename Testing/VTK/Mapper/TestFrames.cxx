@@ -129,6 +129,24 @@ TEST(Frames, ReadDepthOnlyWhenSomethingOpaqueIsVisible)
   EXPECT_FALSE(one.mapper->GetOpaqueDepthRead());
 }
 
+TEST(Frames, AreBehindWhatAnEarlierRendererHasLeft)
+{
+  OneVolume one;
+  const auto cube = one.addCube();
+  const inr::Image expected = one.scene.capture();
+  one.renderer->RemoveActor(cube);
+  vtkNew<vtkRenderer> before;
+  before->AddActor(cube);
+  before->SetActiveCamera(one.renderer->GetActiveCamera());
+  const vtkSmartPointer<vtkRenderer> kept = one.renderer;
+  one.scene.window->RemoveRenderer(one.renderer);
+  one.scene.window->AddRenderer(before);
+  one.scene.window->AddRenderer(one.renderer);
+  one.renderer->EraseOff();
+  EXPECT_GT(inr::ImagePsnr(one.scene.capture(), expected), 40);
+  EXPECT_TRUE(one.mapper->GetOpaqueDepthRead());
+}
+
 TEST(Frames, SeeMultisampledDepth)
 {
   OneVolume plain, smooth;
