@@ -53,12 +53,14 @@ void MarkForSelection(vtkRenderer* renderer, const Image& rgba, const PickedCell
   case vtkHardwareSelector::CELL_ID_HIGH24:
     blender.mark(renderer, viewport, cells.numbers(24));
     break;
-  case vtkHardwareSelector::PROCESS_PASS:
-    if (const int number = NumberOfProcess()) {
-      const auto bits = static_cast<std::uint64_t>(number);
-      blender.mark(renderer, viewport, PaintedWith(ColorOfBits(bits), rgba));
-    }
+  case vtkHardwareSelector::COMPOSITE_INDEX_PASS: // 0, instead of that of a surface behind
+    blender.mark(renderer, viewport, PaintedWith(ColorOfBits(0), rgba));
     break;
+  case vtkHardwareSelector::PROCESS_PASS: {
+    const auto bits = static_cast<std::uint64_t>(NumberOfProcess());
+    blender.mark(renderer, viewport, PaintedWith(ColorOfBits(bits), rgba));
+    break;
+  }
   default:
     break;
   }

@@ -50,16 +50,19 @@ Cells Select(vtkRenderer* renderer, vtkVolume* volume)
   selector->SetArea(origin[0], origin[1], origin[0] + size[0] - 1, origin[1] + size[1] - 1);
   const auto selection = vtkSmartPointer<vtkSelection>::Take(selector->Select());
   Cells cells;
+  int nodes = 0;
   for (unsigned int k = 0; k < selection->GetNumberOfNodes(); ++k) {
     vtkSelectionNode* node = selection->GetNode(k);
     if (node->GetProperties()->Get(vtkSelectionNode::PROP()) != volume) {
       continue;
     }
+    ++nodes;
     auto* list = vtkDataArray::SafeDownCast(node->GetSelectionList());
     for (vtkIdType i = 0; i < list->GetNumberOfTuples(); ++i) {
       cells.insert(static_cast<vtkIdType>(list->GetTuple1(i)));
     }
   }
+  EXPECT_LE(nodes, 1) << "parts of the volume are told apart";
   return cells;
 }
 
@@ -71,16 +74,20 @@ struct Change
   std::function<void(OneVolume&)> make;
 };
 
-/// A cube that hides part of the volume.
-vtkActor* AddBefore(OneVolume& one)
+/// A cube on the line of sight: in the midst of the volume at 0, at the eye at 1.
+vtkActor* AddCubeAt(OneVolume& one, double place)
 {
   const double* center = one.volume->GetCenter();
   const double* eye = one.renderer->GetActiveCamera()->GetPosition();
   vtkActor* const cube = one.addCube();
-  cube->SetPosition(0.5 * (eye[0] - center[0]), 0.5 * (eye[1] - center[1]),
-                    0.5 * (eye[2] - center[2]));
+  cube->SetOrigin(one.volume->GetCenter());
+  cube->SetPosition(place * (eye[0] - center[0]), place * (eye[1] - center[1]),
+                    place * (eye[2] - center[2]));
   return cube;
 }
+
+/// One that hides part of the volume.
+vtkActor* AddBefore(OneVolume& one) { return AddCubeAt(one, 0.5); }
 
 std::vector<Change> Changes()
 {
@@ -120,6 +127,21 @@ TEST(Selection, IsOfTheSceneAsItIs)
       before = cells;
     }
   }
+}
+
+TEST(Selection, IsOfOneVolumeWhateverIsBehind)
+{
+  OneVolume free;
+  OneVolume before;
+  AddCubeAt(before, -1)->SetScale(3); // it shows beside the volume, too
+  before.renderer->ResetCameraClippingRange();
+  const double* depths = before.renderer->GetActiveCamera()->GetClippingRange();
+  free.renderer->GetActiveCamera()->SetClippingRange(depths[0],
+                                                     depths[1]); // or they round otherwise
+  for (OneVolume* one : {&free, &before}) {
+    one->scene.window->Render();
+  }
+  EXPECT_EQ(Select(before), Select(free));
 }
 
 /// The highlight of what was selected before is such a thing.
