@@ -28,6 +28,7 @@ if [ "${VERSION_ID:-}" != 13 ]; then
   command -v debootstrap > /dev/null || apt-get install -y -q --no-install-recommends debootstrap
   if [ ! -e "$root/made" ]; then
     echo "== Making a Debian 13 in $root"
+    rm -rf "$root" # half of one, where it was interrupted
     mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' \
       "Codename: $VERSION_CODENAME" | head -n 1)
     debootstrap --variant=minbase --include=ca-certificates trixie "$root" "$mirror" > "$work/debootstrap.log"
@@ -38,10 +39,11 @@ if [ "${VERSION_ID:-}" != 13 ]; then
     touch "$root/made"
   fi
   cp /etc/resolv.conf "$root/etc/resolv.conf"
-  # In a namespace of its own, so that nothing stays mounted whatever becomes of this.
+  # In a namespace of its own, so that nothing stays mounted whatever becomes of this; there, this
+  # machine's folders are not.
   exec unshare --mount bash -c '
     mount --bind "$1" "$2/inrvolume" && mount --rbind /dev "$2/dev" && mount -t proc proc "$2/proc" &&
-    exec chroot "$2" /inrvolume/Testing/Wheel/run.sh' bash "$here" "$root"
+    exec env -u TMPDIR -u XDG_RUNTIME_DIR chroot "$2" /inrvolume/Testing/Wheel/run.sh' bash "$here" "$root"
 fi
 
 echo "== Installing what is missing"
