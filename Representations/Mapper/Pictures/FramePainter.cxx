@@ -279,36 +279,40 @@ bool FramePainter::draw(const Job& job)
     return this->blend(job, around);
   }
   const double rate = RateOf(renderer->GetRenderWindow(), job.picture.hurried, job.scene.sharedBy);
-  int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
-  Surroundings here;
-  bool blank = job.picture.hurried && reduction > 1; // there is no time for all of its pixels
-  if (!blank) {
-    Timer deadline = this->deadline(rate, reduction);
-    here = this->reduced(around, viewport, reduction);
-    while (!this->renderTogether(job, here, reduction, deadline)) {
-      if (this->Group.all(deadline.left() > 0)) {
-        return true; // aborted
-      }
-      reduction = std::min(4 * reduction, ImageReduction::Largest);
-      here = this->reduced(around, viewport, reduction);
-      deadline = this->deadline(rate, reduction);
-    }
-    blank = !this->Group.all(!job.picture.last().statistics.blank);
-    reduction = blank ? this->coarserReduction(job) : reduction;
+  const int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
+  const bool isCoarser = job.picture.hurried && reduction > 1;
+  std::optional<Surroundings> here = isCoarser
+                                         ? this->drawCoarser(job, around, viewport, reduction)
+                                         : this->drawInTime(job, around, viewport, rate, reduction);
+  if (here && !isCoarser && !this->Group.all(!job.picture.last().statistics.blank)) {
+    here = this->drawCoarser(job, around, viewport, this->coarserReduction(job));
   }
-  if (blank) {
-    std::optional<Surroundings> coarser = this->drawCoarser(job, around, viewport, reduction);
-    if (!coarser) {
-      return true;
-    }
-    here = std::move(*coarser);
+  if (!here) {
+    return true; // aborted
   }
-  if (!this->blend(job, here)) {
+  if (!this->blend(job, *here)) {
     return false;
   }
   PaintedFrame& last = job.picture.last();
   last.converged = this->Group.all(last.statistics.complete);
   return true;
+}
+
+std::optional<Surroundings> FramePainter::drawInTime(const Job& job, const Surroundings& around,
+                                                     const Viewport& viewport, double rate,
+                                                     int reduction)
+{
+  Timer deadline = this->deadline(rate, reduction);
+  Surroundings here = this->reduced(around, viewport, reduction);
+  while (!this->renderTogether(job, here, reduction, deadline)) {
+    if (this->Group.all(deadline.left() > 0)) {
+      return std::nullopt;
+    }
+    reduction = std::min(4 * reduction, ImageReduction::Largest);
+    here = this->reduced(around, viewport, reduction);
+    deadline = this->deadline(rate, reduction);
+  }
+  return here;
 }
 
 /// What is around as a picture with 1/reduction of the viewport's width and height meets it,

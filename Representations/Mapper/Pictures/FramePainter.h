@@ -97,9 +97,13 @@ private:
   /// The same of all processes, each with its part.
   bool renderTogether(const Job& job, const Surroundings& around, int reduction,
                       const Timer& deadline);
+  /// A picture with 1/reduction of the viewport's width and height, or less where that does not
+  /// keep to the rate; what is around its pixels. Nothing where it was stopped.
+  std::optional<Surroundings> drawInTime(const Job& job, const Surroundings& around,
+                                         const Viewport& viewport, double rate, int reduction);
   /// With which there is time for a picture in place of one that shows nothing in some pixels yet.
   int coarserReduction(const Job& job);
-  /// Such a picture; what is around its pixels. Nothing where it was stopped.
+  /// Such a picture; the rest is as above.
   std::optional<Surroundings> drawCoarser(const Job& job, const Surroundings& around,
                                           const Viewport& viewport, int reduction);
   bool blend(const Job& job, const Surroundings& around);
