@@ -408,8 +408,8 @@ public:
 
   ///@{
   /**
-   * Whether somebody drags something that the picture follows, a slider or a point of a transfer
-   * function: where that has changed a still picture that is refined, see StillTimeLimit, one with
+   * Whether somebody drags something that the picture follows, as a point of a transfer function:
+   * where that has changed a still picture that is refined, see StillTimeLimit, one with
    * fewer pixels is shown first, which takes no longer than an interactive one. Default off. It
    * modifies nothing either.
    */

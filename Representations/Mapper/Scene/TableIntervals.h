@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glm/vec4.hpp>
-
 #include <vector>
 
 namespace inr {
@@ -13,11 +11,16 @@ namespace inr {
 /// Nodes at one place are one.
 int IntervalsBetween(const std::vector<double>& nodes, double low, double high, bool logarithmic);
 
-/// The fewest intervals, from `least` to those of `fine`, with which a table of what `fine` is a
-/// table of is wrong by no more than a step of 8 bits at `places`, where it bends; where none are
-/// enough, those with which it is wrong by the least. Places are from 0, the table's first entry,
-/// to 1, its last.
-int IntervalsForBends(const std::vector<double>& places, const std::vector<glm::vec4>& fine,
-                      int least);
+/// Where a function bends.
+struct Bend
+{
+  double place;  ///< from 0, a table's first entry, to 1, its last
+  double change; ///< of the slope there, over the whole table
+};
+
+/// The fewest intervals, from `least` to `most`, with which a table is wrong by no more than a step
+/// of 8 bits where its function bends; where none are enough, those with which it is wrong by the
+/// least.
+int IntervalsForBends(const std::vector<Bend>& bends, int least, int most);
 
 } // namespace inr

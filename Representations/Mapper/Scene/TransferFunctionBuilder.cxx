@@ -8,11 +8,13 @@
 #include <vtkPiecewiseFunction.h>
 #include <vtkVolumeProperty.h>
 
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -23,6 +25,43 @@ constexpr int SmallestTable = 1024;
 constexpr int LargestTable = 16384;
 /// Places that are looked at for each interval of the largest table, where nodes are closer.
 constexpr int MostPerInterval = 64;
+/// Of more nodes it is not asked how a function bends there: each would have to be looked at.
+constexpr std::size_t MostBends = 64;
+
+/// How far along a table a value is, from 0 to 1.
+double PlaceOf(double value, const TransferFunction& table)
+{
+  return table.logarithmic ? std::log(value / table.low) / std::log(table.high / table.low)
+                           : (value - table.low) / (table.high - table.low);
+}
+
+double ValueAt(double place, const TransferFunction& table)
+{
+  return table.logarithmic ? table.low * std::pow(table.high / table.low, place)
+                           : table.low + place * (table.high - table.low);
+}
+
+/// How a function of values, of three numbers, bends at its nodes inside of a table; steps are
+/// none.
+template <typename Function>
+std::vector<Bend> BendsAt(const std::vector<double>& nodes, const Function& function,
+                          const TransferFunction& table)
+{
+  std::vector<Bend> bends;
+  constexpr double step = 1.0 / LargestTable;
+  for (const double node : nodes) {
+    if (nodes.size() > MostBends || node <= table.low || node >= table.high) {
+      continue;
+    }
+    const double place = PlaceOf(node, table);
+    const auto at = [&](double steps) {
+      return function(ValueAt(std::clamp(place + steps * step, 0.0, 1.0), table));
+    };
+    const glm::dvec3 change = glm::abs((at(1.25) - at(0.25)) - (at(-0.25) - at(-1.25))) / step;
+    bends.push_back({place, std::max({change.x, change.y, change.z})});
+  }
+  return bends;
+}
 
 /// A property's two functions behind one question: what is at this value?
 struct Functions
@@ -44,8 +83,7 @@ struct Functions
   /// Whether the colours are on a logarithmic scale, whatever the opacities are.
   bool areLogarithmic() const
   {
-    return this->Rgb && this->Rgb->GetScale() == VTK_CTF_LOG10 && this->Rgb->GetRange()[0] > 0 &&
-           this->Rgb->GetRange()[0] < this->Rgb->GetRange()[1];
+    return this->haveLogarithms() && this->Rgb->GetRange()[0] < this->Rgb->GetRange()[1];
   }
 
   /// Whether opacities of negative values are visibly others than close above 0, where a
@@ -105,9 +143,34 @@ struct Functions
                     IntervalsBetween(this->colourNodes(), low, high, logarithmic));
   }
 
+  /// Where tables of so many intervals from `low` to `high` cut off most.
+  std::vector<Bend> bends(const TransferFunction& table) const
+  {
+    const auto alpha = [&](double value) {
+      return glm::dvec3(std::clamp(this->Opacity->GetValue(value), 0.0, 1.0));
+    };
+    const auto color = [&](double value) {
+      glm::dvec3 rgb;
+      this->colourAt(value, &rgb.x);
+      return rgb;
+    };
+    std::vector<Bend> bends = BendsAt(NodesOf(this->Opacity), alpha, table);
+    for (const Bend& bend : BendsAt(this->colourNodes(), color, table)) {
+      bends.push_back(bend);
+    }
+    return bends;
+  }
+
   std::vector<double> colourNodes() const
   {
     return this->Rgb ? NodesOf(this->Rgb) : NodesOf(this->Gray);
+  }
+
+  /// Whether they go on at their ends.
+  bool areClamped() const
+  {
+    const bool colours = this->Rgb ? this->Rgb->GetClamping() != 0 : this->Gray->GetClamping() != 0;
+    return colours && this->Opacity->GetClamping() != 0;
   }
 
   vtkObject* colour() const { return this->Rgb ? static_cast<vtkObject*>(this->Rgb) : this->Gray; }
@@ -144,12 +207,17 @@ private:
     }
   }
 
+  bool haveLogarithms() const
+  {
+    return this->Rgb && this->Rgb->GetScale() == VTK_CTF_LOG10 && this->Rgb->GetRange()[0] > 0;
+  }
+
   void colourAt(double value, double rgb[3]) const
   {
     if (this->Rgb) {
       // Below the range all is alike, and logarithms end.
       const double place =
-          this->areLogarithmic() ? std::max(value, 0.5 * this->Rgb->GetRange()[0]) : value;
+          this->haveLogarithms() ? std::max(value, 0.5 * this->Rgb->GetRange()[0]) : value;
       this->Rgb->GetTable(place, place, 1, rgb); // GetColor would be the banded one in ParaView
     } else {
       rgb[0] = rgb[1] = rgb[2] = this->Gray->GetValue(value);
@@ -211,7 +279,9 @@ Range NodeRange(const Functions& functions, bool logarithmic)
 Range SeenOf(const Range& nodes, const ValueSpan& values)
 {
   // A single value is seen by what is around it, as narrow as one may care for.
-  const double around = values.low < values.high ? 0 : std::max(1e-3 * std::abs(values.low), 1e-30);
+  const double care = 1e-3 * std::min(std::abs(values.low), nodes.high - nodes.low);
+  const double around =
+      values.low < values.high ? 0 : std::max({care, 1e-15 * std::abs(values.low), 1e-30});
   Range seen;
   seen.low = std::max(nodes.low, values.low - around);
   seen.high = std::min(nodes.high, values.high + around);
@@ -224,25 +294,22 @@ std::vector<glm::vec4> Sampled(const Functions& functions, const TransferFunctio
   std::vector<glm::vec4> entries = table.logarithmic
                                        ? functions.evenlyInLogarithms(table.low, table.high, n)
                                        : functions.evenly(table.low, table.high, n);
-  // With clamping off VTK's functions begin behind their first node, and end where a rounding is
-  // beyond the last.
-  entries.front() = functions.at(std::nextafter(table.low, table.high));
+  // With clamping off VTK's functions begin behind their first node, and where a rounding is beyond
+  // the last place, they may have ended.
+  const double low = functions.areClamped() ? table.low : std::nextafter(table.low, table.high);
+  entries.front() = functions.at(low);
   entries.back() = functions.at(table.high);
-  return entries;
-}
-
-/// Where the functions have their nodes; see IntervalsForBends.
-std::vector<double> NodePlaces(const Functions& functions, const TransferFunction& table)
-{
-  std::vector<double> places = NodesOf(functions.Opacity);
-  const std::vector<double> colours = functions.colourNodes();
-  places.insert(places.end(), colours.begin(), colours.end());
-  for (double& place : places) {
-    const double value = std::clamp(place, table.low, table.high);
-    place = table.logarithmic ? std::log(value / table.low) / std::log(table.high / table.low)
-                              : (value - table.low) / (table.high - table.low);
+  // Exactly at its first node, VTK's table of a colour function is black.
+  const double first =
+      functions.Rgb && functions.Rgb->GetSize() > 0 ? functions.Rgb->GetRange()[0] : table.low;
+  if (first > table.low && first < table.high) {
+    const double position = PlaceOf(first, table) * (n - 1);
+    const double nearest = std::round(position);
+    if (std::abs(position - nearest) < 1e-6) {
+      entries[static_cast<std::size_t>(nearest)] = functions.at(std::nextafter(first, table.high));
+    }
   }
-  return places;
+  return entries;
 }
 
 /// Every n-th of them, each the mean of those around it, the less the further: a peak between two
@@ -274,10 +341,9 @@ std::vector<glm::vec4> Entries(const Functions& functions, const TransferFunctio
     const int finer = std::min(wanted / LargestTable + 1, MostPerInterval);
     return Thinned(Sampled(functions, table, LargestTable * finer + 1), finer);
   }
-  std::vector<glm::vec4> fine = Sampled(functions, table, LargestTable + 1);
   const int intervals =
-      IntervalsForBends(NodePlaces(functions, table), fine, std::max(wanted, SmallestTable));
-  return intervals < LargestTable ? Sampled(functions, table, intervals + 1) : fine;
+      IntervalsForBends(functions.bends(table), std::max(wanted, SmallestTable), LargestTable);
+  return Sampled(functions, table, intervals + 1);
 }
 
 } // namespace

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The table must say, at any value, what VTK's two functions say.
-#include "Representations/Mapper/Scene/TransferFunctionBuilder.h"
+#include "TransferFunctionsCase.h"
 
-#include <vtkColorTransferFunction.h>
-#include <vtkNew.h>
-#include <vtkPiecewiseFunction.h>
-#include <vtkVolumeProperty.h>
-
-#include <glm/common.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,47 +10,10 @@
 
 namespace {
 
-constexpr inr::ValueSpan Everything{-1e300, 1e300};
-
-class TransferFunctions : public testing::Test
-{
-protected:
-  TransferFunctions()
-  {
-    this->property->SetColor(this->colour);
-    this->property->SetScalarOpacity(this->opacity);
-  }
-
-  inr::TransferFunction build(const inr::ValueSpan& values = Everything)
-  {
-    return inr::BuildTransferFunction(this->property, values);
-  }
-
-  vtkNew<vtkColorTransferFunction> colour;
-  vtkNew<vtkPiecewiseFunction> opacity;
-  vtkNew<vtkVolumeProperty> property;
-};
-
-/// The lookup that TransferFunction documents.
-glm::vec4 LookUp(const inr::TransferFunction& table, double value)
-{
-  if (value < table.low || value > table.high) {
-    return value < table.low ? table.below : table.above;
-  }
-  const double t = table.logarithmic
-                       ? std::log(value / table.low) / std::log(table.high / table.low)
-                       : (value - table.low) / (table.high - table.low);
-  const double position = t * static_cast<double>(table.table.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(position), table.table.size() - 2);
-  return glm::mix(table.table[k], table.table[k + 1], static_cast<float>(position - k));
-}
-
-void ExpectColour(const glm::vec4& actual, double r, double g, double b, double tolerance)
-{
-  EXPECT_NEAR(actual.r, r, tolerance);
-  EXPECT_NEAR(actual.g, g, tolerance);
-  EXPECT_NEAR(actual.b, b, tolerance);
-}
+using test::Everything;
+using test::ExpectColour;
+using test::LookUp;
+using test::TransferFunctions;
 
 TEST_F(TransferFunctions, AgreeWithVtkBetweenTheNodes)
 {
@@ -115,154 +72,6 @@ TEST_F(TransferFunctions, ShowColoursBelowAndAboveTheRange)
   ExpectColour(table.above, 0.4, 0.5, 0.6, 1e-6);
   ExpectColour(table.table.front(), 1, 1, 0, 1e-6);
   ExpectColour(table.table.back(), 1, 0, 1, 1e-6);
-}
-
-TEST_F(TransferFunctions, AreSampledInLogSpaceForALogScale)
-{
-  this->colour->AddRGBPoint(1e-3, 0, 0, 0);
-  this->colour->AddRGBPoint(1e3, 1, 1, 1);
-  this->colour->SetScaleToLog10();
-  this->opacity->AddPoint(1e-3, 0);
-  this->opacity->AddPoint(1e3, 1);
-  this->colour->ClampingOff();
-  const auto table = this->build();
-  EXPECT_TRUE(table.logarithmic);
-  // In log space 1 is half way, 0.01 one sixth; the opacity stays linear in the value.
-  ExpectColour(LookUp(table, 1.0), 0.5, 0.5, 0.5, 0.005);
-  ExpectColour(LookUp(table, 1e-2), 1 / 6.0, 1 / 6.0, 1 / 6.0, 0.005);
-  EXPECT_NEAR(LookUp(table, 500.0).a, 0.5, 0.005);
-  ExpectColour(table.table.back(), 1, 1, 1, 1e-6);
-}
-
-/// Nodes that are evenly apart on a logarithmic axis, as ParaView's maps have them: no more entries
-/// than their logarithms ask for.
-TEST_F(TransferFunctions, OfALogScaleAreAsFineAsItsLogarithmsAskFor)
-{
-  for (int k = 0; k < 256; ++k) {
-    this->colour->AddRGBPoint(std::pow(10.0, k / 63.75), k / 255.0, 0.5 + 0.5 * std::sin(0.1 * k),
-                              0.25);
-  }
-  this->colour->SetScaleToLog10();
-  this->colour->SetColorSpaceToLab();
-  this->opacity->AddPoint(10, 0.2, 0.5, 0.5);
-  this->opacity->AddPoint(100, 0.6);
-  this->opacity->AddPoint(1000, 0.4);
-  this->opacity->ClampingOff();
-  const auto table = this->build();
-  EXPECT_EQ(table.table.size(), 1025u);
-  for (double value = 1.001; value < 1e4; value *= 1.037) {
-    double rgb[3];
-    this->colour->GetColor(value, rgb);
-    const glm::vec4 actual = LookUp(table, value);
-    ExpectColour(actual, rgb[0], rgb[1], rgb[2], 0.01);
-    if (std::abs(value - 10) > 0.2 && std::abs(value - 1000) > 20) { // where it jumps
-      EXPECT_NEAR(actual.a, this->opacity->GetValue(value), 0.01) << value;
-    }
-  }
-}
-
-/// As ParaView leaves them when a scale becomes logarithmic: stretched over the data, whatever
-/// these are.
-TEST_F(TransferFunctions, OfALogScaleHaveOpacitiesBelowZero)
-{
-  this->colour->AddRGBPoint(0.01, 1, 0, 0);
-  this->colour->AddRGBPoint(100, 0, 0, 1);
-  this->colour->SetScaleToLog10();
-  this->opacity->AddPoint(-200, 0);
-  this->opacity->AddPoint(100, 0.9);
-  this->opacity->AddPoint(-50, 0.1);
-  this->opacity->AddPoint(-49.9, 0.6);
-  const auto table = this->build();
-  EXPECT_EQ(table.below.a, 0);
-  for (const double value : {-199.0, -100.0, -50.5, -49.0, -1.0, 0.0, 3.0, 20.0, 99.0}) {
-    double rgb[3];
-    this->colour->GetColor(std::max(value, 0.01), rgb);
-    const glm::vec4 actual = LookUp(table, value);
-    ExpectColour(actual, rgb[0], rgb[1], rgb[2], 0.01);
-    EXPECT_NEAR(actual.a, this->opacity->GetValue(value), 0.01) << value;
-  }
-}
-
-/// Between the ends of the colours and those of the opacities; and opacities on a logarithmic axis
-/// of their own.
-TEST_F(TransferFunctions, OfALogScaleKeepWhatTheFunctionsAreSetTo)
-{
-  this->colour->AddRGBPoint(10, 1, 1, 0);
-  this->colour->AddRGBPoint(1000, 1, 0, 1);
-  this->colour->SetScaleToLog10();
-  this->colour->SetBelowRangeColor(0.1, 0.2, 0.3);
-  this->colour->SetAboveRangeColor(0.4, 0.5, 0.6);
-  this->colour->UseBelowRangeColorOn();
-  this->colour->UseAboveRangeColorOn();
-  this->opacity->AddPoint(1, 0.1);
-  this->opacity->AddPoint(1e4, 0.9);
-  this->opacity->UseLogScaleOn();
-  const auto table = this->build();
-  ExpectColour(LookUp(table, 5), 0.1, 0.2, 0.3, 1e-6);
-  ExpectColour(LookUp(table, 5000), 0.4, 0.5, 0.6, 1e-6);
-  for (double value = 1.1; value < 9e3; value *= 1.7) {
-    EXPECT_NEAR(LookUp(table, value).a, this->opacity->GetValue(value), 0.002) << value;
-  }
-  EXPECT_NEAR(LookUp(table, 100).a, 0.5, 0.002);
-}
-
-/// Two nodes at one value, between which the colour leaps, as ParaView's maps may have them.
-TEST_F(TransferFunctions, OfALogScaleLeapWhereTheFunctionDoes)
-{
-  this->colour->AllowDuplicateScalarsOn();
-  this->colour->AddRGBPoint(1, 0, 0, 0);
-  this->colour->AddRGBPoint(60, 1, 0, 0);
-  this->colour->AddRGBPoint(60, 0, 0, 1);
-  this->colour->AddRGBPoint(240, 1, 1, 1);
-  this->colour->SetScaleToLog10();
-  this->opacity->AddPoint(1, 0.5);
-  this->opacity->AddPoint(240, 0.5);
-  for (const bool allowed : {true, false}) { // what is there stays
-    this->colour->SetAllowDuplicateScalars(allowed);
-    const auto table = this->build();
-    for (const double value : {2.0, 30.0, 59.0, 61.0, 120.0}) {
-      double rgb[3];
-      this->colour->GetColor(value, rgb);
-      ExpectColour(LookUp(table, value), rgb[0], rgb[1], rgb[2], 0.005);
-    }
-    EXPECT_GT(LookUp(table, 59).r, 0.99);
-  }
-}
-
-/// Which takes time for nodes and for entries, not for each node at each entry.
-TEST_F(TransferFunctions, OfALogScaleMayHaveTenThousandOpacities)
-{
-  const auto alpha = [](double x) { return 0.3 + 0.2 * std::cos(2 * x); };
-  std::vector<double> opacities;
-  for (int k = 0; k < 10000; ++k) {
-    const double x = (k + 0.499 * std::sin(k)) / 2500; // logarithm, to 4
-    opacities.insert(opacities.end(), {std::pow(10.0, x), alpha(x)});
-  }
-  this->opacity->FillFromDataPointer(10000, opacities.data());
-  this->colour->AddRGBPoint(1, 0, 0, 0);
-  this->colour->AddRGBPoint(1e4, 1, 1, 1);
-  this->colour->SetScaleToLog10();
-  const auto table = this->build();
-  for (double x = 0.001; x < 3.999; x += 0.00737) {
-    const glm::vec4 actual = LookUp(table, std::pow(10.0, x));
-    ExpectColour(actual, x / 4, x / 4, x / 4, 0.002);
-    EXPECT_NEAR(actual.a, alpha(x), 0.002) << x;
-  }
-}
-
-TEST_F(TransferFunctions, KeepALogScaleWhereNoOpacityIsLostByIt)
-{
-  this->colour->AddRGBPoint(0.1, 0, 0, 0);
-  this->colour->AddRGBPoint(1e6, 1, 1, 1);
-  this->colour->SetScaleToLog10();
-  this->opacity->AddPoint(-5, 0);
-  this->opacity->AddPoint(0, 0); // which hides what is 0
-  this->opacity->AddPoint(0.1, 1);
-  this->opacity->AddPoint(1e6, 1);
-  const auto table = this->build();
-  EXPECT_TRUE(table.logarithmic);
-  EXPECT_EQ(table.low, 0.1);
-  EXPECT_NEAR(table.below.a, 0, 0.01);
 }
 
 TEST_F(TransferFunctions, ResolveNodesThatAreCloseTogether)
@@ -354,23 +163,6 @@ TEST_F(TransferFunctions, HaveTheirEntriesWhereThereAreValues)
   }
 }
 
-TEST_F(TransferFunctions, OfALogScaleHaveTheirEntriesWhereThereAreValues)
-{
-  this->colour->AddRGBPoint(1e-30, 0, 0, 0);
-  this->colour->AddRGBPoint(1e30, 1, 1, 1);
-  this->colour->SetScaleToLog10();
-  this->opacity->AddPoint(1.5, 0);
-  this->opacity->AddPoint(1.6, 0.5);
-  this->opacity->AddPoint(1.7, 0);
-  const auto table = this->build({1, 10});
-  EXPECT_EQ(table.low, 1);
-  EXPECT_EQ(table.high, 10);
-  for (double value = 1; value < 10; value *= 1.02) {
-    EXPECT_NEAR(LookUp(table, value).a, this->opacity->GetValue(value), 0.005) << value;
-    EXPECT_NEAR(LookUp(table, value).g, (std::log10(value) + 30) / 60, 0.001) << value;
-  }
-}
-
 /// All that a double can tell apart.
 TEST_F(TransferFunctions, MayBeNarrowBesideTheirValues)
 {
@@ -384,6 +176,37 @@ TEST_F(TransferFunctions, MayBeNarrowBesideTheirValues)
   for (double k = 0; k <= width; k += 4) {
     EXPECT_NEAR(LookUp(table, low + k).r, k / width, 0.005) << k;
     EXPECT_NEAR(LookUp(table, low + k).a, 0.2 + 0.6 * k / width, 0.005) << k;
+  }
+}
+
+/// VTK's own table of colours is black where an entry is exactly at the first node.
+TEST_F(TransferFunctions, HaveTheFirstColorAtItsNode)
+{
+  this->opacity->AddPoint(0, 1);
+  for (int first = 1; first < 256; ++first) {
+    this->colour->RemoveAllPoints();
+    this->colour->AddRGBPoint(first, 1, 1, 1);
+    this->colour->AddRGBPoint(256, 1, 1, 1);
+    for (const glm::vec4& entry : this->build({0, 256}).table) {
+      ASSERT_EQ(entry, glm::vec4(1)) << first;
+    }
+  }
+}
+
+/// As VTK has it, what is at a step is still below it.
+TEST_F(TransferFunctions, MayStepAtTheLowestValue)
+{
+  this->colour->AddRGBPoint(0, 1, 1, 1);
+  this->opacity->AllowDuplicateScalarsOn();
+  for (const double first : {0.0, -50.0}) {
+    this->opacity->RemoveAllPoints();
+    this->opacity->AddPoint(first, 0);
+    this->opacity->AddPoint(0, 0);
+    this->opacity->AddPoint(0, 0.8);
+    this->opacity->AddPoint(300, 0.8);
+    const auto table = this->build({0, 200});
+    EXPECT_EQ(LookUp(table, 0).a, 0) << first;
+    EXPECT_FLOAT_EQ(LookUp(table, 1).a, 0.8f) << first;
   }
 }
 
