@@ -183,8 +183,9 @@ public:
 
   ///@{
   /// Start the training of a time step from the parameters of the latest one that this writer has
-  /// trained before, where the model is of the same size: that of WriteTimeSteps, or of an earlier
-  /// Write of data that tell another time. Constant data take no training. Default on.
+  /// trained before, where the model is of the same size and says something of the data: that of
+  /// WriteTimeSteps, or of an earlier Write of data that tell another time. Constant data take no
+  /// training. Default on.
   vtkSetMacro(StartFromPrevious, bool);
   vtkGetMacro(StartFromPrevious, bool);
   vtkBooleanMacro(StartFromPrevious, bool);

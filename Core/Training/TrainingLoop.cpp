@@ -102,6 +102,7 @@ void TrainingLoop::train(Descent& descent, BatchSource& batches, const PsnrEstim
     if (this->reachedTarget(descent, estimate, kernel, check)) {
       break;
     }
+    this->helpIfStuck(descent, estimate, kernel);
     this->planByTheClock(descent);
     this->Group.together([&] { this->report(descent.steps()); });
     if (this->Keeper.isDue()) {
@@ -253,6 +254,25 @@ bool TrainingLoop::reachedTarget(Descent& descent, const PsnrEstimate& estimate,
   }
   this->Group.together([&] { this->Psnr = estimate.measure(descent.view(), kernel, check); });
   return this->Group.valueOfFirst(this->Psnr >= this->Options.targetPsnr + this->storingLoss());
+}
+
+/// Rectified units may all be off after some steps too long: of a hundred trainings of data that
+/// are zero but for a few voxels, one is.
+void TrainingLoop::helpIfStuck(Descent& descent, const PsnrEstimate& estimate,
+                               const EvaluateKernel& kernel)
+{
+  constexpr std::uint64_t mostOften = 3; // then it is not chance
+  const std::uint64_t steps = descent.steps();
+  const bool isTime = steps == 50 || steps == 100 || steps % PsnrInterval == 0;
+  if (!isTime || this->Anew == mostOften) {
+    return;
+  }
+  bool isStuck = false;
+  this->Group.together([&] { isStuck = estimate.isStuck(descent.view(), kernel); });
+  if (this->Group.valueOfFirst(isStuck && !this->reachedLimit(steps))) {
+    ++this->Anew;
+    descent.startAnew(this->Options.seed + this->Anew);
+  }
 }
 
 bool TrainingLoop::timeIsUp() const

@@ -52,6 +52,8 @@ public:
   /// rate was spread over.
   double seconds() const { return this->Clock.seconds(); }
   std::uint64_t plannedSteps() const { return this->PlannedSteps; }
+  /// Whether it began anew from random parameters, as the network was stuck.
+  bool beganAnew() const { return this->Anew > 0; }
 
   /// What a checkpoint says of it.
   TrainingState state(const Descent& descent, bool finished) const;
@@ -72,6 +74,7 @@ private:
   double storingLoss() const;
   bool reachedTarget(Descent& descent, const PsnrEstimate& estimate, const EvaluateKernel& kernel,
                      const StopCheck& check);
+  void helpIfStuck(Descent& descent, const PsnrEstimate& estimate, const EvaluateKernel& kernel);
   bool timeIsUp() const;
   bool reachedLimit(std::uint64_t steps) const;
   bool keepGoing(std::uint64_t steps);
@@ -89,6 +92,7 @@ private:
   bool Finished = false;          ///< before it was stopped
   std::uint64_t PlannedSteps = 0; ///< 0 until there is a plan
   bool IsPlanFinal = false;       ///< the clock has no say in it, or has had it
+  std::uint64_t Anew = 0;         ///< times that it began so
   double Psnr = 0;
   double Fraction = 0;
   double LastReport = 0;

@@ -40,21 +40,15 @@ ValueRange OnlyRangeOf(const ModelPointer& model)
   return {value, value};
 }
 
-/// Whether there is more than zeros, as of a constant volume: no gradient leads away from these.
-bool HasLearnt(const Model& model)
+/// Whether a network as it is says something of these data. Where it is as far from them as a
+/// constant, as of structures that have moved by more than their size, it takes longer to unlearn
+/// than to learn, and its units may all be turned off on the way. Trainings of 200 steps gained
+/// below 0.6 of a constant's squared error, and lost above 0.8.
+bool IsWorthMore(const ModelView& model, const PsnrEstimate& estimate, const EvaluateKernel& kernel)
 {
-  return std::any_of(model.parameters.begin(), model.parameters.end(),
-                     [](float parameter) { return parameter != 0.0f; });
-}
-
-/// Goes on from the start's parameters where these fit, which is then on record.
-void StartFrom(const ModelPointer& start, Model& model, GradientDescent& descent)
-{
-  if (start && start->description == model.description && HasLearnt(*start)) {
-    descent.startFrom(start->parameters);
-    const TrainingRecord before = start->training.value_or(TrainingRecord());
-    model.training->earlierSteps = before.steps + before.earlierSteps.value_or(0);
-  }
+  constexpr double share = 0.7; // of what a constant leaves
+  const double error = estimate.squaredError(estimate.values(model, kernel, StopCheck()));
+  return estimate.known() == 0 || error < share * estimate.squaredErrorOfConstant();
 }
 
 /// Makes the parameters what the file gives back; keeps them as floats where a half cannot hold
@@ -206,7 +200,7 @@ void TrainingRun::takeSteps(BatchSource& batches, const PsnrEstimate& estimate, 
   auto steps =
       std::make_unique<GradientDescent>(model.description, this->Options.seed, this->Set, arena);
   GradientDescent& host = *steps;
-  StartFrom(this->Options.start, model, host);
+  this->startFromOther(host, estimate);
   host.share(this->group());
   const auto accelerated = this->accelerate(host, batches, arena);
   Descent& descent = accelerated ? static_cast<Descent&>(*accelerated) : host;
@@ -230,11 +224,34 @@ void TrainingRun::takeSteps(BatchSource& batches, const PsnrEstimate& estimate, 
     this->Steps = std::move(steps);
   }
   model.training->steps = descent.steps();
+  if (loop.beganAnew()) {
+    model.training->earlierSteps.reset();
+  }
   model.training->plannedSteps = loop.plannedSteps();
   model.training->seconds = loop.seconds();
   model.training->waitingSeconds = host.exchangeTimes().waiting;
   model.training->exchangeSeconds = host.exchangeTimes().exchanging;
   this->record(accelerated.get());
+}
+
+/// Goes on from the start's parameters where these fit, which is then on record.
+void TrainingRun::startFromOther(GradientDescent& descent, const PsnrEstimate& estimate)
+{
+  const ModelPointer& start = this->Options.start;
+  Model& model = this->Result;
+  if (!start || !(start->description == model.description)) {
+    return;
+  }
+  descent.startFrom(start->parameters);
+  const EvaluateKernel& kernel = EvaluateKernelFor(this->Set);
+  bool isWorthMore = false;
+  this->group().together([&] { isWorthMore = IsWorthMore(descent.view(), estimate, kernel); });
+  if (!this->group().valueOfFirst(isWorthMore)) {
+    descent.startAnew(this->Options.seed);
+    return;
+  }
+  const TrainingRecord before = start->training.value_or(TrainingRecord());
+  model.training->earlierSteps = before.steps + before.earlierSteps.value_or(0);
 }
 
 void TrainingRun::keepSteps(const std::function<void()>& work)

@@ -57,6 +57,7 @@ private:
   std::unique_ptr<AcceleratedDescent> accelerate(GradientDescent& host, const BatchSource& batches,
                                                  const Arena& arena) const;
   void takeSteps(BatchSource& batches, const PsnrEstimate& estimate, const Arena& arena);
+  void startFromOther(GradientDescent& descent, const PsnrEstimate& estimate);
   std::string writeSteps();
   void record(const AcceleratedDescent* accelerated);
   StopCheck storingCheck() const;

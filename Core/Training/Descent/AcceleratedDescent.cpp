@@ -54,6 +54,13 @@ void AcceleratedDescent::goOnAfter(std::uint64_t steps)
   this->IsThere = false;
 }
 
+void AcceleratedDescent::startAnew(std::uint64_t seed)
+{
+  this->settle();
+  this->Host.startAnew(seed);
+  this->IsThere = false;
+}
+
 const ModelView& AcceleratedDescent::view()
 {
   this->settle();

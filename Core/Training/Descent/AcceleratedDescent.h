@@ -41,6 +41,7 @@ public:
   void plan(std::uint64_t steps) override;
   StateArrays state() override;
   void goOnAfter(std::uint64_t steps) override;
+  void startAnew(std::uint64_t seed) override;
   const ModelView& view() override;
   AlignedVector<float>& parameters() override;
   bool isAccelerated() const override { return this->Device != nullptr; }

@@ -80,7 +80,7 @@ void DrawBatch(const BatchSource& batches, std::uint64_t stream, std::uint64_t s
 
 GradientDescent::GradientDescent(const Description& description, std::uint64_t seed,
                                  InstructionSet set, const Arena& arena)
-    : Threads(arena), Kernel(TrainKernelFor(set)), Shape(description),
+    : Threads(arena), Kernel(TrainKernelFor(set)), Kind(description), Shape(description),
       Orthogonalised(static_cast<std::size_t>(OrthogonalisedLayers(description.network))),
       Seed(seed), Parameters(InitialParameters(description, this->Shape, seed)),
       Views(description, this->Shape, this->Parameters.data()), Gradient(this->Parameters.size()),
@@ -98,6 +98,14 @@ GradientDescent::GradientDescent(const Description& description, std::uint64_t s
 void GradientDescent::startFrom(const AlignedVector<float>& parameters)
 {
   std::copy(parameters.begin(), parameters.end(), this->Parameters.begin());
+}
+
+void GradientDescent::startAnew(std::uint64_t seed)
+{
+  this->startFrom(InitialParameters(this->Kind, this->Shape, seed));
+  std::fill(this->FirstMoments.begin(), this->FirstMoments.end(), 0.0f);
+  std::fill(this->SecondMoments.begin(), this->SecondMoments.end(), 0.0f);
+  std::fill(this->Updates.begin(), this->Updates.end(), std::uint16_t{0});
 }
 
 void GradientDescent::share(const TrainingGroup& group)

@@ -44,6 +44,7 @@ public:
   /// was updated (uint16; it stops where nothing depends on it any more), in this order.
   StateArrays state() override;
   void goOnAfter(std::uint64_t steps) override { this->Steps = steps; }
+  void startAnew(std::uint64_t seed) override;
 
   /// Before the first step: the mini-batches are shares of larger ones, and the parameters of all
   /// processes stay the same. The group must outlive this.
@@ -98,6 +99,7 @@ private:
   const Arena& Threads;
   std::optional<GradientExchange> Exchange; ///< empty = alone
   const TrainKernel& Kernel;
+  Description Kind;
   Layout Shape;
   std::size_t Orthogonalised; ///< so many layers, whose second moments stay zero
   std::uint64_t Seed;

@@ -122,6 +122,28 @@ void PsnrEstimate::evaluate(const ModelView& model, const EvaluateKernel& kernel
   std::transform(values + begin, values + end, values + begin, NormalisedOutput);
 }
 
+bool PsnrEstimate::isStuck(const ModelView& model, const EvaluateKernel& kernel) const
+{
+  if (!(this->squaredErrorOfConstant() > 0)) {
+    return false;
+  }
+  const PackedNetwork network(model);
+  std::vector<float> workspace(static_cast<std::size_t>(kernel.workspace(network.view())));
+  std::vector<float> values(BlockSize);
+  std::optional<float> first;
+  for (std::int64_t begin = 0; begin < this->voxels(); begin += BlockSize) {
+    const std::int64_t count = std::min(BlockSize, this->voxels() - begin);
+    kernel.evaluate(network.view(), &this->Positions[begin].x, count, values.data(),
+                    workspace.data());
+    first = first.value_or(values.front());
+    if (std::any_of(values.begin(), values.begin() + count,
+                    [&](float value) { return value != *first; })) {
+      return false; // at once, as of all others
+    }
+  }
+  return true;
+}
+
 std::uint32_t PsnrEstimate::checksum() const
 {
   return ContinueChecksum(0, this->Targets.data(), this->Targets.size() * sizeof(float));
@@ -137,6 +159,20 @@ double PsnrEstimate::squaredError(const std::vector<float>& values) const
     }
   }
   return squared / static_cast<double>(std::max<std::int64_t>(1, this->Known));
+}
+
+double PsnrEstimate::squaredErrorOfConstant() const
+{
+  double sum = 0;
+  double weights = 0;
+  for (std::size_t k = 0; k < this->Targets.size(); ++k) {
+    if (std::isfinite(this->Targets[k])) {
+      sum += this->weight(k) * this->Targets[k];
+      weights += this->weight(k);
+    }
+  }
+  const double mean = weights > 0 ? sum / weights : 0;
+  return this->squaredError(std::vector<float>(this->Targets.size(), static_cast<float>(mean)));
 }
 
 double PsnrEstimate::squaredDifference(const std::vector<float>& a,

@@ -44,12 +44,19 @@ public:
   std::vector<float> values(const ModelView& model, const EvaluateKernel& kernel,
                             const StopCheck& check) const;
 
+  /// Whether the network says the same at all of these voxels, to the bit, though they differ: then
+  /// all neurons of a layer are off, and no gradient leads away from that.
+  bool isStuck(const ModelView& model, const EvaluateKernel& kernel) const;
+
   /// CRC-32 of the voxels' values: says whether two estimates are of the same data.
   std::uint32_t checksum() const;
 
   /// Mean squared difference of `values` from the targets, over those that are finite; 0 where none
   /// is.
   double squaredError(const std::vector<float>& values) const;
+
+  /// That of the value that is closest to all targets.
+  double squaredErrorOfConstant() const;
 
   /// The same of values from others.
   double squaredDifference(const std::vector<float>& a, const std::vector<float>& b) const;

@@ -85,6 +85,24 @@ TEST(AcceleratedDescent, GoesOnFromWhateverIsPutThere)
   few.expect(7);
 }
 
+TEST(AcceleratedDescent, BeginsAnewFromOtherParameters)
+{
+  FakeTrainingDevice device;
+  device.planned = 2000;
+  FewSteps few(device);
+  FewBatches batches;
+  few.take(4);
+  while (few.Expected.steps() < 4) {
+    few.Expected.step(batches);
+  }
+  few.Descent.startAnew(9);
+  few.Expected.startAnew(9);
+  EXPECT_EQ(few.Descent.parameters(), few.Expected.parameters());
+  few.take(7);
+  few.expect(7);
+  EXPECT_TRUE(few.Descent.isAccelerated());
+}
+
 /// Whenever it is stopped, a step that is repeated gives what it would have given.
 TEST(AcceleratedDescent, AStoppedStepChangesNothing)
 {

@@ -142,7 +142,7 @@ protected:
     array->SetName("waves");
     for (int k = 0; k < 12 * 12 * 12; ++k) {
       array->InsertNextValue(time == this->FlatTime ? 0.5
-                                                    : std::sin(0.5 * (k % 12 - 4 * time)) *
+                                                    : std::sin(0.5 * (k % 12 - time)) *
                                                               std::cos(0.3 * (k / 12 % 12)) +
                                                           0.02 * (k / 144));
     }
@@ -158,7 +158,7 @@ protected:
   {
     this->Algorithm->SetInputConnection(this->Source->GetOutputPort());
     this->Algorithm->SetFileName((this->Folder / "waves.inr").c_str());
-    this->Algorithm->SetMaximumSteps(20);
+    this->Algorithm->SetMaximumSteps(60);
     this->Algorithm->SetWriteTimeSteps(true);
   }
   inr::Model header(const char* name) { return inr::ReadModelHeader(this->Folder / name); }
@@ -183,8 +183,8 @@ TEST_F(WriterOfSteps, MakesAFileOfEachWithItsTimeFromTheOneBefore)
   for (int k = 0; k < 4; ++k) {
     const inr::Model step = this->header(("waves_" + std::to_string(k) + ".inr").c_str());
     EXPECT_EQ(step.volume.time, this->Source->Times[static_cast<std::size_t>(k)]);
-    EXPECT_EQ(step.training->steps, 20u);
-    EXPECT_EQ(step.training->earlierSteps.value_or(0), 20u * static_cast<unsigned>(k));
+    EXPECT_EQ(step.training->steps, 60u);
+    EXPECT_EQ(step.training->earlierSteps.value_or(0), 60u * static_cast<unsigned>(k));
   }
   EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
   EXPECT_EQ(progress.back(), 1);
@@ -203,13 +203,13 @@ TEST_F(WriterOfSteps, StartsFromTheLatestThatWasTrained)
   };
   this->Source->FlatTime = this->Source->Times[1];
   EXPECT_EQ(this->Algorithm->Write(), 1);
-  EXPECT_EQ(earlierSteps(2), 20u);
-  EXPECT_EQ(earlierSteps(3), 40u);
+  EXPECT_EQ(earlierSteps(2), 60u);
+  EXPECT_EQ(earlierSteps(3), 120u);
   this->Source->FlatTime = this->Source->Times[0];
   this->Source->Modified();
   EXPECT_EQ(this->Algorithm->Write(), 1);
   EXPECT_EQ(earlierSteps(1), 0u);
-  EXPECT_EQ(earlierSteps(2), 20u);
+  EXPECT_EQ(earlierSteps(2), 60u);
 }
 
 TEST_F(WriterOfSteps, StartsEachFromRandomNumbersWhenToldTo)
@@ -231,7 +231,7 @@ TEST_F(WriterOfSteps, WritesTheChosenOnesUnderTheChosenNames)
   EXPECT_EQ(this->Folder.entries(), 2);
   EXPECT_EQ(this->header("waves-t001.inr").volume.time, 0.5);
   EXPECT_EQ(this->header("waves-t003.inr").volume.time, 2);
-  EXPECT_EQ(this->header("waves-t003.inr").training->earlierSteps, 20u);
+  EXPECT_EQ(this->header("waves-t003.inr").training->earlierSteps, 60u);
 }
 
 TEST_F(WriterOfSteps, WritesOneFileOfTheirTimeWhenTheyComeOneByOne)
@@ -246,7 +246,7 @@ TEST_F(WriterOfSteps, WritesOneFileOfTheirTimeWhenTheyComeOneByOne)
   EXPECT_FALSE(this->header("waves.inr").training->earlierSteps.has_value()) << "the same step";
   this->Source->UpdateTimeStep(2);
   this->Algorithm->Write();
-  EXPECT_EQ(this->header("waves.inr").training->earlierSteps, 20u);
+  EXPECT_EQ(this->header("waves.inr").training->earlierSteps, 60u);
 }
 
 TEST_F(WriterOfSteps, EndsAtAStepThatCannotBeWrittenAndKeepsTheOthers)
@@ -304,7 +304,7 @@ TEST_F(WriterOfSteps, GoOnFromTheStepBeforeWhereOneWasStopped)
   const MessageCapture messages;
   ASSERT_EQ(write(1.5), 1);
   EXPECT_TRUE(messages.warnings().empty()) << messages.text();
-  EXPECT_EQ(this->header("waves.inr").training->earlierSteps, 20u);
+  EXPECT_EQ(this->header("waves.inr").training->earlierSteps, 60u);
 }
 
 TEST_F(WriterOfSteps, RefusesStepsAndSuffixesThatMakeNoSense)
