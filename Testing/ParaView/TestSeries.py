@@ -173,7 +173,7 @@ shifted = simple.TemporalShiftScale(Input=reader, Scale=0.5, PostShift=3)
 sampled = simple.ResampleToImage(Input=shifted, SamplingDimensions=[9, 8, 7])
 written = os.path.join(folder, "written.inr")
 with Messages() as messages:
-    simple.SaveData(written, sampled, Scalars=["POINTS", "RTData"], MaximumSteps=40,
+    simple.SaveData(written, sampled, Scalars=["POINTS", "RTData"], MaximumSteps=200,
                     TimeLimit=0, Writetimestepsasfileseries=1, Firsttimestep=1,
                     Filenamesuffix="_%.3d")
 check(messages.errors() == 0, "saving reported", messages.text)
