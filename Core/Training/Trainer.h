@@ -29,8 +29,8 @@ struct TrainingOptions
   /// target or else without end, but what the time limit is seen to allow where that is clearly
   /// less. To repeat a training that the time limit counted for, as its record says.
   std::uint64_t plannedSteps = 0;
-  std::uint64_t seed = 1;
-  int macroCellSize = 0; ///< voxels, a power of two up to 2^29; 0 = DefaultMacroCellSize
+  std::uint64_t seed = 1; ///< where all neurons of a layer turn off, the next one, up to 3 times
+  int macroCellSize = 0;  ///< voxels, a power of two up to 2^29; 0 = DefaultMacroCellSize
   std::optional<Description> description; ///< empty = ChooseDescription
   /// A model of a similar volume, whose parameters are where the training starts if they mean the
   /// same, that is, if it has the same description, and if they are nearer to this volume than a

@@ -102,7 +102,7 @@ void TrainingLoop::train(Descent& descent, BatchSource& batches, const PsnrEstim
     if (this->reachedTarget(descent, estimate, kernel, check)) {
       break;
     }
-    this->helpIfStuck(descent, estimate, kernel);
+    this->helpIfStuck(descent, estimate, kernel, check);
     this->planByTheClock(descent);
     this->Group.together([&] { this->report(descent.steps()); });
     if (this->Keeper.isDue()) {
@@ -184,6 +184,7 @@ void TrainingLoop::resume(Descent& descent, BatchSource& batches)
   this->LastReport = before.state.seconds;
   this->Psnr = before.state.psnr;
   this->Finished = before.state.finished;
+  this->Anew = before.state.anew;
 }
 
 /// Gives all what rank 0 has read.
@@ -202,7 +203,8 @@ void TrainingLoop::shareArrays(const StateArrays& arrays) const
 
 TrainingState TrainingLoop::state(const Descent& descent, bool finished) const
 {
-  return {descent.steps(), this->PlannedSteps, this->Clock.seconds(), this->Psnr, finished};
+  return {descent.steps(), this->PlannedSteps, this->Clock.seconds(),
+          this->Psnr,      finished,           this->Anew};
 }
 
 void TrainingLoop::plan(Descent& descent, std::uint64_t steps)
@@ -259,17 +261,20 @@ bool TrainingLoop::reachedTarget(Descent& descent, const PsnrEstimate& estimate,
 /// Rectified units may all be off after some steps too long: of a hundred trainings of data that
 /// are zero but for a few voxels, one is.
 void TrainingLoop::helpIfStuck(Descent& descent, const PsnrEstimate& estimate,
-                               const EvaluateKernel& kernel)
+                               const EvaluateKernel& kernel, const StopCheck& check)
 {
   constexpr std::uint64_t mostOften = 3; // then it is not chance
+  constexpr double tooLate = 0.9;        // of the training, for another one
   const std::uint64_t steps = descent.steps();
-  const bool isTime = steps == 50 || steps == 100 || steps % PsnrInterval == 0;
-  if (!isTime || this->Anew == mostOften) {
+  const bool isEarly = steps == 50 || steps == 100 || steps == PsnrInterval;
+  // To look at what an accelerator has takes time.
+  const bool isLater = steps % PsnrInterval == 0 && !descent.isAccelerated();
+  if ((!isEarly && !isLater) || this->Anew == mostOften) {
     return;
   }
   bool isStuck = false;
-  this->Group.together([&] { isStuck = estimate.isStuck(descent.view(), kernel); });
-  if (this->Group.valueOfFirst(isStuck && !this->reachedLimit(steps))) {
+  this->Group.together([&] { isStuck = estimate.isStuck(descent.view(), kernel, check); });
+  if (this->Group.valueOfFirst(isStuck && this->fraction(steps) < tooLate)) {
     ++this->Anew;
     descent.startAnew(this->Options.seed + this->Anew);
   }

@@ -74,7 +74,8 @@ private:
   double storingLoss() const;
   bool reachedTarget(Descent& descent, const PsnrEstimate& estimate, const EvaluateKernel& kernel,
                      const StopCheck& check);
-  void helpIfStuck(Descent& descent, const PsnrEstimate& estimate, const EvaluateKernel& kernel);
+  void helpIfStuck(Descent& descent, const PsnrEstimate& estimate, const EvaluateKernel& kernel,
+                   const StopCheck& check);
   bool timeIsUp() const;
   bool reachedLimit(std::uint64_t steps) const;
   bool keepGoing(std::uint64_t steps);

@@ -22,6 +22,7 @@ struct TrainingState
   double seconds = 0;             ///< of training, in all processes that took part
   double psnr = 0;                ///< latest estimate in dB; 0 while there is none
   bool finished = false;          ///< a limit is reached, the result only has to be measured
+  std::uint64_t anew = 0;         ///< times that it began anew, as the network was stuck
 };
 
 /// Writes a checkpoint through a temporary file and a rename: whenever the process ends, the file

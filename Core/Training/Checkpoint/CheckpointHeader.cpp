@@ -73,6 +73,9 @@ std::string CheckpointHeader::text() const
                  {"seconds", this->state.seconds},
                  {"psnr", std::isfinite(this->state.psnr) ? this->state.psnr : 0.0},
                  {"finished", this->state.finished}};
+  if (this->state.anew > 0) {
+    header["began_anew"] = this->state.anew;
+  }
   if (this->surveyBytes > 0) {
     header["survey_bytes"] = this->surveyBytes;
     header["training_bytes"] = this->trainingBytes;
@@ -95,6 +98,9 @@ CheckpointHeader::CheckpointHeader(const std::string& text)
   this->state.finished = section.boolean("finished", false);
   if (this->state.seconds < 0) {
     section.refuse("seconds", "is negative");
+  }
+  if (section.has("began_anew")) {
+    this->state.anew = Count(section, "began_anew");
   }
   if (section.has("survey_bytes")) {
     this->surveyBytes = static_cast<std::int64_t>(Count(section, "survey_bytes"));

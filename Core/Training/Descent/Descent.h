@@ -42,8 +42,8 @@ public:
   virtual StateArrays state() = 0;
   virtual void goOnAfter(std::uint64_t steps) = 0;
 
-  /// Takes random parameters from that seed in place of these, with no moments and no updates, as
-  /// if this were the first of the steps that are left.
+  /// Takes random parameters from that seed in place of these, with no moments and no updates. The
+  /// steps that were taken still count.
   virtual void startAnew(std::uint64_t seed) = 0;
 
   /// The same parameters, to look at or to take.

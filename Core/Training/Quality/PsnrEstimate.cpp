@@ -122,7 +122,8 @@ void PsnrEstimate::evaluate(const ModelView& model, const EvaluateKernel& kernel
   std::transform(values + begin, values + end, values + begin, NormalisedOutput);
 }
 
-bool PsnrEstimate::isStuck(const ModelView& model, const EvaluateKernel& kernel) const
+bool PsnrEstimate::isStuck(const ModelView& model, const EvaluateKernel& kernel,
+                           const StopCheck& check) const
 {
   if (!(this->squaredErrorOfConstant() > 0)) {
     return false;
@@ -136,8 +137,8 @@ bool PsnrEstimate::isStuck(const ModelView& model, const EvaluateKernel& kernel)
     kernel.evaluate(network.view(), &this->Positions[begin].x, count, values.data(),
                     workspace.data());
     first = first.value_or(values.front());
-    if (std::any_of(values.begin(), values.begin() + count,
-                    [&](float value) { return value != *first; })) {
+    if (!check.goesOn() || std::any_of(values.begin(), values.begin() + count,
+                                       [&](float value) { return value != *first; })) {
       return false; // at once, as of all others
     }
   }

@@ -45,8 +45,9 @@ public:
                             const StopCheck& check) const;
 
   /// Whether the network says the same at all of these voxels, to the bit, though they differ: then
-  /// all neurons of a layer are off, and no gradient leads away from that.
-  bool isStuck(const ModelView& model, const EvaluateKernel& kernel) const;
+  /// all neurons of a layer are off, and no gradient leads away from that. Not where `check`
+  /// stopped it.
+  bool isStuck(const ModelView& model, const EvaluateKernel& kernel, const StopCheck& check) const;
 
   /// CRC-32 of the voxels' values: says whether two estimates are of the same data.
   std::uint32_t checksum() const;
@@ -55,10 +56,10 @@ public:
   /// is.
   double squaredError(const std::vector<float>& values) const;
 
-  /// That of the value that is closest to all targets.
+  /// That of the constant with the least.
   double squaredErrorOfConstant() const;
 
-  /// The same of values from others.
+  /// Mean squared difference of values from others.
   double squaredDifference(const std::vector<float>& a, const std::vector<float>& b) const;
 
   /// Targets that are finite, on which all of this depends.

@@ -44,12 +44,13 @@ std::function<bool()> Unless(vtkRenderWindow* window, const Timer& deadline)
   };
 }
 
+/// Of pictures that somebody's eye follows; ParaView's of interactive ones.
+constexpr double FollowedRate = 5;
+
 /// At which a window wants pictures of each of so many volumes, if it wants them soon.
-double RateOf(vtkRenderWindow* window, bool hurried, int volumes)
+double RateOf(vtkRenderWindow* window, int volumes)
 {
-  constexpr double followed = 5; // by somebody's eye: ParaView's rate of interactive pictures
-  const double rate = hurried ? followed : window->GetDesiredUpdateRate();
-  return rate * (hurried || IsInteractive(window) ? volumes : 1);
+  return window->GetDesiredUpdateRate() * (IsInteractive(window) ? volumes : 1);
 }
 
 /// Steps between samples of a picture for a window, of those of a still one.
@@ -278,8 +279,11 @@ bool FramePainter::draw(const Job& job)
   if (job.still && job.picture.showStill(*job.still, viewport.width, viewport.height)) {
     return this->blend(job, around);
   }
-  const double rate = RateOf(renderer->GetRenderWindow(), job.picture.hurried, job.scene.sharedBy);
-  const int reduction = this->Group.largest(this->resolution(job.scene.mode).factor(rate, pixels));
+  const double rate = RateOf(renderer->GetRenderWindow(), job.scene.sharedBy);
+  // Nobody makes a hurried one again that does not keep to that: it is a still one otherwise.
+  const double wanted = job.picture.hurried ? FollowedRate * job.scene.sharedBy : rate;
+  const int reduction =
+      this->Group.largest(this->resolution(job.scene.mode).factor(wanted, pixels));
   const bool isCoarser = job.picture.hurried && reduction > 1;
   std::optional<Surroundings> here = isCoarser
                                          ? this->drawCoarser(job, around, viewport, reduction)

@@ -295,10 +295,13 @@ std::vector<glm::vec4> Sampled(const Functions& functions, const TransferFunctio
                                        ? functions.evenlyInLogarithms(table.low, table.high, n)
                                        : functions.evenly(table.low, table.high, n);
   // With clamping off VTK's functions begin behind their first node, and where a rounding is beyond
-  // the last place, they may have ended.
-  const double low = functions.areClamped() ? table.low : std::nextafter(table.low, table.high);
-  entries.front() = functions.at(low);
-  entries.back() = functions.at(table.high);
+  // the last place, they may have ended. Logarithms are rounded once more.
+  const auto behind = [&](double value) {
+    return table.logarithmic ? value * (1 + 1e-12) : std::nextafter(value, table.high);
+  };
+  const bool begins = table.logarithmic || !functions.areClamped();
+  entries.front() = functions.at(begins ? behind(table.low) : table.low);
+  entries.back() = functions.at(table.logarithmic ? table.high * (1 - 1e-12) : table.high);
   // Exactly at its first node, VTK's table of a colour function is black.
   const double first =
       functions.Rgb && functions.Rgb->GetSize() > 0 ? functions.Rgb->GetRange()[0] : table.low;
@@ -306,7 +309,7 @@ std::vector<glm::vec4> Sampled(const Functions& functions, const TransferFunctio
     const double position = PlaceOf(first, table) * (n - 1);
     const double nearest = std::round(position);
     if (std::abs(position - nearest) < 1e-6) {
-      entries[static_cast<std::size_t>(nearest)] = functions.at(std::nextafter(first, table.high));
+      entries[static_cast<std::size_t>(nearest)] = functions.at(behind(first));
     }
   }
   return entries;

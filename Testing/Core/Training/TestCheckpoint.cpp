@@ -18,7 +18,7 @@
 namespace test::checkpoint {
 
 const inr::TrainingIdentity Identity{{"Seed", "1"}, {"the array", R"("h\u00e9\"")"}};
-const inr::TrainingState State{1234, 20000, 61.75, 38.5, true};
+const inr::TrainingState State{1234, 20000, 61.75, 38.5, true, 2};
 
 /// Two arrays of different sizes, one of which is empty.
 struct Arrays
@@ -73,6 +73,7 @@ TEST_F(Checkpoint, ComesBackAsItWasWritten)
   EXPECT_EQ(file.state().seconds, State.seconds);
   EXPECT_EQ(file.state().psnr, State.psnr);
   EXPECT_TRUE(file.state().finished);
+  EXPECT_EQ(file.state().anew, State.anew);
   Arrays read;
   read.values = {0, 0, 0};
   read.counts = {0, 0};

@@ -55,6 +55,23 @@ struct Spotted
   inr::ModelPointer Model = inr::TrainModel(this->Data.data(), {}, Options(150));
 };
 
+TEST(PsnrEstimate, KnowsWhatAConstantLeaves)
+{
+  const Field<float> data = Spots();
+  const inr::Arena threads(2);
+  const inr::InMemorySource source(data.data(), 0, 1);
+  double sum = 0;
+  double squares = 0;
+  for (const float value : data.values) {
+    sum += value;
+    squares += double{value} * value;
+  }
+  const auto count = static_cast<double>(data.values.size());
+  const double variance = squares / count - sum / count * (sum / count);
+  const double found = inr::PsnrEstimate(source, 1, threads).squaredErrorOfConstant();
+  EXPECT_NEAR(found / variance, 1, 0.1);
+}
+
 TEST(PsnrEstimate, IsNearThePsnrOfAllVoxelsOfLocalisedData)
 {
   const Spotted spots;

@@ -84,23 +84,25 @@ TEST_F(StuckTraining, IsHelpedThreeTimes)
   EXPECT_EQ(descent.At, (std::vector<std::uint64_t>{50, 100, 200}));
 }
 
-TEST_F(StuckTraining, IsNotHelpedAfterItsLastStep)
+TEST_F(StuckTraining, IsNotHelpedTooLate)
 {
-  Stuck descent(this->Threads, 0);
-  EXPECT_FALSE(this->train(descent, 50));
-  EXPECT_TRUE(descent.Seeds.empty());
+  for (const std::uint64_t steps : {50u, 55u}) {
+    Stuck descent(this->Threads, 0);
+    EXPECT_FALSE(this->train(descent, steps));
+    EXPECT_TRUE(descent.Seeds.empty());
+  }
 }
 
 /// As what differs from voxel to voxel is, and what is right.
 TEST_F(StuckTraining, IsOfTheSameAnswerEverywhere)
 {
   Stuck descent(this->Threads, 0);
-  EXPECT_TRUE(this->Estimate.isStuck(descent.view(), this->Kernel));
+  EXPECT_TRUE(this->Estimate.isStuck(descent.view(), this->Kernel, inr::StopCheck()));
   const inr::PsnrEstimate ofZeros(std::vector<glm::vec3>(100, glm::vec3(0.5f)),
                                   std::vector<float>(100, 0.0f), this->Threads);
-  EXPECT_FALSE(ofZeros.isStuck(descent.view(), this->Kernel));
+  EXPECT_FALSE(ofZeros.isStuck(descent.view(), this->Kernel, inr::StopCheck()));
   descent.startAnew(7);
-  EXPECT_FALSE(this->Estimate.isStuck(descent.view(), this->Kernel));
+  EXPECT_FALSE(this->Estimate.isStuck(descent.view(), this->Kernel, inr::StopCheck()));
 }
 
 TEST_F(StuckTraining, BeginsAnewAsTheFirstTime)

@@ -152,6 +152,28 @@ TEST(Frames, AreCoarserAtFirstWhileSomebodyDragsWhatTheyFollow)
   }
 }
 
+/// Where they take longer than was expected, they are still ones, or go on.
+TEST(Frames, AreNeverLeftCoarserThanTheyAre)
+{
+  for (const int mode : {vtkINRVolumeMapper::RAY_MARCHING, vtkINRVolumeMapper::PATH_TRACING}) {
+    OneVolume one;
+    one.mapper->SetRenderMode(mode);
+    one.mapper->SetSamplesPerPixel(1);
+    one.mapper->ShownElsewhereOn();
+    one.mapper->HurriedOn();
+    vtkVolumeProperty* property = one.volume->GetProperty();
+    for (int picture = 0; picture < 6; ++picture) {
+      if (picture == 3) {
+        one.slowDown();
+      }
+      property->SetScalarOpacityUnitDistance(0.9 * property->GetScalarOpacityUnitDistance());
+      one.scene.capture();
+      EXPECT_EQ(one.mapper->GetConverged(), one.mapper->TakeRefinementPause() == 0);
+      EXPECT_TRUE(one.mapper->GetImageReduction() == 1 || !one.mapper->GetConverged()) << picture;
+    }
+  }
+}
+
 TEST(Frames, RespectOpaqueDepthWhileInteracting)
 {
   OneVolume one;

@@ -179,6 +179,28 @@ TEST_F(LogarithmicTransferFunctions, HaveTheirEntriesWhereThereAreValues)
   }
 }
 
+/// And nothing of what is outside, however their logarithms are rounded.
+TEST_F(LogarithmicTransferFunctions, HaveTheirOwnColorsAtTheEnds)
+{
+  this->colour->SetScaleToLog10();
+  this->colour->UseBelowRangeColorOn();
+  this->colour->UseAboveRangeColorOn();
+  this->opacity->AddPoint(1, 0.5);
+  for (const bool clamps : {true, false}) {
+    this->colour->SetClamping(clamps);
+    for (const double low : {0.003, 1.0, 7.0}) {
+      for (const double high : {20.0, 300.0, 700.0, 2000.0, 3000.0, 4095.0}) {
+        this->colour->RemoveAllPoints();
+        this->colour->AddRGBPoint(low, 0.25, 0.5, 1);
+        this->colour->AddRGBPoint(high, 1, 0.5, 0.25);
+        const auto table = this->build({low, high});
+        ExpectColour(table.table.front(), 0.25, 0.5, 1, 1e-6);
+        ExpectColour(table.table.back(), 1, 0.5, 0.25, 1e-6);
+      }
+    }
+  }
+}
+
 TEST_F(LogarithmicTransferFunctions, MayHaveOneColor)
 {
   this->colour->AddRGBPoint(100, 0.25, 0.5, 1);
