@@ -108,8 +108,8 @@ double LongestSide(const double bounds[6])
 }
 
 /// A twentieth of the longest side, below 0 where there are no bounds: what the panel's domain
-/// gives to new proxies. But the second client of a server has another domain, as ParaView 5.11
-/// gives that the properties that the plugin overrides as they were.
+/// gives to new proxies, too. But ParaView 5.11 gives a server's second client the domains of
+/// properties as they were before the plugin overrode them.
 double DefaultUnitDistance(vtkSMProxy* representation)
 {
   double bounds[6];

@@ -66,7 +66,7 @@ PsnrEstimate::PsnrEstimate(Choice choice, std::vector<float> targets, const Aren
                           [](float target) { return std::isfinite(target); }))
 {}
 
-PsnrEstimate::PsnrEstimate(Choice choice, const SampleSource& source, const Arena& arena)
+PsnrEstimate::PsnrEstimate(const Choice& choice, const SampleSource& source, const Arena& arena)
     : PsnrEstimate(choice, TargetsAt(source, choice.positions), arena)
 {}
 

@@ -75,7 +75,7 @@ private:
                        std::int64_t voxels);
 
   PsnrEstimate(Choice choice, std::vector<float> targets, const Arena& arena);
-  PsnrEstimate(Choice choice, const SampleSource& source, const Arena& arena);
+  PsnrEstimate(const Choice& choice, const SampleSource& source, const Arena& arena);
 
   double weight(std::size_t k) const { return this->Weights.empty() ? 1.0 : this->Weights[k]; }
   void evaluate(const ModelView& model, const EvaluateKernel& kernel, const StopCheck& check,
