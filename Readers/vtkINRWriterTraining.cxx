@@ -169,9 +169,10 @@ void vtkINRWriter::Train(const ParallelInput& given, const StopSignals& signals,
   tell();
   checkpoint.remove(group.rank());
   this->UpdateProgress(1.0);
-  const bool isConstant = model->training->steps == 0; // from which nothing can be learnt
-  if (!model->volume.time || !isConstant) {
-    this->Internal->Previous = model->volume.time ? model : nullptr;
+  if (!model->volume.time) {
+    this->Internal->Previous = nullptr;
+  } else if (model->training->steps > 0) { // of a constant, the one before that says more
+    this->Internal->Previous = model;
   }
   const bool showsHidden = group.any(this->Internal->ShowsHidden);
   if (group.rank() == 0) {

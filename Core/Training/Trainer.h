@@ -33,8 +33,8 @@ struct TrainingOptions
   int macroCellSize = 0;  ///< voxels, a power of two up to 2^29; 0 = DefaultMacroCellSize
   std::optional<Description> description; ///< empty = ChooseDescription
   /// A model of a similar volume, whose parameters are where the training starts if they mean the
-  /// same, that is, if it has the same description, and if they are nearer to this volume than a
-  /// constant is, by 0.7 of its squared error; null = random ones.
+  /// same, that is, if it has the same description, and if they leave less than 0.7 of the squared
+  /// error of a constant; null = random ones.
   ModelPointer start;
   /// Quantised costs 0.1 dB at most, as estimated on more random voxels, but more where targetRatio
   /// takes it. Half instead where steps cannot be that fine, too few of these voxels are finite, or

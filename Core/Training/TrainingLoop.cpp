@@ -258,8 +258,8 @@ bool TrainingLoop::reachedTarget(Descent& descent, const PsnrEstimate& estimate,
   return this->Group.valueOfFirst(this->Psnr >= this->Options.targetPsnr + this->storingLoss());
 }
 
-/// Rectified units may all be off after some steps too long: of a hundred trainings of data that
-/// are zero but for a few voxels, one is.
+/// Rectified units may all be off after some steps too long: those of one of 132 trainings were, of
+/// a single voxel in zeros.
 void TrainingLoop::helpIfStuck(Descent& descent, const PsnrEstimate& estimate,
                                const EvaluateKernel& kernel, const StopCheck& check)
 {

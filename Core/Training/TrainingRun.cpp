@@ -42,8 +42,9 @@ ValueRange OnlyRangeOf(const ModelPointer& model)
 
 /// Whether a network as it is says something of these data. Where it is as far from them as a
 /// constant, as of structures that have moved by more than their size, it takes longer to unlearn
-/// than to learn, and its units may all be turned off on the way. Trainings of 200 steps gained
-/// below 0.6 of a constant's squared error, and lost above 0.8.
+/// than to learn, and its units may all be turned off on the way. Of 15 series of trainings of 200
+/// steps, those that began with less than 0.6 of a constant's squared error had -3 to +8 dB for it
+/// after nine of them, most of them more; all that began with more than 0.8 had less.
 bool IsWorthMore(const ModelView& model, const PsnrEstimate& estimate, const EvaluateKernel& kernel)
 {
   constexpr double share = 0.7; // of what a constant leaves

@@ -48,9 +48,12 @@ std::vector<Bend> BendsAt(const std::vector<double>& nodes, const Function& func
                           const TransferFunction& table)
 {
   std::vector<Bend> bends;
+  if (nodes.size() > MostBends) {
+    return bends;
+  }
   constexpr double step = 1.0 / LargestTable;
   for (const double node : nodes) {
-    if (nodes.size() > MostBends || node <= table.low || node >= table.high) {
+    if (node <= table.low || node >= table.high) {
       continue;
     }
     const double place = PlaceOf(node, table);
@@ -143,7 +146,7 @@ struct Functions
                     IntervalsBetween(this->colourNodes(), low, high, logarithmic));
   }
 
-  /// Where tables of so many intervals from `low` to `high` cut off most.
+  /// Where they bend within a table, of whose entries nothing is asked.
   std::vector<Bend> bends(const TransferFunction& table) const
   {
     const auto alpha = [&](double value) {
